@@ -6,7 +6,7 @@
 use host::plan::Plan;
 use host::render::ray_tracer;
 use host::render::ray_tracing::RayTracer;
-use host::render::{Order, Renderer, Rendering, Watch};
+use host::render::{RenderOrder, Renderer, Rendering, Watch};
 use host::scene::{Camera, Prepared, View};
 use std::num::NonZeroUsize;
 
@@ -50,6 +50,6 @@ fn main() {
 
 fn render(tracer: &RayTracer<'_>, camera: Camera, samples: u32) -> Rendering {
     let settings = &tracer.prepared().settings;
-    let order = Order { threads: NonZeroUsize::new(2), samples, ..Order::of(settings) };
+    let order = RenderOrder { threads: NonZeroUsize::new(2), samples, ..RenderOrder::of(settings) };
     tracer.render(&View::Camera(camera), &order, &Watch::NOBODY).expect("a picture")
 }

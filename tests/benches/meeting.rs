@@ -9,7 +9,7 @@ use std::f64::consts::{PI, TAU};
 use std::hint::black_box;
 
 use glam::{DAffine3, DVec2, DVec3};
-use host::intersection::{Intersection, Precision, Sheet, intersect};
+use host::intersection::{Intersection, CurvePrecision, ExactSheet, intersect};
 use host::solid::primitive::{cylinder, prism, sphere, torus};
 use host::solid::{Body, EdgeChoice, ExactSolid, PrimitiveError};
 use host::surface::Tolerance;
@@ -99,7 +99,7 @@ fn curves(meeting: &Meeting, most: usize) {
         let [one, two] = (meeting.bodies)().expect("the bodies are sound");
         let made = |body: Body| body.solid(Tolerance::new(chord, 45.0)).expect("the tolerance can be met");
         let (one, two) = (made(one), made(two).placed(&meeting.at).expect("a rigid motion spoils nothing"));
-        let run = || intersect(Sheet::from(&one), Sheet::from(&two), &Precision::default());
+        let run = || intersect(ExactSheet::from(&one), ExactSheet::from(&two), &CurvePrecision::default());
         let (seconds, found) = best(run);
         let residual = prove(meeting, &found);
         row(meeting.name, found.points().count(), seconds, residual, &mut before);
@@ -113,7 +113,7 @@ fn prove(meeting: &Meeting, found: &Intersection) -> f64 {
     for point in found.points() {
         assert_eq!(point.failure, None, "{}", meeting.name);
         // The size of the bodies is 4 at most.
-        assert!(point.residual <= 4.0 * Precision::default().newton, "{}: {}", meeting.name, point.residual);
+        assert!(point.residual <= 4.0 * CurvePrecision::default().newton, "{}: {}", meeting.name, point.residual);
         let [one, two] = meeting.equations;
         for off in [one(point.position), two(back.transform_point3(point.position))] {
             assert!(off.abs() < 1e-11, "{}: {off:e} at {}", meeting.name, point.position);

@@ -9,7 +9,7 @@ use std::time::Instant;
 use glam::DVec3;
 use host::mesh::{Mesh, bunny};
 use host::numeric::bounds::Bounds;
-use host::octree::{Octree, Settings, Side, Sorted, Walk};
+use host::octree::{Octree, OctreeSettings, Containment, TriangleBvh, Walk};
 
 /// The least of so many times counts.
 const TRIALS: usize = 5;
@@ -47,12 +47,12 @@ fn edits(large: &Mesh) {
 
 /// Building, sorting, writing, reading, and the inside test of one mesh.
 fn whole(mesh: &Mesh) {
-    let settings = Settings::default();
+    let settings = OctreeSettings::default();
     let build = || Octree::build(&mesh.vertices, &mesh.triangles, &settings).expect("a sound mesh").divided();
     let octree = build();
     let bytes = octree.to_bytes().expect("written");
-    let sorted = Sorted::new(&mesh.vertices, &mesh.triangles);
-    let sorting = least(|| Sorted::new(&mesh.vertices, &mesh.triangles));
+    let sorted = TriangleBvh::new(&mesh.vertices, &mesh.triangles);
+    let sorting = least(|| TriangleBvh::new(&mesh.vertices, &mesh.triangles));
     let reading = least(|| Octree::from_bytes(&bytes).expect("read"));
     println!(
         "  building {:.2}, reading {:.2} MB {reading:.2}, sorting {sorting:.2}",
@@ -67,7 +67,7 @@ fn whole(mesh: &Mesh) {
         })
         .collect();
     let corners = |triangle: u32| mesh.corners(triangle as usize);
-    let count = |side: &dyn Fn(DVec3) -> Side| points.iter().filter(|&&p| side(p) == Side::Inside).count();
+    let count = |side: &dyn Fn(DVec3) -> Containment| points.iter().filter(|&&p| side(p) == Containment::Inside).count();
     let (by_octree, by_sorted) = (count(&|p| octree.side(p)), count(&|p| sorted.side(p, corners)));
     assert_eq!(by_octree, by_sorted, "both structures say the same");
     let thousand = points.len() as f64 / 1e3;
@@ -80,7 +80,7 @@ fn whole(mesh: &Mesh) {
 }
 
 fn built(frame: Bounds, meshes: &[&Mesh]) -> Octree {
-    let mut octree = Octree::around(frame, &Settings::default()).expect("a sound box");
+    let mut octree = Octree::around(frame, &OctreeSettings::default()).expect("a sound box");
     for mesh in meshes {
         octree.insert(&mesh.vertices, &mesh.triangles).expect("a sound mesh");
     }

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use std::hint::black_box;
 
 use glam::DVec2;
-use host::polygon::{Shape, triangulate};
+use host::polygon::{TriangulationKind, triangulate};
 use i_triangle::float::triangulatable::Triangulatable;
 use i_triangle::float::unchecked::UncheckedTriangulatable;
 use rand::{RngExt, SeedableRng};
@@ -148,14 +148,14 @@ const RIVALS: [Rival; 5] = [
 ];
 
 fn ours(polygon: &Polygon) -> Found {
-    in_shape(polygon, Shape::Any)
+    in_shape(polygon, TriangulationKind::Any)
 }
 
 fn ours_delaunay(polygon: &Polygon) -> Found {
-    in_shape(polygon, Shape::Delaunay)
+    in_shape(polygon, TriangulationKind::Delaunay)
 }
 
-fn in_shape(polygon: &Polygon, shape: Shape) -> Found {
+fn in_shape(polygon: &Polygon, shape: TriangulationKind) -> Found {
     let result = triangulate(&polygon.contours, shape).expect("the polygon is sound");
     Found { triangles: result.triangles.into_flattened(), points: None }
 }

@@ -9,7 +9,7 @@ use host::color::{Channels, Color};
 use host::illumination::material::Classic;
 use host::illumination::{Light, Paint};
 use host::plan::Plan;
-use host::render::indirect::{IndirectLight, Part};
+use host::render::indirect::{IndirectLight, IrradiancePart};
 use host::render::radiosity::{Exitance, Radiosity};
 use host::render::{Watch, World};
 use host::scene::{Interreflection, Object, Prepared, RadiositySettings, Scene, Shape};
@@ -22,7 +22,7 @@ fn main() {
     let ball = prepared(vec![object(Shape::from(Primitive::Sphere { radius: 1.0 }), DVec3::ZERO, 0.99)], vec![]);
     let inside = |_: u32, outside: bool, _: DVec3| if outside { Channels::ZERO } else { Channels::ONE };
     let furnace = pool.install(|| solved(&ball, RadiositySettings::default(), Some(&inside)));
-    let found = 1.0 + 0.99 * furnace.irradiance(0, false, [1.0 / 3.0; 3], Part::All).0[0];
+    let found = 1.0 + 0.99 * furnace.irradiance(0, false, [1.0 / 3.0; 3], IrradiancePart::All).0[0];
     assert!((found / 100.0 - 1.0).abs() < 1e-6, "{found} is not 100");
     let room = room();
     let coarse = pool.install(|| solved(&room, settings(0.04, 0.05), None)).report;
@@ -35,7 +35,7 @@ fn main() {
     for (error, finest) in [(0.04, 0.1), (0.01, 0.015), (0.005, 0.004), (0.002, 0.0025)] {
         let report = pool.install(|| solved(&room, settings(error, finest), None)).report;
         let each = report.seconds / report.elements as f64 * 1e6;
-        let host::render::radiosity::Report { elements, links, steps, seconds, .. } = report;
+        let host::render::radiosity::RadiosityReport { elements, links, steps, seconds, .. } = report;
         println!("{elements:>9} {links:>9} {steps:>7} {seconds:>9.3} {each:>14.1}");
     }
 }

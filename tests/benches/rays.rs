@@ -17,7 +17,7 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use crates::{Binary, Parry};
-use host::octree::{Octree, Settings, Walk};
+use host::octree::{Octree, OctreeSettings, Walk};
 use rayon::prelude::*;
 use rivals::Hierarchy;
 use sets::RaySet;
@@ -137,7 +137,7 @@ fn build(shape: &Shape) -> (Octree, Duration) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     pool.install(|| {
         let start = processor_seconds();
-        let octree = Octree::build(&shape.vertices, &shape.triangles, &Settings::default()).expect("a sound mesh");
+        let octree = Octree::build(&shape.vertices, &shape.triangles, &OctreeSettings::default()).expect("a sound mesh");
         (octree, Duration::from_secs_f64(processor_seconds() - start))
     })
 }

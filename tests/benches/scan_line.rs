@@ -12,7 +12,7 @@ use host::picture::difference;
 use host::plan::Plan;
 use host::render::ray_tracer;
 use host::render::scan_line::ScanLine;
-use host::render::{Order, Renderer, Rendering, Watch};
+use host::render::{RenderOrder, Renderer, Rendering, Watch};
 use host::scene::{Camera, Object, Prepared, Scene, Settings, Shape};
 use std::num::NonZeroUsize;
 use std::time::Instant;
@@ -63,9 +63,9 @@ fn row<R>(name: &str, build: impl Fn() -> R, render: impl Fn(&R) -> Rendering) {
     println!("{name:<34} {:>9.4} {:>9.4}", best[0], best[1]);
 }
 
-fn order(side: u32, samples: u32) -> Order {
+fn order(side: u32, samples: u32) -> RenderOrder {
     let settings = Settings::of_size(side, side, samples);
-    Order { threads: NonZeroUsize::new(2), ..Order::of(&settings) }
+    RenderOrder { threads: NonZeroUsize::new(2), ..RenderOrder::of(&settings) }
 }
 
 fn scene() -> Scene {

@@ -10,7 +10,7 @@ use host::picture::RELATIVE_FLOOR;
 use host::plan::Plan;
 use host::render::ray_tracer;
 use host::render::ray_tracing::RayTracer;
-use host::render::{Order, Renderer, Rendering, Watch};
+use host::render::{RenderOrder, Renderer, Rendering, Watch};
 use host::scene::{Interreflection, Prepared, Scene, View};
 use std::num::NonZeroUsize;
 use std::time::Instant;
@@ -82,7 +82,7 @@ fn timed(scene: &Scene, threads: usize) -> (Rendering, f64) {
 }
 
 fn render(tracer: &RayTracer<'_>, view: &View, threads: usize) -> Rendering {
-    let order = Order { threads: NonZeroUsize::new(threads), ..Order::of(&tracer.prepared().settings) };
+    let order = RenderOrder { threads: NonZeroUsize::new(threads), ..RenderOrder::of(&tracer.prepared().settings) };
     tracer.render(view, &order, &Watch::NOBODY).expect("a picture")
 }
 

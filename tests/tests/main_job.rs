@@ -5,9 +5,9 @@ use host::{
     picture::Picture,
     picture::display::DisplayTransform,
     production::{Production, difference, view_of_dials},
-    render::{Order, Watch},
+    render::{RenderOrder, Watch},
     script,
-    workstation::{Drawing, Lines, Patience, Session},
+    workstation::{Drawing, DrawnEdges, Timeouts, Session},
 };
 use std::{collections::BTreeMap, fs, path::Path, time::Duration};
 use tests::{Ended, Machine, run};
@@ -31,7 +31,7 @@ fn peris(arguments: &[&str], folder: &Path) -> Ended {
 
 fn begin(machine: &Machine, scene: &host::scene::Scene, drawing: &Drawing) -> Production {
     let line = format!("tcp:{}", machine.line).parse().unwrap();
-    Production::begin(scene, Session::attach(&line, Patience::default()).unwrap(), drawing).unwrap()
+    Production::begin(scene, Session::attach(&line, Timeouts::default()).unwrap(), drawing).unwrap()
 }
 
 /// All pictures of a folder.
@@ -206,7 +206,7 @@ fn the_render_of_the_view_has_the_silhouette_of_the_vector_screen() {
     let folder = tempfile::tempdir().unwrap();
     let scene = script::evaluate(SCENE, "silhouette", Path::new(""), &script::Inputs::default()).unwrap().scene;
     let mut machine = Machine::start(PS340, &[]);
-    let drawing = Drawing { lines: Lines::All, tolerance: 1.0 / 4000.0, ..Drawing::default() };
+    let drawing = Drawing { lines: DrawnEdges::All, tolerance: 1.0 / 4000.0, ..Drawing::default() };
     let mut production = begin(&machine, &scene, &drawing);
     let size = 512;
     let vector = |machine: &mut Machine, name: &str| {
@@ -217,7 +217,7 @@ fn the_render_of_the_view_has_the_silhouette_of_the_vector_screen() {
         Mask { size, on: image.pixels().map(|p| p.0[0] > 128).collect() }.closed(6)
     };
     let render = |production: &Production, matrix: &DMat4| {
-        let order = Order::of(&scene.settings);
+        let order = RenderOrder::of(&scene.settings);
         let picture: Picture =
             production.render(matrix, &order, &DisplayTransform::LINEAR, &Watch::NOBODY).unwrap().rendering.picture;
         Mask { size, on: picture.coverage8().iter().map(|c| *c > 127).collect() }

@@ -1,8 +1,8 @@
 //! Materials as somebody writes them in a script: names, numbers that patterns tell, and what is said of mistakes.
 
 use host::color::shipped;
-use host::illumination::material::{Body, Finish, Index, Transparent};
-use host::illumination::texture::Number;
+use host::illumination::material::{MaterialKind, Finish, RefractiveIndex, Transparent};
+use host::illumination::texture::NumberTexture;
 use host::script::{self, Inputs};
 use std::fs;
 use std::path::Path;
@@ -11,7 +11,7 @@ use tests::run;
 
 const PERIS: &str = env!("CARGO_BIN_EXE_peris-under-test");
 
-fn bodies(text: &str) -> Vec<Body> {
+fn bodies(text: &str) -> Vec<MaterialKind> {
     let evaluated = script::evaluate(text, "a.rhai", Path::new(""), &Inputs::default());
     let evaluated = evaluated.unwrap_or_else(|error| panic!("{error}"));
     evaluated.scene.objects.into_iter().filter_map(|object| Some(object.material?.body)).collect()
@@ -29,14 +29,14 @@ fn every_metal_glass_and_liquid_that_ships_can_be_named() {
     };
     let metals = bodies(&calls(shipped::metals(), "metal"));
     assert_eq!(metals.len(), 26);
-    assert!(metals.iter().all(|body| matches!(body, Body::Metal(_))));
+    assert!(metals.iter().all(|body| matches!(body, MaterialKind::Metal(_))));
     let clear = [calls(shipped::glasses(), "glass"), calls(shipped::liquids(), "liquid")].concat();
     let clear = bodies(&clear);
     assert_eq!(clear.len(), 20);
     let priorities: Vec<i32> = clear
         .iter()
         .map(|body| match body {
-            Body::Transparent(Transparent { index: Index::Dispersive(_), priority, .. }) => *priority,
+            MaterialKind::Transparent(Transparent { index: RefractiveIndex::Dispersive(_), priority, .. }) => *priority,
             other => panic!("{other:?}"),
         })
         .collect();
@@ -65,18 +65,18 @@ fn numbers_may_be_patterns() {
         panic!("five objects")
     };
     // Brightness is a mean of three bands, which rounds.
-    let is_from_to = |number: &Number, from: f64, to: f64| {
+    let is_from_to = |number: &NumberTexture, from: f64, to: f64| {
         let [least, most] = number.range();
         (least - from).abs() < 1e-12 * to && (most - to).abs() < 1e-12 * to
     };
-    let Body::Metal(metal) = metal else { panic!("{metal:?}") };
+    let MaterialKind::Metal(metal) = metal else { panic!("{metal:?}") };
     assert!(matches!(&metal.finish, Finish::Rough { roughness, .. } if is_from_to(roughness, 0.05, 0.4)));
-    let Body::Metal(brushed) = brushed else { panic!("{brushed:?}") };
+    let MaterialKind::Metal(brushed) = brushed else { panic!("{brushed:?}") };
     assert!(matches!(&brushed.finish, Finish::Brushed { roughness: [a, b], .. }
         if !a.is_varying() && is_from_to(b, 0.05, 0.4)));
-    assert!(matches!(glass, Body::Transparent(glass) if glass.roughness.is_varying()));
-    assert!(matches!(classic, Body::Classic(classic) if is_from_to(&classic.exponent, 10.0, 500.0)));
-    let Body::Principled(principled) = principled else { panic!("{principled:?}") };
+    assert!(matches!(glass, MaterialKind::Transparent(glass) if glass.roughness.is_varying()));
+    assert!(matches!(classic, MaterialKind::Classic(classic) if is_from_to(&classic.exponent, 10.0, 500.0)));
+    let MaterialKind::Principled(principled) = principled else { panic!("{principled:?}") };
     assert!(is_from_to(&principled.metallic, 0.0, 1.0));
     assert!(is_from_to(&principled.roughness, 0.34, 0.48), "{:?}", principled.roughness.range());
 }

@@ -3,9 +3,9 @@
 use glam::DVec3;
 use host::{
     mesh::{Mesh, bunny},
-    numeric::sampling::{self, Stream},
+    numeric::sampling::{self, RandomStream},
     octree::{
-        Octree, Ray, Settings,
+        Octree, Ray, OctreeSettings,
         brute_force::{Agreement, agreement, closest_many},
     },
     surface::{Tolerance, teapot, tessellate},
@@ -30,7 +30,7 @@ fn rays(mesh: &Mesh, count: usize) -> Vec<Ray> {
                 let at = center + DVec3::new(x, y, 0.0) * radius * 2.0;
                 Ray { origin: eye, direction: at - eye }
             } else {
-                let mut stream = Stream::new(7, i as u64);
+                let mut stream = RandomStream::new(7, i as u64);
                 let [from, to] = [stream.point(), stream.point()].map(|p| center + sampling::sphere(p) * radius);
                 Ray { origin: from, direction: to - from }
             }
@@ -40,7 +40,7 @@ fn rays(mesh: &Mesh, count: usize) -> Vec<Ray> {
 
 /// Every hit is the same, apart from ties, which are counted.
 fn compare(name: &str, mesh: &Mesh) {
-    let octree = Octree::build(&mesh.vertices, &mesh.triangles, &Settings::default()).expect("the octree is built");
+    let octree = Octree::build(&mesh.vertices, &mesh.triangles, &OctreeSettings::default()).expect("the octree is built");
     let rays = rays(mesh, RAYS);
     let expected = closest_many(&mesh.vertices, &mesh.triangles, &rays, 0.0, f64::INFINITY);
     let (mut hits, mut ties) = (0, 0);
@@ -72,7 +72,7 @@ fn a_million_rays_hit_the_teapot_where_all_its_triangles_say() {
 fn no_ray_leaves_the_bunny_through_a_vertex_or_an_edge() {
     let mesh = bunny().expect("it ships");
     assert!(mesh.edge_report().is_closed());
-    let octree = Octree::build(&mesh.vertices, &mesh.triangles, &Settings::default()).expect("the octree is built");
+    let octree = Octree::build(&mesh.vertices, &mesh.triangles, &OctreeSettings::default()).expect("the octree is built");
     let bounds = mesh.bounds().expect("the mesh has vertices");
     let inside = DVec3::new(-0.02, 0.09, 0.0);
     assert!(inside.cmpgt(bounds.min).all() && inside.cmplt(bounds.max).all(), "{bounds:?}");

@@ -5,10 +5,10 @@ use glam::DMat4;
 use host::{
     picture::Picture,
     plan::Plan,
-    render::{Order, Renderer, Watch, World, indirect::IndirectLight, radiosity::Radiosity, scan_line::ScanLine},
+    render::{RenderOrder, Renderer, Watch, World, indirect::IndirectLight, radiosity::Radiosity, scan_line::ScanLine},
     scene::{Prepared, Projection, View},
     script,
-    workstation::{Patience, Session},
+    workstation::{Timeouts, Session},
 };
 use std::{fs, path::Path, sync::Arc, time::Duration};
 use tests::{Machine, run};
@@ -55,7 +55,7 @@ fn shown(solution: &Arc<Radiosity>, prepared: &Prepared, plan: &Plan, matrix: &D
     let view = View::Projection(Projection::from_workstation(matrix, false));
     let world = World::new(prepared, plan).unwrap();
     let scan_line = ScanLine::showing(Arc::clone(solution) as Arc<dyn IndirectLight>, world, plan);
-    let order = Order::of(&prepared.settings);
+    let order = RenderOrder::of(&prepared.settings);
     let picture: Picture = scan_line.render(&view, &order, &Watch::NOBODY).unwrap().picture;
     picture.to_srgb8().as_chunks::<3>().0.to_vec()
 }
@@ -80,7 +80,7 @@ fn the_light_of_a_solution_is_seen_on_the_workstation_from_wherever_the_dials_tu
     let world = World::new(&prepared, &plan).unwrap();
     let solution = Radiosity::new(&world, &plan, &prepared.settings.radiosity, None, &Watch::NOBODY).unwrap();
     let solution = Arc::new(solution);
-    let mut session = Session::attach(&to.parse().unwrap(), Patience::default()).unwrap();
+    let mut session = Session::attach(&to.parse().unwrap(), Timeouts::default()).unwrap();
     let mut pictures = Vec::new();
     for turn in ["dial 8 0.1", "dial 2 0.08"] {
         machine.order(turn);

@@ -1,14 +1,14 @@
 //! `peris boolean`: solids from solids.
 
-use super::{Exit, Failure, Row, formula, say};
-use crate::mesh::{self, Grouped, Look};
+use super::{Exit, CommandFailure, SubcommandRow, formula, say};
+use crate::mesh::{self, Grouped, MetallicRoughness};
 use crate::solid::Solid;
 use anyhow::Context;
 use clap::{Args, FromArgMatches};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-pub(super) const ROW: Row = Row {
+pub(super) const ROW: SubcommandRow = SubcommandRow {
     name: "boolean",
     summary: "Unites, intersects or subtracts solids that are given as closed meshes.",
     arguments: |command| {
@@ -33,9 +33,9 @@ struct Arguments {
     json: bool,
 }
 
-fn run(arguments: &Arguments) -> Result<(), Failure> {
+fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let Arguments { formula, output, json } = arguments;
-    let (meshes, expression) = formula::parse(formula).map_err(|error| Failure::new(Exit::Usage, error))?;
+    let (meshes, expression) = formula::parse(formula).map_err(|error| CommandFailure::new(Exit::Usage, error))?;
     let destination = mesh::destination(output)?;
     let (mut solids, mut names, mut looks) = (Vec::new(), Vec::new(), Vec::new());
     for path in &meshes {
@@ -52,7 +52,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         if *json {
             say::report(serde_json::json!({ "problem": error.to_string() }));
         }
-        Failure::new(Exit::Failed, error)
+        CommandFailure::new(Exit::Failed, error)
     })?;
     let seconds = start.elapsed().as_secs_f64();
     let grouped = Grouped { mesh: result.into_mesh(), names, looks };
@@ -86,7 +86,7 @@ fn stem(path: &Path) -> String {
 }
 
 /// Reads a mesh that must be a solid.
-pub(super) fn solid(path: &Path) -> Result<Solid, Failure> {
+pub(super) fn solid(path: &Path) -> Result<Solid, CommandFailure> {
     grouped_solid(path).map(|operand| operand.solid)
 }
 
@@ -94,18 +94,18 @@ pub(super) fn solid(path: &Path) -> Result<Solid, Failure> {
 struct Operand {
     solid: Solid,
     names: Vec<String>,
-    looks: Vec<Option<Look>>,
+    looks: Vec<Option<MetallicRoughness>>,
 }
 
 /// Reads a mesh that must be a solid; one without groups is one, called as the file.
-fn grouped_solid(path: &Path) -> Result<Operand, Failure> {
+fn grouped_solid(path: &Path) -> Result<Operand, CommandFailure> {
     let Grouped { mut mesh, mut names, looks } = mesh::read_grouped(path)?;
     if mesh.surfaces.is_empty() {
         mesh.surfaces = vec![0; mesh.triangles.len()];
         names = vec![stem(path)];
     }
     let solid = Solid::resolved(mesh).with_context(|| format!("{} is no solid", path.display()));
-    let (solid, crossing) = solid.map_err(|error| Failure::new(Exit::Failed, error))?;
+    let (solid, crossing) = solid.map_err(|error| CommandFailure::new(Exit::Failed, error))?;
     if let Some(crossing) = crossing {
         tracing::warn!("{}: {crossing}; taken for all that it winds around", path.display());
     }

@@ -1,6 +1,6 @@
 //! `peris check`: whether a mesh bounds a solid.
 
-use super::{Exit, Failure, Row, say};
+use super::{Exit, CommandFailure, SubcommandRow, say};
 use crate::mesh::{self, BoundaryLoop, Format, Grouped, Mesh};
 use crate::solid::{self, Repair, Solid, SolidError};
 use anyhow::Context;
@@ -9,7 +9,7 @@ use files::Destination;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-pub(super) const ROW: Row = Row {
+pub(super) const ROW: SubcommandRow = SubcommandRow {
     name: "check",
     summary: "Says whether a mesh is closed, consistently oriented and free of self-crossings; the exit code tells too.",
     arguments: Arguments::augment_args,
@@ -32,7 +32,7 @@ struct Arguments {
 /// Boundary loops that the text names.
 const NAMED: usize = 8;
 
-fn run(arguments: &Arguments) -> Result<(), Failure> {
+fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let destination = arguments.repair.as_ref().map(mesh::destination).transpose()?;
     let grouped = mesh::read_grouped(&arguments.mesh)?;
     let mesh = &grouped.mesh;
@@ -65,11 +65,11 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         (Some(Err(error)), _) => Err(error),
         _ => verdict.map(|_| ()),
     };
-    outcome.map_err(|error| Failure::new(Exit::Failed, anyhow::anyhow!("{}: {error}", arguments.mesh.display())))
+    outcome.map_err(|error| CommandFailure::new(Exit::Failed, anyhow::anyhow!("{}: {error}", arguments.mesh.display())))
 }
 
 /// Writes a mesh that is a solid already: the same bytes if the format is the same and the file stands alone.
-fn keep(path: &Path, grouped: &Grouped, destination: &Destination) -> Result<(), Failure> {
+fn keep(path: &Path, grouped: &Grouped, destination: &Destination) -> Result<(), CommandFailure> {
     let format = Format::of(path);
     if format != Format::of(destination.path()) || format == Some(Format::Gltf) {
         return Ok(mesh::write_grouped(grouped, destination)?);

@@ -1,13 +1,13 @@
 //! `peris compose`: two pictures made one.
 
 use super::say::warn;
-use super::{Exit, Failure, Row, say};
+use super::{Exit, CommandFailure, SubcommandRow, say};
 use crate::picture::{self, Deep, Operator, Picture};
 use clap::{Args, FromArgMatches};
 use files::Destination;
 use std::path::PathBuf;
 
-pub(super) const ROW: Row = Row {
+pub(super) const ROW: SubcommandRow = SubcommandRow {
     name: "compose",
     summary: "Makes one picture of two: by their coverage, by their depth, or by adding their light.",
     arguments: Arguments::augment_args,
@@ -38,7 +38,7 @@ struct Arguments {
     json: bool,
 }
 
-fn run(arguments: &Arguments) -> Result<(), Failure> {
+fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let Arguments { a, operator, b, output, depth, json } = arguments;
     let destination = Picture::destination(output)?;
     let picture = match depth {
@@ -64,9 +64,9 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Combines the pictures by their depth, and writes the result.
-fn by_depth(arguments: &Arguments, destination: &Destination) -> Result<Picture, Failure> {
+fn by_depth(arguments: &Arguments, destination: &Destination) -> Result<Picture, CommandFailure> {
     let Arguments { a, operator, b, .. } = arguments;
-    let wrong = |message: String| Failure::new(Exit::Usage, anyhow::anyhow!(message));
+    let wrong = |message: String| CommandFailure::new(Exit::Usage, anyhow::anyhow!(message));
     if *operator != Operator::Over {
         return Err(wrong("--depth is for the operator over".into()));
     }

@@ -1,12 +1,12 @@
 //! `peris continuity`: how smoothly the sculptured surfaces of a scene meet.
 
-use super::{Definitions, Exit, Failure, Row, SCRIPT_HELP, load};
+use super::{ScriptArguments, Exit, CommandFailure, SubcommandRow, SCRIPT_HELP, load};
 use crate::scene::{Object, Sculpture, Shape};
 use clap::{Args, FromArgMatches};
 use glam::{DAffine3, DMat4};
 use std::collections::BTreeMap;
 
-pub(super) const ROW: Row = Row {
+pub(super) const ROW: SubcommandRow = SubcommandRow {
     name: "continuity",
     summary: "Measures along all joints of the sculptured surfaces of a scene the gap, the angle, and the difference of curvatures.",
     arguments: Arguments::augment_args,
@@ -23,7 +23,7 @@ struct Arguments {
     #[arg(help = SCRIPT_HELP, default_value = "car", value_name = "SCRIPT")]
     script: String,
     #[command(flatten)]
-    definitions: Definitions,
+    definitions: ScriptArguments,
     /// Points of each joint at which it is measured
     #[arg(long, value_name = "COUNT", default_value_t = 33, value_parser = clap::value_parser!(u32).range(2..=10_000))]
     samples: u32,
@@ -34,7 +34,7 @@ struct Arguments {
 
 /// The joints between two surfaces of an object, or between the patches of one.
 #[derive(Default)]
-struct Found {
+struct JointGroup {
     joints: usize,
     gap: f64,
     angle: f64,
@@ -42,7 +42,7 @@ struct Found {
     curvature: f64,
 }
 
-impl Found {
+impl JointGroup {
     /// The highest continuity that holds along all of them.
     fn class(&self, extent: f64) -> &'static str {
         if self.angle > NO_ANGLE {
@@ -55,13 +55,13 @@ impl Found {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<(), Failure> {
+fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let scene = load(&arguments.script, &arguments.definitions)?.scene;
     let mut sculptures = Vec::new();
     scene.objects.iter().for_each(|object| collect(object, &DMat4::IDENTITY, &mut sculptures));
     if sculptures.is_empty() {
         let why = "the scene has no sculptured surfaces";
-        return Err(Failure::new(Exit::Failed, anyhow::anyhow!(why)));
+        return Err(CommandFailure::new(Exit::Failed, anyhow::anyhow!(why)));
     }
     let mut rows = Vec::new();
     if !arguments.json {
@@ -76,8 +76,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         );
     }
     for (name, sculpture) in sculptures {
-        let failed = |error| Failure::new(Exit::Scene, anyhow::anyhow!("{name}: {error}"));
-        let mut pairs: BTreeMap<[usize; 2], Found> = BTreeMap::new();
+        let failed = |error| CommandFailure::new(Exit::Scene, anyhow::anyhow!("{name}: {error}"));
+        let mut pairs: BTreeMap<[usize; 2], JointGroup> = BTreeMap::new();
         for joint in sculpture.joints(arguments.samples as usize).map_err(failed)? {
             let [(a, _), (b, _)] = joint.sides;
             let found = pairs.entry([a.min(b), a.max(b)]).or_default();
@@ -89,7 +89,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         for ([a, b], found) in pairs {
             let class = found.class(sculpture.extent());
-            let Found { joints, gap, angle, curvature_difference, curvature } = found;
+            let JointGroup { joints, gap, angle, curvature_difference, curvature } = found;
             if !arguments.json {
                 let surfaces = if a == b { format!("{a}") } else { format!("{a} - {b}") };
                 say!(

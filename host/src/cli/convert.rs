@@ -1,13 +1,13 @@
 //! `peris convert`: meshes, pictures and scenes from one file format to another.
 
 use super::display::DisplayArguments;
-use super::{Definitions, Exit, Failure, Row, load, say};
+use super::{ScriptArguments, Exit, CommandFailure, SubcommandRow, load, say};
 use crate::mesh::{self, Grouped};
 use crate::picture::Picture;
 use crate::picture::display::{DisplayTransform, Exposure};
 use crate::render::metering::stops_of_picture;
 use crate::scene::{Prepared, View};
-use crate::workstation::{Drawing, InitialView, Lines, structure};
+use crate::workstation::{Drawing, InitialView, DrawnEdges, structure};
 use clap::{Args, FromArgMatches};
 use files::Destination;
 use glam::{DAffine3, DVec3};
@@ -15,7 +15,7 @@ use protocol::command::print;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-pub(super) const ROW: Row = Row {
+pub(super) const ROW: SubcommandRow = SubcommandRow {
     name: "convert",
     summary: "Converts a mesh, a picture, or the triangles of a whole scene to another file format, or to commands of a \
               PS 340.",
@@ -29,7 +29,7 @@ struct Arguments {
     #[arg(value_name = "IN")]
     input: PathBuf,
     #[command(flatten)]
-    definitions: Definitions,
+    definitions: ScriptArguments,
     /// The file to write: a mesh from a mesh or a scene, a picture from a picture; or commands (.ps300) that build a
     /// mesh or scene on a PS 340 as polygons with camera, lights and materials, below a node PERIS.SHADE that renders
     /// them on request: SEND FIX(4) TO <1>PERIS.SHADE removes hidden lines, FIX(7) and FIX(8) shade
@@ -44,7 +44,7 @@ struct Arguments {
     scale: f64,
     /// For .ps300: the edges that pictures without hidden lines draw; all others are soft
     #[arg(long, value_enum, default_value = "grid")]
-    lines: Lines,
+    lines: DrawnEdges,
     /// For .ps300: distance between curved surfaces and their triangles, as a part of the object's diagonal
     #[arg(long, value_name = "PART", default_value_t = Drawing::default().tolerance, value_parser = super::values::part)]
     tolerance: f64,
@@ -55,15 +55,15 @@ struct Arguments {
     json: bool,
 }
 
-fn run(arguments: &Arguments) -> Result<(), Failure> {
+fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let Arguments { input, output, triangles: most, json, .. } = arguments;
     let to_commands = output.extension().is_some_and(|e| e.eq_ignore_ascii_case("ps300"));
     if most.is_some() && (to_commands || Picture::is_picture(output)) {
-        return Err(Failure::new(Exit::Usage, anyhow::anyhow!("--triangles is for a mesh that is written")));
+        return Err(CommandFailure::new(Exit::Usage, anyhow::anyhow!("--triangles is for a mesh that is written")));
     }
     if !arguments.display.is_empty() && !Picture::is_picture(input) {
         let message = "--exposure, --tone, --white and --bloom are for a picture";
-        return Err(Failure::new(Exit::Usage, anyhow::anyhow!(message)));
+        return Err(CommandFailure::new(Exit::Usage, anyhow::anyhow!(message)));
     }
     if Picture::is_picture(input) {
         let destination = Picture::destination(output)?;
@@ -103,7 +103,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Writes the commands that build a scene on a PS 340.
-fn commands(arguments: &Arguments) -> Result<(), Failure> {
+fn commands(arguments: &Arguments) -> Result<(), CommandFailure> {
     let Arguments { input, definitions, output, json, lines, tolerance, .. } = arguments;
     let destination = Destination::of(output)?;
     let scene = load(&input.to_string_lossy(), definitions)?.scene;
@@ -111,7 +111,7 @@ fn commands(arguments: &Arguments) -> Result<(), Failure> {
     let drawing = Drawing { lines: *lines, tolerance: *tolerance, facets: true, ..Drawing::default() };
     let shown = InitialView::of(&prepared)
         .and_then(|initial| structure::commands(&scene, &initial, &prepared.subject(), &drawing))
-        .map_err(|error| Failure::new(Exit::Scene, error))?;
+        .map_err(|error| CommandFailure::new(Exit::Scene, error))?;
     let mut text = Vec::new();
     for command in std::iter::once(&structure::delete()).chain(&shown.commands) {
         print(command, &mut text);
@@ -128,10 +128,10 @@ fn commands(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// A picture of radiance as the arguments show it; what they do not say is as it is.
-fn shown(picture: &Picture, output: &Path, arguments: &DisplayArguments) -> Result<Picture, Failure> {
+fn shown(picture: &Picture, output: &Path, arguments: &DisplayArguments) -> Result<Picture, CommandFailure> {
     if Picture::is_exr(output) {
         let message = "EXR files keep the radiance: --exposure, --tone, --white and --bloom are for PNG files";
-        return Err(Failure::new(Exit::Usage, anyhow::anyhow!(message)));
+        return Err(CommandFailure::new(Exit::Usage, anyhow::anyhow!(message)));
     }
     let display = arguments.over(DisplayTransform::LINEAR)?;
     let stops = match display.exposure {
@@ -148,7 +148,7 @@ fn factor(text: &str) -> Result<f64, String> {
 }
 
 /// The triangles of a mesh with their groups, or of a whole scene.
-fn triangles(input: &Path, definitions: &Definitions) -> Result<Grouped, Failure> {
+fn triangles(input: &Path, definitions: &ScriptArguments) -> Result<Grouped, CommandFailure> {
     let scene = load(&input.to_string_lossy(), definitions)?.scene;
     Ok(match mesh::Format::of(input) {
         Some(_) => mesh::read_grouped(input)?,

@@ -1,11 +1,11 @@
 //! `peris diff`: how far a picture is from a reference.
 
-use super::{Exit, Failure, Row, say};
+use super::{Exit, CommandFailure, SubcommandRow, say};
 use crate::picture::{self, Difference, Flip, PIXELS_PER_DEGREE, PIXELS_PER_DEGREE_RANGE, Picture};
 use clap::{Args, FromArgMatches};
 use std::path::PathBuf;
 
-pub(super) const ROW: Row = Row {
+pub(super) const ROW: SubcommandRow = SubcommandRow {
     name: "diff",
     summary: "Says how far a picture is from a reference: in radiance, and to the eye (FLIP); the exit code tells too, if \
               there is a tolerance.",
@@ -35,7 +35,7 @@ struct Arguments {
     json: bool,
 }
 
-fn run(arguments: &Arguments) -> Result<(), Failure> {
+fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let Arguments { picture, reference, tolerance, map, ppd, json } = arguments;
     let map = map.as_deref().map(Picture::destination).transpose()?;
     let (a, b) = (Picture::read_finite(picture)?, Picture::read_finite(reference)?);
@@ -70,14 +70,14 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         (false, Some(tolerance)) => {
             let names = format!("{} and {}", picture.display(), reference.display());
             let message = format!("{names} have an RMSE of {rmse}, more than {tolerance}");
-            Err(Failure::new(Exit::Failed, anyhow::anyhow!(message)))
+            Err(CommandFailure::new(Exit::Failed, anyhow::anyhow!(message)))
         }
         _ => Ok(()),
     }
 }
 
 /// A grey picture of the errors themselves.
-fn numbers(like: &Picture, flip: &Flip) -> Result<Picture, Failure> {
+fn numbers(like: &Picture, flip: &Flip) -> Result<Picture, CommandFailure> {
     let mut picture = Picture::new(like.width(), like.height())?;
     for (pixel, error) in picture.pixels_mut().iter_mut().zip(&flip.map) {
         *pixel = picture::Pixel { radiance: [*error; 3], coverage: 1.0 };

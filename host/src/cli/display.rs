@@ -1,6 +1,6 @@
 //! Arguments of commands that show pictures: exposure, tone curve, white balance and bloom.
 
-use super::{Exit, Failure};
+use super::{Exit, CommandFailure};
 use crate::color::{light_of_temperature, shipped};
 use crate::picture::display::{DisplayTransform, Exposure, Tone, neutral};
 use clap::Args;
@@ -36,14 +36,14 @@ impl DisplayArguments {
     ///
     /// # Errors
     /// [`Exit::Usage`] as a [`Failure`] for impossible numbers.
-    pub(super) fn over(&self, other: DisplayTransform) -> Result<DisplayTransform, Failure> {
+    pub(super) fn over(&self, other: DisplayTransform) -> Result<DisplayTransform, CommandFailure> {
         let display = DisplayTransform {
             exposure: self.exposure.unwrap_or(other.exposure),
             white: self.white.or(other.white),
             bloom: self.bloom.unwrap_or(other.bloom),
             tone: self.tone.unwrap_or(other.tone),
         };
-        display.check().map_err(|problem| Failure::new(Exit::Usage, anyhow::anyhow!(problem)))?;
+        display.check().map_err(|problem| CommandFailure::new(Exit::Usage, anyhow::anyhow!(problem)))?;
         Ok(display)
     }
 }

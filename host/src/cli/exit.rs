@@ -72,25 +72,25 @@ pub(super) fn table() -> String {
 
 /// Why a command ends early, and with which code.
 #[derive(Debug)]
-pub struct Failure {
+pub struct CommandFailure {
     /// The code.
     pub exit: Exit,
     /// What happened.
     pub error: anyhow::Error,
 }
 
-impl Failure {
+impl CommandFailure {
     /// A failure with this code.
-    pub fn new(exit: Exit, error: impl Into<anyhow::Error>) -> Failure {
-        Failure { exit, error: error.into() }
+    pub fn new(exit: Exit, error: impl Into<anyhow::Error>) -> CommandFailure {
+        CommandFailure { exit, error: error.into() }
     }
 }
 
 macro_rules! failures {
     ($($error:ty => $exit:ident),* $(,)?) => {
-        $(impl From<$error> for Failure {
-            fn from(error: $error) -> Failure {
-                Failure::new(Exit::$exit, error)
+        $(impl From<$error> for CommandFailure {
+            fn from(error: $error) -> CommandFailure {
+                CommandFailure::new(Exit::$exit, error)
             }
         })*
     };
@@ -111,56 +111,56 @@ failures! {
     WorkstationError => Line,
 }
 
-impl From<MeshError> for Failure {
-    fn from(error: MeshError) -> Failure {
+impl From<MeshError> for CommandFailure {
+    fn from(error: MeshError) -> CommandFailure {
         let exit = if let MeshError::Format { .. } = error { Exit::Usage } else { Exit::Failed };
-        Failure::new(exit, error)
+        CommandFailure::new(exit, error)
     }
 }
 
-impl From<PictureError> for Failure {
-    fn from(error: PictureError) -> Failure {
+impl From<PictureError> for CommandFailure {
+    fn from(error: PictureError) -> CommandFailure {
         let exit = if let PictureError::Format { .. } = error { Exit::Usage } else { Exit::Failed };
-        Failure::new(exit, error)
+        CommandFailure::new(exit, error)
     }
 }
 
-impl From<StateError> for Failure {
-    fn from(error: StateError) -> Failure {
+impl From<StateError> for CommandFailure {
+    fn from(error: StateError) -> CommandFailure {
         let exit = if let StateError::Other { .. } = error { Exit::Usage } else { Exit::Failed };
-        Failure::new(exit, error)
+        CommandFailure::new(exit, error)
     }
 }
 
-impl From<DatabaseError> for Failure {
-    fn from(error: DatabaseError) -> Failure {
+impl From<DatabaseError> for CommandFailure {
+    fn from(error: DatabaseError) -> CommandFailure {
         let exit = match error {
             DatabaseError::Unknown { .. } | DatabaseError::Exists { .. } | DatabaseError::Name(_) => Exit::Usage,
             _ => Exit::Failed,
         };
-        Failure::new(exit, error)
+        CommandFailure::new(exit, error)
     }
 }
 
-impl From<ProductionError> for Failure {
-    fn from(error: ProductionError) -> Failure {
+impl From<ProductionError> for CommandFailure {
+    fn from(error: ProductionError) -> CommandFailure {
         match error {
             ProductionError::Scene(e) => e.into(),
             ProductionError::Workstation(e) => e.into(),
             ProductionError::Render(e) => e.into(),
-            ProductionError::Thread(_) => Failure::new(Exit::Failed, error),
+            ProductionError::Thread(_) => CommandFailure::new(Exit::Failed, error),
         }
     }
 }
 
-impl From<StudyError> for Failure {
-    fn from(error: StudyError) -> Failure {
+impl From<StudyError> for CommandFailure {
+    fn from(error: StudyError) -> CommandFailure {
         let exit = match error {
             StudyError::Interrupted => Exit::Interrupted,
             StudyError::Distribution(_) => Exit::Usage,
             StudyError::Scene(_) | StudyError::Nothing(_) => Exit::Scene,
             _ => Exit::Failed,
         };
-        Failure::new(exit, error)
+        CommandFailure::new(exit, error)
     }
 }

@@ -1,11 +1,11 @@
 //! `peris functions`: what a scene script may call.
 
-use super::{Exit, Failure, Row};
+use super::{Exit, CommandFailure, SubcommandRow};
 use crate::script::{self, functions};
 use crate::spelling;
 use clap::{Args, FromArgMatches};
 
-pub(super) const ROW: Row = Row {
+pub(super) const ROW: SubcommandRow = SubcommandRow {
     name: "functions",
     summary: "Lists the functions of scene scripts, or explains one.",
     arguments: Arguments::augment_args,
@@ -21,7 +21,7 @@ struct Arguments {
     reference: bool,
 }
 
-fn run(arguments: &Arguments) -> Result<(), Failure> {
+fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     if arguments.reference {
         say_on!("{}", script::reference());
     } else if let Some(name) = &arguments.name {
@@ -30,7 +30,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             let known: Vec<&str> = functions().map(|function| function.name).collect();
             let question =
                 spelling::question(name, &known).map_or_else(String::new, |question| format!("; {question}"));
-            Failure::new(Exit::Usage, anyhow::anyhow!("there is no function {name}{question}"))
+            CommandFailure::new(Exit::Usage, anyhow::anyhow!("there is no function {name}{question}"))
         };
         let function = function.ok_or_else(unknown)?;
         say!("{}", function.help());

@@ -108,17 +108,17 @@ pub(super) fn say_kept(what: impl Into<String>) {
 
 /// Work in memory that is worth keeping: as long as this lives, the first signal asks to stop, and only the second ends the
 /// program.
-pub(super) struct Keeping(());
+pub(super) struct InterruptGuard(());
 
-impl Keeping {
+impl InterruptGuard {
     /// From now on there is something to keep.
-    pub(super) fn begin() -> Keeping {
+    pub(super) fn begin() -> InterruptGuard {
         state().keepers += 1;
-        Keeping(())
+        InterruptGuard(())
     }
 }
 
-impl Drop for Keeping {
+impl Drop for InterruptGuard {
     fn drop(&mut self) {
         state().keepers -= 1;
     }

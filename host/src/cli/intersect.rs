@@ -1,7 +1,7 @@
 //! `peris intersect`: accurate curves in which the objects of a scene meet.
 
-use super::{Definitions, Exit, Failure, Row, SCRIPT_HELP, load, say};
-use crate::intersection::{Branch, Intersection, Mark, Precision, csv, obj};
+use super::{ScriptArguments, Exit, CommandFailure, SubcommandRow, SCRIPT_HELP, load, say};
+use crate::intersection::{Branch, Intersection, Mark, CurvePrecision, csv, obj};
 use crate::scene::meetings;
 use clap::{Args, FromArgMatches};
 use files::Destination;
@@ -10,7 +10,7 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
-pub(super) const ROW: Row = Row {
+pub(super) const ROW: SubcommandRow = SubcommandRow {
     name: "intersect",
     summary: "Finds the curves in which the objects of a scene meet, on their exact surfaces.",
     arguments: Arguments::augment_args,
@@ -22,9 +22,9 @@ struct Arguments {
     #[arg(help = SCRIPT_HELP, value_name = "SCRIPT")]
     script: String,
     #[command(flatten)]
-    definitions: Definitions,
+    definitions: ScriptArguments,
     /// Residual at which a point counts as found, as a part of the size of the objects
-    #[arg(long, value_name = "PART", default_value_t = Precision::default().newton, value_parser = super::values::part)]
+    #[arg(long, value_name = "PART", default_value_t = CurvePrecision::default().newton, value_parser = super::values::part)]
     newton: f64,
     /// Adds points until the lines between them are this near to the curve, scene units
     #[arg(long, value_name = "LENGTH", value_parser = super::values::length)]
@@ -37,14 +37,14 @@ struct Arguments {
     json: bool,
 }
 
-fn run(arguments: &Arguments) -> Result<(), Failure> {
+fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let is_unknown = |path: &&PathBuf| !path.extension().is_some_and(|e| e == "csv" || e == "obj");
     if let Some(path) = arguments.output.iter().find(is_unknown) {
-        return Err(Failure::new(Exit::Usage, anyhow::anyhow!("{} ends neither in .csv nor in .obj", path.display())));
+        return Err(CommandFailure::new(Exit::Usage, anyhow::anyhow!("{} ends neither in .csv nor in .obj", path.display())));
     }
     let destinations: Vec<Destination> = arguments.output.iter().map(Destination::of).collect::<Result<_, _>>()?;
     let scene = load(&arguments.script, &arguments.definitions)?.scene;
-    let precision = Precision { newton: arguments.newton, chord: arguments.chord };
+    let precision = CurvePrecision { newton: arguments.newton, chord: arguments.chord };
     let start = Instant::now();
     let found = meetings(&scene, &precision)?;
     let seconds = start.elapsed().as_secs_f64();

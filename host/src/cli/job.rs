@@ -1,12 +1,12 @@
 //! `peris run` and `peris demo`: the main job from a scene to the image on the raster screen.
 
 use super::source::{load_lit, stem, warn_of_emptiness};
-use super::waits::Waits;
-use super::{Definitions, Failure, Row, SCRIPT_HELP, interrupts, load, progress};
+use super::waits::TimeoutArguments;
+use super::{ScriptArguments, CommandFailure, SubcommandRow, SCRIPT_HELP, interrupts, load, progress};
 use crate::{
     picture::Picture,
     production::{Production, Sent, difference, view_of_dials},
-    render::{Order, Technique},
+    render::{RenderOrder, Technique},
     scene::Scene,
     study::{Options, renderers},
     workstation::{Drawing, Emulator, Session},
@@ -17,14 +17,14 @@ use protocol::address::Address;
 use serde_json::{Map, Value, json};
 use std::{fmt::Write as _, io::Write as _, num::NonZeroUsize, path::PathBuf, str::FromStr, time::Instant};
 
-pub(super) const RUN: Row = Row {
+pub(super) const RUN: SubcommandRow = SubcommandRow {
     name: "run",
     summary: "Shows a scene on a PS 340, turns dials there, renders the view, and shows the image on the raster screen.",
     arguments: RunArguments::augment_args,
     run: |matches| run(&RunArguments::from_arg_matches(matches)?),
 };
 
-pub(super) const DEMO: Row = Row {
+pub(super) const DEMO: SubcommandRow = SubcommandRow {
     name: "demo",
     summary: "Does the main job on the teapot, with a PS 340 process of its own, and studies error against run time.",
     arguments: DemoArguments::augment_args,
@@ -68,7 +68,7 @@ struct Common {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    waits: Waits,
+    waits: TimeoutArguments,
 }
 
 #[derive(Args, Debug)]
@@ -76,7 +76,7 @@ struct RunArguments {
     #[arg(help = SCRIPT_HELP, value_name = "SCRIPT")]
     script: String,
     #[command(flatten)]
-    definitions: Definitions,
+    definitions: ScriptArguments,
     #[command(flatten)]
     common: Common,
     /// The host line of a PS 340 that runs already (tcp:HOST:PORT or unix:PATH); without it, one is started
@@ -111,7 +111,7 @@ struct Job<'a> {
     report: Map<String, Value>,
 }
 
-fn run(arguments: &RunArguments) -> Result<(), Failure> {
+fn run(arguments: &RunArguments) -> Result<(), CommandFailure> {
     let evaluated = load_lit(&arguments.script, &arguments.definitions)?;
     let (common, to, dials) = (&arguments.common, arguments.to.as_ref(), arguments.dials.as_slice());
     Job {
@@ -128,8 +128,8 @@ fn run(arguments: &RunArguments) -> Result<(), Failure> {
     .perform()
 }
 
-fn demo(arguments: &DemoArguments) -> Result<(), Failure> {
-    let evaluated = load("teapot", &Definitions::default())?;
+fn demo(arguments: &DemoArguments) -> Result<(), CommandFailure> {
+    let evaluated = load("teapot", &ScriptArguments::default())?;
     let (common, study) = (&arguments.common, !arguments.quick);
     Job {
         title: "the teapot",
@@ -168,7 +168,7 @@ impl Contents<'_> {
 }
 
 impl Job<'_> {
-    fn perform(mut self) -> Result<(), Failure> {
+    fn perform(mut self) -> Result<(), CommandFailure> {
         let folder = self.common.output.clone().unwrap_or_else(|| self.folder.into());
         let folder = Folder::make(std::path::absolute(&folder)?)?;
         interrupts::say_kept(format!("what was finished is in {}", folder.path().display()));
@@ -232,7 +232,7 @@ impl Job<'_> {
     }
 
     /// Takes a picture, turns the dials, and takes another.
-    fn turn(&self, emulator: &mut Emulator, contents: &mut Contents<'_>) -> Result<(), Failure> {
+    fn turn(&self, emulator: &mut Emulator, contents: &mut Contents<'_>) -> Result<(), CommandFailure> {
         emulator.order("idle")?;
         let file = contents.file("vector-before.png", "the vector screen of the PS 340 before a dial was turned");
         emulator.order(&format!("picture vector {}", file.display()))?;
@@ -246,7 +246,7 @@ impl Job<'_> {
     }
 
     /// Renders the view that is set on the workstation.
-    fn image(&mut self, production: &mut Production, contents: &mut Contents<'_>) -> Result<Picture, Failure> {
+    fn image(&mut self, production: &mut Production, contents: &mut Contents<'_>) -> Result<Picture, CommandFailure> {
         let matrix = production.view()?;
         if self.to.is_none() {
             let mut turns = [0.0; 7];
@@ -258,7 +258,7 @@ impl Job<'_> {
                 self.note("matrix_error", json!(off), text);
             }
         }
-        let order = Order { threads: self.common.threads, ..Order::of(&self.scene.settings) };
+        let order = RenderOrder { threads: self.common.threads, ..RenderOrder::of(&self.scene.settings) };
         let shot = production.render(&matrix, &order, &self.scene.display, &progress::watch())?;
         progress::clear();
         let rendering = &shot.rendering;
@@ -289,7 +289,7 @@ impl Job<'_> {
         Ok(shot.shown)
     }
 
-    fn study(&mut self, contents: &mut Contents<'_>) -> Result<(), Failure> {
+    fn study(&mut self, contents: &mut Contents<'_>) -> Result<(), CommandFailure> {
         let options = Options { width: 160, samples: 256, settings: 6, threads: self.common.threads };
         progress::stage("while studying");
         let start = Instant::now();

@@ -1,12 +1,12 @@
 //! `peris measure`: size, volume, centre and inertia of solids.
 
 use super::boolean::solid;
-use super::{Failure, Row, say};
+use super::{CommandFailure, SubcommandRow, say};
 use crate::solid::Mass;
 use clap::{Args, FromArgMatches};
 use std::path::PathBuf;
 
-pub(super) const ROW: Row = Row {
+pub(super) const ROW: SubcommandRow = SubcommandRow {
     name: "measure",
     summary: "Says volume, area, centre of mass, inertia and bounds of a closed mesh.",
     arguments: Arguments::augment_args,
@@ -23,7 +23,7 @@ struct Arguments {
     json: bool,
 }
 
-fn run(arguments: &Arguments) -> Result<(), Failure> {
+fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let solid = solid(&arguments.mesh)?;
     let Mass { volume, centroid, inertia } = solid.mass();
     let (mesh, bounds) = (solid.mesh(), solid.mesh().bounds());

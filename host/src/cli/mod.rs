@@ -33,7 +33,7 @@ mod continuity;
 mod functions;
 mod program;
 
-pub use exit::{Exit, Failure};
+pub use exit::{Exit, CommandFailure};
 pub use program::{COMMANDS, command, main};
-pub use row::Row;
-pub use source::{Definitions, SCRIPT_HELP, load};
+pub use row::SubcommandRow;
+pub use source::{ScriptArguments, SCRIPT_HELP, load};

@@ -1,8 +1,8 @@
 //! `peris octree`: the linear octree of a scene, or one from a file.
 
-use super::{Definitions, Exit, Failure, Row, load, say};
+use super::{ScriptArguments, Exit, CommandFailure, SubcommandRow, load, say};
 use crate::memory;
-use crate::octree::{ENDING, MAX_BYTES, MAX_DEPTH, Octree, Settings, Statistics};
+use crate::octree::{ENDING, MAX_BYTES, MAX_DEPTH, Octree, OctreeSettings, Statistics};
 use crate::scene::Prepared;
 use clap::{Args, FromArgMatches};
 use files::Destination;
@@ -10,7 +10,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-pub(super) const ROW: Row = Row {
+pub(super) const ROW: SubcommandRow = SubcommandRow {
     name: "octree",
     summary: "Builds the linear octree of a scene and says what it holds.",
     arguments: Arguments::augment_args,
@@ -23,7 +23,7 @@ struct Arguments {
     #[arg(default_value = "teapot", value_name = "SCENE")]
     scene: String,
     #[command(flatten)]
-    definitions: Definitions,
+    definitions: ScriptArguments,
     /// Keeps the octree in a file
     #[arg(short, long, value_name = "FILE.octree")]
     output: Option<PathBuf>,
@@ -44,7 +44,7 @@ struct Arguments {
     json: bool,
 }
 
-fn run(arguments: &Arguments) -> Result<(), Failure> {
+fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let destination = arguments.output.as_deref().map(destination).transpose()?;
     let path = Path::new(&arguments.scene);
     let kept = Octree::is_file(path);
@@ -74,19 +74,19 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Where the octree will be kept, under a name by which it is known again.
-fn destination(path: &Path) -> Result<Destination, Failure> {
+fn destination(path: &Path) -> Result<Destination, CommandFailure> {
     if !Octree::is_file(path) {
         let why = format!("{}: the name of an octree ends in .{ENDING}", path.display());
-        return Err(Failure::new(Exit::Usage, anyhow::anyhow!(why)));
+        return Err(CommandFailure::new(Exit::Usage, anyhow::anyhow!(why)));
     }
     Ok(Destination::of(path)?)
 }
 
 /// Builds the octree of a scene; also says how long it took, seconds.
-fn build(arguments: &Arguments) -> Result<(Octree, f64), Failure> {
+fn build(arguments: &Arguments) -> Result<(Octree, f64), CommandFailure> {
     let prepared = Prepared::new(&load(&arguments.scene, &arguments.definitions)?.scene)?;
-    let defaults = Settings::default();
-    let settings = Settings {
+    let defaults = OctreeSettings::default();
+    let settings = OctreeSettings {
         depth: arguments.depth.unwrap_or(defaults.depth),
         leaf_triangles: arguments.leaf.unwrap_or(defaults.leaf_triangles),
         leaf_side: arguments.leaf_side.unwrap_or(defaults.leaf_side),
@@ -98,11 +98,11 @@ fn build(arguments: &Arguments) -> Result<(Octree, f64), Failure> {
 }
 
 /// Reads an octree; also says how long it took, seconds.
-fn read(path: &Path, arguments: &Arguments) -> Result<(Octree, f64), Failure> {
+fn read(path: &Path, arguments: &Arguments) -> Result<(Octree, f64), CommandFailure> {
     let Arguments { depth, leaf, leaf_side, definitions, .. } = arguments;
     if depth.is_some() || leaf.is_some() || leaf_side.is_some() || !definitions.is_empty() {
         let why = "-D, --depth, --leaf and --leaf-side are for an octree that is built, not for one that is read";
-        return Err(Failure::new(Exit::Usage, anyhow::anyhow!(why)));
+        return Err(CommandFailure::new(Exit::Usage, anyhow::anyhow!(why)));
     }
     let start = Instant::now();
     let bytes = memory::read(path, MAX_BYTES).map_err(|error| failed(path, &error))?;
@@ -110,8 +110,8 @@ fn read(path: &Path, arguments: &Arguments) -> Result<(Octree, f64), Failure> {
     Ok((octree, start.elapsed().as_secs_f64()))
 }
 
-fn failed(path: &Path, error: &dyn std::error::Error) -> Failure {
-    Failure::new(Exit::Failed, anyhow::anyhow!("{}: {error}", path.display()))
+fn failed(path: &Path, error: &dyn std::error::Error) -> CommandFailure {
+    CommandFailure::new(Exit::Failed, anyhow::anyhow!("{}: {error}", path.display()))
 }
 
 /// Reads a length.
@@ -144,7 +144,7 @@ fn details(s: &Statistics) -> String {
 mod tests {
     use super::*;
 
-    fn run_words(words: &[&str]) -> Result<(), Failure> {
+    fn run_words(words: &[&str]) -> Result<(), CommandFailure> {
         let command = Arguments::augment_args(clap::Command::new("octree"));
         let matches = command.try_get_matches_from([&["octree"], words].concat()).expect("a sound command line");
         run(&Arguments::from_arg_matches(&matches).expect("all arguments"))

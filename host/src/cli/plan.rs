@@ -1,12 +1,12 @@
 //! `peris plan`: what a scene needs, and why.
 
 use super::source::load_lit;
-use super::{Definitions, Failure, Row, SCRIPT_HELP};
+use super::{ScriptArguments, CommandFailure, SubcommandRow, SCRIPT_HELP};
 use crate::plan::Plan;
 use crate::scene::Prepared;
 use clap::{Args, FromArgMatches};
 
-pub(super) const ROW: Row = Row {
+pub(super) const ROW: SubcommandRow = SubcommandRow {
     name: "plan",
     summary: "Shows what rendering a scene needs, what is left out, and why.",
     arguments: Arguments::augment_args,
@@ -18,7 +18,7 @@ struct Arguments {
     #[arg(help = SCRIPT_HELP, default_value = "teapot", value_name = "SCRIPT")]
     script: String,
     #[command(flatten)]
-    definitions: Definitions,
+    definitions: ScriptArguments,
     /// Leaves nothing out, as `render --everything` does
     #[arg(long)]
     everything: bool,
@@ -27,7 +27,7 @@ struct Arguments {
     json: bool,
 }
 
-fn run(arguments: &Arguments) -> Result<(), Failure> {
+fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let prepared = Prepared::new(&load_lit(&arguments.script, &arguments.definitions)?.scene)?;
     let view = prepared.view();
     let plan = if arguments.everything { Plan::everything(&prepared, &view) } else { Plan::new(&prepared, &view) };

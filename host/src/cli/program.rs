@@ -1,7 +1,7 @@
 //! The program: one row for each sub-command, from which help and dispatch are derived.
 
 use super::exit::{self, Exit, story};
-use super::row::Row;
+use super::row::SubcommandRow;
 use super::values::bytes;
 use super::{
     boolean, check, compose, continuity, convert, database, diff, functions, interrupts, intersect, job, measure,
@@ -18,7 +18,7 @@ const PART_OF_MACHINE: u64 = 4;
 const LAST: usize = 900;
 
 /// Every sub-command.
-pub const COMMANDS: &[Row] = &[
+pub const COMMANDS: &[SubcommandRow] = &[
     job::DEMO,
     job::RUN,
     show::ROW,

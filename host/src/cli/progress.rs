@@ -1,7 +1,7 @@
 //! What is being done, on a terminal: the stage, and how much of it is done.
 
 use super::cancelled::flag;
-use crate::render::{Amount, Watch};
+use crate::render::{Progress, Watch};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -59,7 +59,7 @@ pub(super) fn stage(name: &'static str) {
 }
 
 /// So much of the stage is done.
-pub(super) fn update(amount: Amount) {
+pub(super) fn update(amount: Progress) {
     let state = state();
     if let Some(bar) = &state.bar {
         if bar.length().is_none()
@@ -77,7 +77,7 @@ pub(super) fn update(amount: Amount) {
 }
 
 /// How much of how much, such as `12 of 48 samples`.
-pub(super) fn describe(Amount { done, all, unit }: Amount) -> String {
+pub(super) fn describe(Progress { done, all, unit }: Progress) -> String {
     let decimals = usize::from(done < 10.0 && done.fract() != 0.0);
     format!("{done:.decimals$} of {all} {unit}")
 }
@@ -89,7 +89,7 @@ pub(super) fn clock(seconds: f64) -> String {
 }
 
 /// The time that is left, as far as what is done tells it.
-fn left(amount: Amount, elapsed: Duration) -> String {
+fn left(amount: Progress, elapsed: Duration) -> String {
     let seconds = elapsed.as_secs_f64() * (amount.all / amount.done - 1.0);
     if seconds.is_finite() { format!(", {} left", clock(seconds)) } else { String::new() }
 }
@@ -127,10 +127,10 @@ mod tests {
 
     #[test]
     fn amounts_and_times_are_short() {
-        let of = |done, all| Amount { done, all, unit: "samples" };
+        let of = |done, all| Progress { done, all, unit: "samples" };
         assert_eq!(describe(of(0.25, 48.0)), "0.2 of 48 samples");
         assert_eq!(describe(of(12.4, 48.0)), "12 of 48 samples");
-        assert_eq!(describe(Amount::of(3, 6, "rounds")), "3 of 6 rounds");
+        assert_eq!(describe(Progress::of(3, 6, "rounds")), "3 of 6 rounds");
         assert_eq!(left(of(12.0, 48.0), Duration::from_secs(30)), ", 1:30 left");
         assert_eq!(left(of(0.0, 48.0), Duration::from_secs(30)), "");
         assert_eq!(["0:00", "0:01", "1:01"], [0.0, 0.2, 60.2].map(clock));

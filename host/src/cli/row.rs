@@ -1,10 +1,10 @@
 //! A sub-command of the program, as help and dispatch need it.
 
-use super::exit::Failure;
+use super::exit::CommandFailure;
 use clap::{ArgMatches, Command};
 
 /// A sub-command.
-pub struct Row {
+pub struct SubcommandRow {
     /// Its name.
     pub name: &'static str,
     /// What it does, in a sentence.
@@ -12,5 +12,5 @@ pub struct Row {
     /// Adds its arguments.
     pub arguments: fn(Command) -> Command,
     /// Runs it.
-    pub run: fn(&ArgMatches) -> Result<(), Failure>,
+    pub run: fn(&ArgMatches) -> Result<(), CommandFailure>,
 }

@@ -1,10 +1,10 @@
 //! Where a scene comes from: a script file, or a name.
 
-use super::{Exit, Failure, progress, say};
+use super::{Exit, CommandFailure, progress, say};
 use crate::mesh;
 use crate::octree::Octree;
 use crate::scene::{Scene, Studio};
-use crate::script::{self, Definition, Evaluated, Inputs};
+use crate::script::{self, ParameterAssignment, Evaluated, Inputs};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -13,17 +13,17 @@ pub const SCRIPT_HELP: &str = "A scene script (.rhai), a mesh (.obj, .stl, .ply,
 
 /// What the script is given.
 #[derive(Args, Clone, Debug, Default)]
-pub struct Definitions {
+pub struct ScriptArguments {
     /// Sets a parameter of the script; may be given more than once. A name that the script does not ask for is an error
     /// that lists those that it asks for
     #[arg(short = 'D', long = "define", value_name = "NAME=VALUE")]
-    given: Vec<Definition>,
+    given: Vec<ParameterAssignment>,
     /// Lets the script read below another folder than its own, too; may be given more than once
     #[arg(long, value_name = "FOLDER")]
     allow: Vec<PathBuf>,
 }
 
-impl Definitions {
+impl ScriptArguments {
     /// Whether there are none.
     pub(super) fn is_empty(&self) -> bool {
         self.given.is_empty()
@@ -45,7 +45,7 @@ pub(super) fn is_mesh(name: &Path) -> bool {
 ///
 /// # Errors
 /// A [`Failure`] with [`super::Exit::Scene`], if the script is wrong or the mesh cannot be read.
-pub(super) fn load_lit(name: &str, definitions: &Definitions) -> Result<Evaluated, Failure> {
+pub(super) fn load_lit(name: &str, definitions: &ScriptArguments) -> Result<Evaluated, CommandFailure> {
     lit(load(name, definitions)?)
 }
 
@@ -53,7 +53,7 @@ pub(super) fn load_lit(name: &str, definitions: &Definitions) -> Result<Evaluate
 ///
 /// # Errors
 /// A [`Failure`] with [`super::Exit::Scene`].
-pub(super) fn lit(evaluated: Evaluated) -> Result<Evaluated, Failure> {
+pub(super) fn lit(evaluated: Evaluated) -> Result<Evaluated, CommandFailure> {
     let count = evaluated.scene.lights.len();
     let is_lit_by_studio = evaluated.scene.studio == Some(Studio::Lit);
     let scene = evaluated.scene.lit()?;
@@ -75,11 +75,11 @@ pub(super) fn warn_of_emptiness(scene: &Scene) {
 ///
 /// # Errors
 /// A [`Failure`] with [`super::Exit::Scene`].
-pub fn load(name: &str, definitions: &Definitions) -> Result<Evaluated, Failure> {
+pub fn load(name: &str, definitions: &ScriptArguments) -> Result<Evaluated, CommandFailure> {
     let path = Path::new(name);
     if is_mesh(path) {
         if !definitions.is_empty() {
-            return Err(Failure::new(Exit::Usage, anyhow::anyhow!("-D is for a script, and {name} is none")));
+            return Err(CommandFailure::new(Exit::Usage, anyhow::anyhow!("-D is for a script, and {name} is none")));
         }
         return Ok(Evaluated {
             scene: Scene::of_mesh(path),

@@ -2,7 +2,7 @@
 
 use super::source::{load_lit, stem};
 use super::study_memo::memo;
-use super::{Definitions, Failure, Row, SCRIPT_HELP, progress, study_render};
+use super::{ScriptArguments, CommandFailure, SubcommandRow, SCRIPT_HELP, progress, study_render};
 use crate::render::Watch;
 use crate::study::{KNOBS, KnobRow, illumination};
 use clap::{ArgMatches, Args, Command, FromArgMatches};
@@ -11,7 +11,7 @@ use std::io::Write;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-pub(super) const ROW: Row = Row {
+pub(super) const ROW: SubcommandRow = SubcommandRow {
     name: "study",
     summary: "Sweeps a quality setting: error against run time, as table, CSV and plot.",
     arguments,
@@ -23,7 +23,7 @@ struct Arguments {
     #[arg(help = SCRIPT_HELP, default_value = "teapot", value_name = "SCRIPT")]
     script: String,
     #[command(flatten)]
-    definitions: Definitions,
+    definitions: ScriptArguments,
     /// Folder for the table (.csv) and the plot (.svg and .png); it is made if need be
     #[arg(short, long, value_name = "DIR", default_value = ".")]
     output: PathBuf,
@@ -82,7 +82,7 @@ fn arguments(command: Command) -> Command {
     })
 }
 
-fn run(matches: &ArgMatches) -> Result<(), Failure> {
+fn run(matches: &ArgMatches) -> Result<(), CommandFailure> {
     let (name, matches) = matches.subcommand().ok_or_else(|| anyhow::anyhow!("no study is named"))?;
     if name == ILLUMINATION {
         return measure(&IlluminationArguments::from_arg_matches(matches)?);
@@ -94,7 +94,7 @@ fn run(matches: &ArgMatches) -> Result<(), Failure> {
     sweep(knob, &Arguments::from_arg_matches(matches)?)
 }
 
-fn measure(arguments: &IlluminationArguments) -> Result<(), Failure> {
+fn measure(arguments: &IlluminationArguments) -> Result<(), CommandFailure> {
     let folder = Folder::make(&arguments.output)?;
     progress::stage("while studying");
     let memo = memo(&folder, ILLUMINATION, &format!("{:?}", arguments.roughness), arguments.resume)?;
@@ -118,7 +118,7 @@ fn measure(arguments: &IlluminationArguments) -> Result<(), Failure> {
     Ok(())
 }
 
-fn sweep(knob: &KnobRow, arguments: &Arguments) -> Result<(), Failure> {
+fn sweep(knob: &KnobRow, arguments: &Arguments) -> Result<(), CommandFailure> {
     let folder = Folder::make(&arguments.output)?;
     let scene = load_lit(&arguments.script, &arguments.definitions)?.scene;
     let mut options = knob.options;

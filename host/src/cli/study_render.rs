@@ -2,7 +2,7 @@
 
 use super::source::{load_lit, stem};
 use super::study_memo::memo;
-use super::{Definitions, Failure, SCRIPT_HELP, progress};
+use super::{ScriptArguments, CommandFailure, SCRIPT_HELP, progress};
 use crate::render::Watch;
 use crate::render::{RENDERERS, Technique};
 use crate::study::{Options, RENDER_KNOBS, RENDER_OPTIONS, RenderKnob, renderers, studied, usual};
@@ -21,7 +21,7 @@ struct Arguments {
     #[arg(help = SCRIPT_HELP, default_value = "corner", value_name = "SCRIPT")]
     script: String,
     #[command(flatten)]
-    definitions: Definitions,
+    definitions: ScriptArguments,
     /// Knobs to sweep, listed below [default: all that change something in the scene]
     #[arg(short, long, value_name = "NAME,...", value_delimiter = ',', value_parser = PossibleValuesParser::new(RENDER_KNOBS.iter().map(|knob| knob.name)), hide_possible_values = true)]
     knob: Vec<String>,
@@ -64,7 +64,7 @@ pub(super) fn command() -> Command {
 }
 
 /// Runs it.
-pub(super) fn run(matches: &ArgMatches) -> Result<(), Failure> {
+pub(super) fn run(matches: &ArgMatches) -> Result<(), CommandFailure> {
     let arguments = Arguments::from_arg_matches(matches)?;
     let folder = Folder::make(&arguments.output)?;
     let scene = load_lit(&arguments.script, &arguments.definitions)?.scene;

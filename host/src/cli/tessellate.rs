@@ -1,12 +1,12 @@
 //! `peris tessellate`: the triangles of a scene, to a tolerance.
 
-use super::{Definitions, Failure, Row, load, say};
+use super::{ScriptArguments, CommandFailure, SubcommandRow, load, say};
 use crate::mesh;
 use clap::{Args, FromArgMatches};
 use std::path::PathBuf;
 use std::time::Instant;
 
-pub(super) const ROW: Row = Row {
+pub(super) const ROW: SubcommandRow = SubcommandRow {
     name: "tessellate",
     summary: "Approximates all surfaces of a scene by triangles to a tolerance, grouped by object and surface, and measures the error.",
     arguments: Arguments::augment_args,
@@ -19,7 +19,7 @@ struct Arguments {
     #[arg(value_name = "SCENE")]
     input: PathBuf,
     #[command(flatten)]
-    definitions: Definitions,
+    definitions: ScriptArguments,
     /// The file to write: .obj (groups), .gltf or .glb (a primitive with a material for each surface), .ply (a property of faces), .stl
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
@@ -34,7 +34,7 @@ struct Arguments {
     json: bool,
 }
 
-fn run(arguments: &Arguments) -> Result<(), Failure> {
+fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let Arguments { input, definitions, output, chord, angle, json } = arguments;
     let destination = mesh::destination(output)?;
     let scene = load(&input.to_string_lossy(), definitions)?.scene.within(*chord, *angle);

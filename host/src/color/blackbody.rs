@@ -1,6 +1,6 @@
 //! Light of a black body.
 
-use super::{Beyond, ColorError, Spectrum};
+use super::{Extrapolation, ColorError, Spectrum};
 
 /// Planck's constant, J s; exact in the SI of 2019.
 pub const PLANCK: f64 = 6.626_070_15e-34;
@@ -58,7 +58,7 @@ pub fn spectrum(kelvin: f64) -> Result<Spectrum, ColorError> {
     if !(LEAST_KELVIN..=MOST_KELVIN).contains(&kelvin) {
         return Err(ColorError::Temperature { kelvin, least: LEAST_KELVIN, most: MOST_KELVIN });
     }
-    Spectrum::regular(360.0, 1.0, (360..=830).map(|w| radiance(f64::from(w), kelvin)).collect(), Beyond::Zero)
+    Spectrum::regular(360.0, 1.0, (360..=830).map(|w| radiance(f64::from(w), kelvin)).collect(), Extrapolation::Zero)
 }
 
 #[cfg(test)]

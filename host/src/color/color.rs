@@ -110,7 +110,7 @@ mod tests {
 
     #[test]
     fn a_perfect_reflector_is_white_and_a_color_keeps_its_bands() {
-        let grey = Spectrum::regular(300.0, 600.0, vec![0.25; 2], super::super::Beyond::Held).expect("a spectrum");
+        let grey = Spectrum::regular(300.0, 600.0, vec![0.25; 2], super::super::Extrapolation::Held).expect("a spectrum");
         let grey = Color::Spectrum(grey);
         assert!((grey.bands_of_reflectance() - DVec3::splat(0.25)).length() < 1e-9);
         assert_eq!(grey.range(), [0.25, 0.25]);

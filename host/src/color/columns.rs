@@ -10,7 +10,7 @@
 //! 410 0.033 0.091
 //! ```
 
-use super::{Beyond, ColorError, Spectrum};
+use super::{Extrapolation, ColorError, Spectrum};
 
 /// Lines of numbers under a line of names; lines that begin with `#` are comments.
 ///
@@ -18,7 +18,7 @@ use super::{Beyond, ColorError, Spectrum};
 ///
 /// # Errors
 /// [`ColorError::Line`] with the place.
-fn rows(text: &str) -> Result<(Vec<&str>, Vec<Row<'_>>), ColorError> {
+fn rows(text: &str) -> Result<(Vec<&str>, Vec<TableRow<'_>>), ColorError> {
     let lines = text.lines().enumerate().map(|(index, line)| (index + 1, line));
     let mut lines = lines.filter(|(_, line)| !line.starts_with('#') && !line.trim().is_empty());
     let problem = |line, problem: String| ColorError::Line { line, problem };
@@ -33,13 +33,13 @@ fn rows(text: &str) -> Result<(Vec<&str>, Vec<Row<'_>>), ColorError> {
         if numbers.len() != names.len() {
             return Err(problem(line, format!("{} numbers under {} names", numbers.len(), names.len())));
         }
-        rows.push(Row { line, first, numbers });
+        rows.push(TableRow { line, first, numbers });
     }
     Ok((names, rows))
 }
 
 /// A line of a table.
-pub(super) struct Row<'a> {
+pub(super) struct TableRow<'a> {
     line: usize,
     /// The first word.
     pub(super) first: &'a str,
@@ -51,7 +51,7 @@ pub(super) struct Row<'a> {
 ///
 /// # Errors
 /// [`ColorError::Line`] with the place.
-pub(super) fn named_rows(text: &str) -> Result<Vec<Row<'_>>, ColorError> {
+pub(super) fn named_rows(text: &str) -> Result<Vec<TableRow<'_>>, ColorError> {
     rows(text).map(|(_, rows)| rows)
 }
 
@@ -98,7 +98,7 @@ pub(super) fn names(text: &str) -> Vec<&str> {
 ///
 /// # Errors
 /// [`ColorError::Line`] with the place, or another [`ColorError`] if the numbers are no spectra.
-pub fn spectra(text: &str, beyond: Beyond) -> Result<Vec<(&str, Spectrum)>, ColorError> {
+pub fn spectra(text: &str, beyond: Extrapolation) -> Result<Vec<(&str, Spectrum)>, ColorError> {
     let (names, rows) = rows(text)?;
     let mut wavelengths = Vec::new();
     for row in &rows {
@@ -160,13 +160,13 @@ mod tests {
 
     #[test]
     fn columns_become_spectra() {
-        let found = spectra("# head\nnm a b\n400 1 2\n410 3 4\n", Beyond::Held).expect("two spectra");
+        let found = spectra("# head\nnm a b\n400 1 2\n410 3 4\n", Extrapolation::Held).expect("two spectra");
         assert_eq!(found.iter().map(|(name, s)| (*name, s.at(405.0))).collect::<Vec<_>>(), [("a", 2.0), ("b", 3.0)]);
     }
 
     #[test]
     fn a_wrong_line_is_named() {
-        let line = |text: &str| match spectra(text, Beyond::Held) {
+        let line = |text: &str| match spectra(text, Extrapolation::Held) {
             Err(ColorError::Line { line, .. }) => line,
             other => panic!("{other:?}"),
         };
@@ -188,17 +188,17 @@ mod tests {
     #[test]
     fn a_printed_table_is_read_to_the_last_bit() {
         let wave = |f: f64| (0..40).map(|i| (f * f64::from(i)).sin() / 3.0).collect::<Vec<f64>>();
-        let one = Spectrum::regular(380.0, 10.0, wave(0.1), Beyond::Held).expect("a spectrum");
-        let two = Spectrum::regular(380.0, 10.0, wave(0.7), Beyond::Held).expect("a spectrum");
+        let one = Spectrum::regular(380.0, 10.0, wave(0.1), Extrapolation::Held).expect("a spectrum");
+        let two = Spectrum::regular(380.0, 10.0, wave(0.7), Extrapolation::Held).expect("a spectrum");
         let origin = Origin { what: "waves".into(), source: "a\nsine".into(), terms: "free".into() };
         let text = print(&origin, &[("one", &one), ("number two", &two)]).expect("the same wavelengths");
-        assert_eq!(spectra(&text, Beyond::Held).expect("a table"), [("one", one.clone()), ("number_two", two)]);
+        assert_eq!(spectra(&text, Extrapolation::Held).expect("a table"), [("one", one.clone()), ("number_two", two)]);
         assert_eq!(super::origin(&text), Origin { source: "a sine".into(), ..origin.clone() });
         assert_eq!(print(&origin, &[("one", &one), ("d65", &super::super::shipped::D65)]), None);
     }
 
     #[test]
     fn two_columns_of_a_name_are_refused() {
-        assert!(spectra("nm a a\n400 1 2\n410 3 4\n", Beyond::Held).is_err());
+        assert!(spectra("nm a a\n400 1 2\n410 3 4\n", Extrapolation::Held).is_err());
     }
 }

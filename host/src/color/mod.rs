@@ -27,6 +27,6 @@ pub use columns::Origin;
 pub use error::ColorError;
 pub use glass::Glass;
 pub use reflectance::SmoothReflectance;
-pub use spectrum::{Beyond, Spectrum, integral};
+pub use spectrum::{Extrapolation, Spectrum, integral};
 pub use temperature::light_of_temperature;
-pub use wavelengths::{Curve, Wavelengths};
+pub use wavelengths::{SpectralTable, WavelengthSets};

@@ -39,11 +39,11 @@ pub fn chromaticity(xyz: DVec3) -> Option<DVec2> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Beyond, daylight, shipped, srgb};
+    use super::super::{Extrapolation, daylight, shipped, srgb};
     use super::*;
 
     fn white() -> Spectrum {
-        Spectrum::regular(300.0, 600.0, vec![1.0; 2], Beyond::Held).expect("a spectrum")
+        Spectrum::regular(300.0, 600.0, vec![1.0; 2], Extrapolation::Held).expect("a spectrum")
     }
 
     #[test]
@@ -92,7 +92,7 @@ mod tests {
                 ((n - 1.0).powi(2) + k * k) / ((n + 1.0).powi(2) + k * k)
             };
             let values = (360..=830).map(|w| reflectance(f64::from(w))).collect();
-            let spectrum = Spectrum::regular(360.0, 1.0, values, Beyond::Held).expect("a spectrum");
+            let spectrum = Spectrum::regular(360.0, 1.0, values, Extrapolation::Held).expect("a spectrum");
             let seen = seen(&spectrum, &shipped::D65).expect("light");
             let found = chromaticity(seen).expect("not black");
             assert!((found - DVec2::new(x, y)).abs().max_element() < 5e-5, "{name}: {found}");
@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn what_is_not_seen_has_no_colour() {
-        let infrared = Spectrum::irregular(&[(900.0, 1.0), (1000.0, 1.0)], Beyond::Zero).expect("a spectrum");
+        let infrared = Spectrum::irregular(&[(900.0, 1.0), (1000.0, 1.0)], Extrapolation::Zero).expect("a spectrum");
         assert_eq!((seen(&white(), &infrared), chromaticity(DVec3::ZERO)), (None, None));
     }
 }

@@ -4,7 +4,7 @@
 //! iteration, damped, along a path of colours from grey to the one that is asked for.
 
 use super::observer::{VISIBLE, functions};
-use super::{Beyond, ColorError, Spectrum, integral, shipped, srgb};
+use super::{Extrapolation, ColorError, Spectrum, integral, shipped, srgb};
 use glam::{DMat3, DVec3};
 use std::sync::LazyLock;
 
@@ -44,7 +44,7 @@ static WEIGHTS: LazyLock<Vec<(f64, DVec3)>> = LazyLock::new(|| {
     let white = integral(&[&shipped::D65, &functions()[1]], VISIBLE.0, VISIBLE.1);
     let weight = |index: usize| {
         let at = VISIBLE.0 + STEP * index as f64;
-        let hat = Spectrum::regular(at - STEP, STEP, vec![0.0, 1.0, 0.0], Beyond::Zero).expect("three samples rise");
+        let hat = Spectrum::regular(at - STEP, STEP, vec![0.0, 1.0, 0.0], Extrapolation::Zero).expect("three samples rise");
         let sum = |f: &Spectrum| integral(&[&hat, &shipped::D65, f], VISIBLE.0, VISIBLE.1) / white;
         (place(at), srgb::from_xyz(DVec3::from_array(functions().each_ref().map(sum))))
     };
@@ -110,7 +110,7 @@ impl SmoothReflectance {
     /// Its samples in steps of 5 nm.
     pub fn spectrum(&self) -> Spectrum {
         let values = (0..WEIGHTS.len()).map(|i| self.at(VISIBLE.0 + STEP * i as f64)).collect();
-        Spectrum::regular(VISIBLE.0, STEP, values, Beyond::Held).expect("a sigmoid is finite")
+        Spectrum::regular(VISIBLE.0, STEP, values, Extrapolation::Held).expect("a sigmoid is finite")
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! The files lie in `data/color`; each states its source and its terms in its head.
 
-use super::{Beyond, ColorError, Glass, Origin, Spectrum, columns};
+use super::{Extrapolation, ColorError, Glass, Origin, Spectrum, columns};
 use crate::spelling;
 use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
@@ -51,7 +51,7 @@ const FUNCTIONS: &[(&str, &str)] = &[
 
 /// A metal: its complex index of refraction n + ik over the wavelength.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Metal {
+pub struct ComplexIndex {
     /// Refractive index n, 0 and more.
     pub n: Spectrum,
     /// Extinction coefficient k, 0 and more.
@@ -69,7 +69,7 @@ pub fn lights() -> Vec<&'static str> {
 /// [`ColorError::Unknown`].
 pub fn light(name: &str) -> Result<Spectrum, ColorError> {
     for text in LIGHTS {
-        if let Some((_, spectrum)) = columns::spectra(text, Beyond::Zero)?.into_iter().find(|(known, _)| *known == name)
+        if let Some((_, spectrum)) = columns::spectra(text, Extrapolation::Zero)?.into_iter().find(|(known, _)| *known == name)
         {
             return Ok(spectrum);
         }
@@ -91,15 +91,15 @@ fn metals_of(text: &'static str) -> impl Iterator<Item = &'static str> {
 ///
 /// # Errors
 /// [`ColorError::Unknown`].
-pub fn metal(name: &str) -> Result<Metal, ColorError> {
+pub fn metal(name: &str) -> Result<ComplexIndex, ColorError> {
     let missing = || unknown("metal", name, &metals());
     let text = METALS.iter().find(|text| metals_of(text).any(|known| known == name)).ok_or_else(missing)?;
-    let spectra = columns::spectra(text, Beyond::Held)?;
+    let spectra = columns::spectra(text, Extrapolation::Held)?;
     let column = |letter| {
         let of = |column: &&(&str, Spectrum)| column.0.strip_suffix(letter) == Some(name);
         spectra.iter().find(of).map(|(_, spectrum)| spectrum.clone()).ok_or_else(missing)
     };
-    Ok(Metal { n: column(".n")?, k: column(".k")? })
+    Ok(ComplexIndex { n: column(".n")?, k: column(".k")? })
 }
 
 /// The names of all glasses and other transparent solids.
@@ -162,7 +162,7 @@ pub fn reflectances() -> Vec<&'static str> {
 /// [`ColorError::Unknown`].
 pub fn reflectance(name: &str) -> Result<Spectrum, ColorError> {
     for text in REFLECTANCES.iter().filter(|text| columns::names(text).contains(&name)) {
-        let mut all = columns::spectra(text, Beyond::Held)?.into_iter();
+        let mut all = columns::spectra(text, Extrapolation::Held)?.into_iter();
         if let Some((_, spectrum)) = all.find(|(known, _)| *known == name) {
             return Ok(spectrum);
         }
@@ -181,7 +181,7 @@ pub fn functions() -> Vec<&'static str> {
 /// [`ColorError::Unknown`].
 pub fn function(name: &str) -> Result<Vec<(&'static str, Spectrum)>, ColorError> {
     match FUNCTIONS.iter().find(|row| row.0 == name) {
-        Some((_, text)) => columns::spectra(text, Beyond::Zero),
+        Some((_, text)) => columns::spectra(text, Extrapolation::Zero),
         None => Err(unknown("function", name, &functions())),
     }
 }
@@ -200,17 +200,17 @@ fn unknown(kind: &'static str, name: &str, known: &[&str]) -> ColorError {
 }
 
 /// The three columns of a file that ships with the program and is read again and again.
-fn three(text: &str, beyond: Beyond) -> [Spectrum; 3] {
+fn three(text: &str, beyond: Extrapolation) -> [Spectrum; 3] {
     let spectra = columns::spectra(text, beyond).expect("the embedded table is read by the tests");
     let spectra: Vec<Spectrum> = spectra.into_iter().map(|(_, spectrum)| spectrum).collect();
     spectra.try_into().expect("the embedded table has three columns")
 }
 
 /// The functions x, y and z of the CIE 1931 observer, 360 to 830 nm.
-pub(super) static OBSERVER: LazyLock<[Spectrum; 3]> = LazyLock::new(|| three(FUNCTIONS[0].1, Beyond::Zero));
+pub(super) static OBSERVER: LazyLock<[Spectrum; 3]> = LazyLock::new(|| three(FUNCTIONS[0].1, Extrapolation::Zero));
 
 /// Mean daylight and its two characteristic vectors, 300 to 830 nm.
-pub(super) static DAYLIGHT: LazyLock<[Spectrum; 3]> = LazyLock::new(|| three(FUNCTIONS[1].1, Beyond::Zero));
+pub(super) static DAYLIGHT: LazyLock<[Spectrum; 3]> = LazyLock::new(|| three(FUNCTIONS[1].1, Extrapolation::Zero));
 
 /// The standard illuminant D65.
 pub static D65: LazyLock<Spectrum> = LazyLock::new(|| light("D65").expect("the embedded table has D65"));
@@ -312,7 +312,7 @@ mod tests {
 
     /// The part of light that a metal reflects at right angles, at 450, 550 and 650 nm.
     fn reflected(name: &str) -> [f64; 3] {
-        let Metal { n, k } = metal(name).expect("a metal");
+        let ComplexIndex { n, k } = metal(name).expect("a metal");
         [450.0, 550.0, 650.0].map(|w| {
             let (n, k) = (n.at(w), k.at(w));
             ((n - 1.0).powi(2) + k * k) / ((n + 1.0).powi(2) + k * k)

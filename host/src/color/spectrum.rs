@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// What a spectrum is beyond its first and last sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Beyond {
+pub enum Extrapolation {
     /// Zero, as for light and for the functions of an observer.
     Zero,
     /// The value of the nearest sample, as for reflectances and indices of refraction.
@@ -27,7 +27,7 @@ enum Grid {
 pub struct Spectrum {
     grid: Grid,
     values: Vec<f64>,
-    beyond: Beyond,
+    beyond: Extrapolation,
 }
 
 /// A spectrum as it is stored; checked when it is read.
@@ -35,7 +35,7 @@ pub struct Spectrum {
 struct Plain {
     grid: Grid,
     values: Vec<f64>,
-    beyond: Beyond,
+    beyond: Extrapolation,
 }
 
 impl From<Spectrum> for Plain {
@@ -63,7 +63,7 @@ impl Spectrum {
     ///
     /// # Errors
     /// [`ColorError`] for fewer than two values, a step or start that is not positive, or a value that is not finite.
-    pub fn regular(first: f64, step: f64, values: Vec<f64>, beyond: Beyond) -> Result<Spectrum, ColorError> {
+    pub fn regular(first: f64, step: f64, values: Vec<f64>, beyond: Extrapolation) -> Result<Spectrum, ColorError> {
         for (index, wavelength) in [first, first + step].into_iter().enumerate() {
             if !(wavelength.is_finite() && first > 0.0 && step > 0.0) {
                 return Err(ColorError::Wavelength { index, wavelength });
@@ -76,7 +76,7 @@ impl Spectrum {
     ///
     /// # Errors
     /// [`ColorError`] for fewer than two samples, wavelengths that do not rise, or a value that is not finite.
-    pub fn irregular(samples: &[(f64, f64)], beyond: Beyond) -> Result<Spectrum, ColorError> {
+    pub fn irregular(samples: &[(f64, f64)], beyond: Extrapolation) -> Result<Spectrum, ColorError> {
         let mut before = 0.0;
         for (index, &(wavelength, _)) in samples.iter().enumerate() {
             if !(wavelength > before && wavelength.is_finite()) {
@@ -127,8 +127,8 @@ impl Spectrum {
         let end = self.values.len() - 1;
         if !(first..=last).contains(&wavelength) {
             return match self.beyond {
-                Beyond::Held if wavelength < first => self.values[0],
-                Beyond::Held if wavelength > last => self.values[end],
+                Extrapolation::Held if wavelength < first => self.values[0],
+                Extrapolation::Held if wavelength > last => self.values[end],
                 _ => 0.0,
             };
         }
@@ -188,7 +188,7 @@ fn knots(spectra: &[&Spectrum], from: f64, to: f64) -> Vec<f64> {
 /// Without factors, or for an empty range, it is 0.
 pub fn integral(factors: &[&Spectrum], from: f64, to: f64) -> f64 {
     let (mut from, mut to) = (from, to);
-    for factor in factors.iter().filter(|factor| factor.beyond == Beyond::Zero) {
+    for factor in factors.iter().filter(|factor| factor.beyond == Extrapolation::Zero) {
         let (first, last) = factor.range();
         (from, to) = (from.max(first), to.min(last));
     }
@@ -211,14 +211,14 @@ mod tests {
     use super::*;
 
     fn ramp() -> Spectrum {
-        Spectrum::regular(400.0, 100.0, vec![0.0, 1.0, 1.0], Beyond::Held).expect("a spectrum")
+        Spectrum::regular(400.0, 100.0, vec![0.0, 1.0, 1.0], Extrapolation::Held).expect("a spectrum")
     }
 
     #[test]
     fn values_are_linear_between_samples_and_held_or_zero_beyond() {
         let held = ramp();
         assert_eq!([450.0, 500.0, 599.0, 700.0].map(|w| held.at(w)), [0.5, 1.0, 1.0, 1.0]);
-        let light = Spectrum::irregular(&[(400.0, 2.0), (450.0, 4.0), (600.0, 1.0)], Beyond::Zero).expect("a spectrum");
+        let light = Spectrum::irregular(&[(400.0, 2.0), (450.0, 4.0), (600.0, 1.0)], Extrapolation::Zero).expect("a spectrum");
         assert_eq!([399.9, 400.0, 425.0, 525.0, 600.0, 600.1].map(|w| light.at(w)), [0.0, 2.0, 3.0, 2.5, 1.0, 0.0]);
         assert_eq!(light.at(f64::NAN), 0.0);
     }
@@ -229,7 +229,7 @@ mod tests {
         let ramp = ramp();
         assert!((integral(&[&ramp, &ramp, &ramp], 400.0, 600.0) - 125.0).abs() < 1e-12);
         // A light that ends at 550 nm cuts the plateau.
-        let light = Spectrum::irregular(&[(300.0, 1.0), (550.0, 1.0)], Beyond::Zero).expect("a spectrum");
+        let light = Spectrum::irregular(&[(300.0, 1.0), (550.0, 1.0)], Extrapolation::Zero).expect("a spectrum");
         assert!((integral(&[&ramp, &light], 0.0, 1e4) - 100.0).abs() < 1e-12);
         assert_eq!(integral(&[&ramp], 500.0, 400.0), 0.0);
         assert_eq!(integral(&[], 400.0, 500.0), 0.0);
@@ -237,7 +237,7 @@ mod tests {
 
     #[test]
     fn sums_are_exact_and_products_exact_at_the_samples() {
-        let other = Spectrum::irregular(&[(450.0, 2.0), (550.0, 6.0)], Beyond::Held).expect("a spectrum");
+        let other = Spectrum::irregular(&[(450.0, 2.0), (550.0, 6.0)], Extrapolation::Held).expect("a spectrum");
         let (sum, product) = (ramp().plus(&other).expect("a sum"), ramp().times(&other).expect("a product"));
         for w in [420.0, 450.0, 475.0, 500.0, 533.0, 580.0] {
             assert!((sum.at(w) - ramp().at(w) - other.at(w)).abs() < 1e-12);
@@ -248,13 +248,13 @@ mod tests {
 
     #[test]
     fn wrong_samples_are_named() {
-        assert_eq!(Spectrum::irregular(&[(400.0, 1.0)], Beyond::Zero), Err(ColorError::TooFew(1)));
-        let turned = Spectrum::irregular(&[(400.0, 1.0), (400.0, 1.0)], Beyond::Zero);
+        assert_eq!(Spectrum::irregular(&[(400.0, 1.0)], Extrapolation::Zero), Err(ColorError::TooFew(1)));
+        let turned = Spectrum::irregular(&[(400.0, 1.0), (400.0, 1.0)], Extrapolation::Zero);
         assert_eq!(turned, Err(ColorError::Wavelength { index: 1, wavelength: 400.0 }));
-        let value = Spectrum::regular(400.0, 5.0, vec![1.0, f64::NAN], Beyond::Zero);
+        let value = Spectrum::regular(400.0, 5.0, vec![1.0, f64::NAN], Extrapolation::Zero);
         assert_eq!(value, Err(ColorError::NotFinite { wavelength: 405.0 }));
         for step in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert!(Spectrum::regular(400.0, step, vec![1.0, 1.0], Beyond::Zero).is_err());
+            assert!(Spectrum::regular(400.0, step, vec![1.0, 1.0], Extrapolation::Zero).is_err());
         }
     }
 }

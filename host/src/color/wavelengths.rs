@@ -14,7 +14,7 @@ const OF_BANDS: [f64; 3] = [611.0, 549.0, 464.0];
 
 /// What rays carry.
 #[derive(Clone, Debug)]
-pub struct Wavelengths {
+pub struct WavelengthSets {
     /// For each comb the wavelength of each lane, nm; 0 for unused lanes.
     at: Vec<[f64; LANES]>,
     /// For each comb and lane what light of 1 there adds to linear sRGB.
@@ -24,12 +24,12 @@ pub struct Wavelengths {
 
 /// A quantity at the wavelengths of each comb.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Curve(Vec<Channels>);
+pub struct SpectralTable(Vec<Channels>);
 
-impl Curve {
+impl SpectralTable {
     /// A quantity for each of some combs.
-    pub fn each(combs: usize, of: impl FnMut(usize) -> Channels) -> Curve {
-        Curve((0..combs.max(1)).map(of).collect())
+    pub fn each(combs: usize, of: impl FnMut(usize) -> Channels) -> SpectralTable {
+        SpectralTable((0..combs.max(1)).map(of).collect())
     }
 
     /// The quantity at the wavelengths of a comb.
@@ -55,22 +55,22 @@ impl Curve {
     }
 }
 
-impl Wavelengths {
+impl WavelengthSets {
     /// Red, green and blue.
-    pub fn bands() -> Wavelengths {
+    pub fn bands() -> WavelengthSets {
         let lane = |lane: usize| OF_BANDS.get(lane).copied().unwrap_or(0.0);
         let unit = |lane: usize| if lane < 3 { DVec3::AXES[lane] } else { DVec3::ZERO };
-        Wavelengths { at: vec![std::array::from_fn(lane)], seen: vec![std::array::from_fn(unit)], spectral: false }
+        WavelengthSets { at: vec![std::array::from_fn(lane)], seen: vec![std::array::from_fn(unit)], spectral: false }
     }
 
     /// Eight wavelengths from 360 to 830 nm.
-    pub fn spectral() -> Wavelengths {
+    pub fn spectral() -> WavelengthSets {
         let bins = bins();
         let weights = bins.weights();
         let middles: Vec<f64> = bins.ranges().map(|(from, to)| 0.5 * (from + to)).collect();
         let of = |comb: usize| std::array::from_fn(|lane| lane * COMBS + comb);
         let combs = || (0..COMBS).map(of);
-        Wavelengths {
+        WavelengthSets {
             at: combs().map(|bins: [usize; LANES]| bins.map(|bin| middles[bin])).collect(),
             seen: combs().map(|bins| bins.map(|bin| srgb::from_xyz(weights[bin]) * COMBS as f64)).collect(),
             spectral: true,
@@ -128,15 +128,15 @@ impl Wavelengths {
     }
 
     /// A curve of one value everywhere, also in unused lanes.
-    pub fn constant(&self, value: f64) -> Curve {
-        Curve(vec![Channels::splat(value); self.at.len()])
+    pub fn constant(&self, value: f64) -> SpectralTable {
+        SpectralTable(vec![Channels::splat(value); self.at.len()])
     }
 
     /// A reflectance, or another fraction.
-    pub fn reflectance(&self, color: &Color) -> Curve {
+    pub fn reflectance(&self, color: &Color) -> SpectralTable {
         match color {
             Color::Bands(bands) if bands.min_element() == bands.max_element() => self.constant(bands.x),
-            _ if !self.spectral => Curve(vec![in_bands(color.bands_of_reflectance().max(DVec3::ZERO))]),
+            _ if !self.spectral => SpectralTable(vec![in_bands(color.bands_of_reflectance().max(DVec3::ZERO))]),
             Color::Spectrum(spectrum) => self.means(spectrum),
             _ => self.quantity(color.reflectance_at()),
         }
@@ -144,42 +144,42 @@ impl Wavelengths {
 
     /// The reflectances that red, green and blue of an image stand for; they add up to 1 at all wavelengths, so that every
     /// mixture of them is a reflectance and that of equal parts is grey.
-    pub fn primaries(&self) -> [Curve; 3] {
+    pub fn primaries(&self) -> [SpectralTable; 3] {
         if !self.spectral {
-            return DVec3::AXES.map(|axis| Curve(vec![in_bands(axis)]));
+            return DVec3::AXES.map(|axis| SpectralTable(vec![in_bands(axis)]));
         }
         let [red, blue] = [DVec3::X, DVec3::Z].map(|axis| self.reflectance(&Color::Bands(axis)));
         // Where the other two overlap they share.
         let shared = |comb: usize| red.of(comb).0.iter().zip(blue.of(comb).0).map(|(r, b)| (r + b).max(1.0)).collect();
         let shares: Vec<Vec<f64>> = (0..self.combs()).map(shared).collect();
-        let part = |curve: &Curve| {
-            Curve::each(self.combs(), |comb| {
+        let part = |curve: &SpectralTable| {
+            SpectralTable::each(self.combs(), |comb| {
                 let own = curve.of(comb);
                 Channels(std::array::from_fn(|lane| own.0[lane] / shares[comb][lane]))
             })
         };
         let [red, blue] = [part(&red), part(&blue)];
         let green =
-            Curve::each(self.combs(), |comb| (Channels::ONE - red.of(comb) - blue.of(comb)).map(|g| g.max(0.0)));
+            SpectralTable::each(self.combs(), |comb| (Channels::ONE - red.of(comb) - blue.of(comb)).map(|g| g.max(0.0)));
         [red, green, blue]
     }
 
     /// What light is multiplied with, 0 and more.
-    pub fn filter(&self, color: &Color) -> Curve {
+    pub fn filter(&self, color: &Color) -> SpectralTable {
         match color {
             Color::Bands(bands) if bands.max_element() > 1.0 => {
                 let greatest = bands.max_element();
                 let shape = self.reflectance(&Color::Bands(*bands / greatest));
-                Curve(shape.0.iter().map(|channels| *channels * greatest).collect())
+                SpectralTable(shape.0.iter().map(|channels| *channels * greatest).collect())
             }
             _ => self.reflectance(color),
         }
     }
 
     /// The strength of a light, per nanometre or in bands.
-    pub fn light(&self, color: &Color) -> Curve {
+    pub fn light(&self, color: &Color) -> SpectralTable {
         match color {
-            _ if !self.spectral => Curve(vec![in_bands(color.bands_of_light().max(DVec3::ZERO))]),
+            _ if !self.spectral => SpectralTable(vec![in_bands(color.bands_of_light().max(DVec3::ZERO))]),
             Color::Spectrum(spectrum) => self.means(spectrum),
             Color::Bands(bands) => {
                 let greatest = bands.max_element();
@@ -189,7 +189,7 @@ impl Wavelengths {
                 // Scaled first: the shape of a faint light is found as well as that of a bright one.
                 let shape = self.reflectance(&Color::Bands(*bands / greatest));
                 let white = self.means(&WHITE);
-                Curve(shape.0.iter().zip(&white.0).map(|(a, b)| *a * *b * greatest).collect())
+                SpectralTable(shape.0.iter().zip(&white.0).map(|(a, b)| *a * *b * greatest).collect())
             }
         }
     }
@@ -197,17 +197,17 @@ impl Wavelengths {
     /// A quantity that is given at every wavelength, nm, such as an index of refraction; for bands at a wavelength of each.
     ///
     /// Unused lanes have the value of the first.
-    pub fn quantity(&self, function: impl Fn(f64) -> f64) -> Curve {
+    pub fn quantity(&self, function: impl Fn(f64) -> f64) -> SpectralTable {
         let value = |wavelengths: &[f64; LANES]| {
             Channels(wavelengths.map(|w| function(if w > 0.0 { w } else { wavelengths[0] })))
         };
-        Curve(self.at.iter().map(value).collect())
+        SpectralTable(self.at.iter().map(value).collect())
     }
 
     /// Means over the bins.
-    fn means(&self, spectrum: &Spectrum) -> Curve {
+    fn means(&self, spectrum: &Spectrum) -> SpectralTable {
         let means = bins().means(spectrum);
-        Curve((0..COMBS).map(|comb| Channels(std::array::from_fn(|lane| means[lane * COMBS + comb]))).collect())
+        SpectralTable((0..COMBS).map(|comb| Channels(std::array::from_fn(|lane| means[lane * COMBS + comb]))).collect())
     }
 }
 
@@ -225,7 +225,7 @@ mod tests {
     use super::super::shipped;
     use super::*;
 
-    fn seen(wavelengths: &Wavelengths, light: &Curve, reflectance: &Curve) -> DVec3 {
+    fn seen(wavelengths: &WavelengthSets, light: &SpectralTable, reflectance: &SpectralTable) -> DVec3 {
         let combs = wavelengths.at.len();
         let sum: DVec3 = (0..combs).map(|c| wavelengths.seen(c, light.of(c) * reflectance.of(c))).sum();
         sum / combs as f64
@@ -233,7 +233,7 @@ mod tests {
 
     #[test]
     fn a_perfect_reflector_under_d65_is_white_for_bands_and_for_wavelengths() {
-        for wavelengths in [Wavelengths::bands(), Wavelengths::spectral()] {
+        for wavelengths in [WavelengthSets::bands(), WavelengthSets::spectral()] {
             let white = wavelengths.light(&Color::grey(2.0));
             let perfect = wavelengths.reflectance(&Color::grey(1.0));
             let found = seen(&wavelengths, &white, &perfect);
@@ -243,7 +243,7 @@ mod tests {
 
     #[test]
     fn colors_keep_their_bands_when_they_become_spectra() {
-        let wavelengths = Wavelengths::spectral();
+        let wavelengths = WavelengthSets::spectral();
         let white = wavelengths.light(&Color::grey(1.0));
         for bands in [DVec3::new(0.8, 0.3, 0.1), DVec3::new(0.05, 0.4, 0.9), DVec3::new(1.0, 0.0, 0.0)] {
             let reflectance = wavelengths.reflectance(&Color::Bands(bands));
@@ -257,11 +257,11 @@ mod tests {
 
     #[test]
     fn mixtures_of_primaries_are_the_colors_that_they_stand_for() {
-        for wavelengths in [Wavelengths::bands(), Wavelengths::spectral()] {
+        for wavelengths in [WavelengthSets::bands(), WavelengthSets::spectral()] {
             let primaries = wavelengths.primaries();
             let white = wavelengths.light(&Color::grey(1.0));
             for bands in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(0.2, 0.9, 0.4), DVec3::ONE] {
-                let mixture = Curve::each(wavelengths.combs(), |comb| {
+                let mixture = SpectralTable::each(wavelengths.combs(), |comb| {
                     let part = |band: usize| primaries[band].of(comb) * bands[band];
                     part(0) + part(1) + part(2)
                 });
@@ -275,7 +275,7 @@ mod tests {
 
     #[test]
     fn a_spectrum_is_seen_as_its_integrals_tell() {
-        let wavelengths = Wavelengths::spectral();
+        let wavelengths = WavelengthSets::spectral();
         let red = Color::Spectrum(shipped::reflectance("red").expect("a patch"));
         let light = wavelengths.light(&Color::grey(1.0));
         let found = seen(&wavelengths, &light, &wavelengths.reflectance(&red));

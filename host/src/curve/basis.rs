@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::SplineError;
 use super::bbb::Bbb;
 use super::bezier::check_degree;
-use super::control::{ControlPoint, Row};
+use super::control::{ControlPoint, ControlCombination};
 use super::form::{BezierForm, apply};
 use super::knots::Knots;
 
@@ -46,7 +46,7 @@ impl From<Basis> for Kind {
 /// Another basis for the same curve, and the steps that lead to its control points.
 pub(crate) struct Refinement {
     pub basis: Basis,
-    steps: Vec<Vec<Row>>,
+    steps: Vec<Vec<ControlCombination>>,
 }
 
 impl Refinement {
@@ -296,7 +296,7 @@ impl Basis {
 
     fn cut(&self, t: f64) -> Result<Vec<Refinement>, SplineError> {
         let (filled, t) = self.filled(t)?;
-        let parts: Vec<(Basis, Vec<Row>)> = match &filled.basis.kind {
+        let parts: Vec<(Basis, Vec<ControlCombination>)> = match &filled.basis.kind {
             Kind::Knots(knots) => knots.cut(t).into_iter().map(|part| with(part, Basis::of_knots)).collect(),
             Kind::Bbb(bbb) => bbb.cut(t).into_iter().map(|part| with(part, Basis::of_bbb)).collect(),
         };
@@ -377,6 +377,6 @@ const CLOSE: f64 = 1e-12;
 /// The most control points in one direction.
 const MAX_CONTROL: usize = 1 << 20;
 
-fn with<T>((kind, rows): (T, Vec<Row>), basis: impl Fn(T) -> Basis) -> (Basis, Vec<Row>) {
+fn with<T>((kind, rows): (T, Vec<ControlCombination>), basis: impl Fn(T) -> Basis) -> (Basis, Vec<ControlCombination>) {
     (basis(kind), rows)
 }

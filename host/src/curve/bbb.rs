@@ -17,7 +17,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::SplineError;
-use super::control::Row;
+use super::control::ControlCombination;
 use super::form::BezierForm;
 
 /// Bias and tension of each joint; the intervals, of which interval i lies before joint i and i + 1 behind it. An open
@@ -114,24 +114,24 @@ impl Bbb {
     }
 
     /// The two inner Bezier points on a leg.
-    fn inner(&self, joint: usize) -> [Row; 2] {
+    fn inner(&self, joint: usize) -> [ControlCombination; 2] {
         let [a, b, c] = self.leg(joint);
         let sum = a + b + c;
-        let row = |low: f64, high: f64| Row::new(joint, &[low / sum, high / sum]);
+        let row = |low: f64, high: f64| ControlCombination::new(joint, &[low / sum, high / sum]);
         [row(b + c, a), row(c, a + b)]
     }
 
     /// The Bezier point of a joint.
-    fn joint(&self, joint: usize) -> Row {
+    fn joint(&self, joint: usize) -> ControlCombination {
         let count = self.control_count();
         let previous = (joint + count - 1) % count;
         let (left, right) = (self.before(joint), self.bias(joint) * self.after(joint));
         if left + right == 0.0 {
-            return Row::one(joint % count);
+            return ControlCombination::one(joint % count);
         }
         let ([a, b, c], [d, e, f]) = (self.leg(previous), self.leg(joint));
         let (left, right) = (left / (left + right) / (d + e + f), right / (left + right) / (a + b + c));
-        Row::new(previous, &[right * c, right * (a + b) + left * (e + f), left * d])
+        ControlCombination::new(previous, &[right * c, right * (a + b) + left * (e + f), left * d])
     }
 
     pub fn form(&self) -> BezierForm {
@@ -194,15 +194,15 @@ impl Bbb {
     }
 
     /// With another joint of bias 1 and tension 0 at `t`, which must not be full, and the control points of that.
-    pub fn inserted(&self, t: f64) -> (Bbb, Vec<Row>) {
+    pub fn inserted(&self, t: f64) -> (Bbb, Vec<ControlCombination>) {
         let (joint, [part, rest]) = self.place(t);
         let count = self.control_count();
         let previous = (joint + count - 1) % count;
         let line = |first: usize, low: f64, high: f64| {
             let sum = low + high;
-            Row::new(first % count, &[low / sum, high / sum])
+            ControlCombination::new(first % count, &[low / sum, high / sum])
         };
-        let mut rows: Vec<Row> = (0..count).map(Row::one).collect();
+        let mut rows: Vec<ControlCombination> = (0..count).map(ControlCombination::one).collect();
         let [a, b, c] = self.leg(previous);
         let ahead = self.ahead(joint, part);
         rows[joint] = line(previous, (c - ahead).max(0.0), a + b + ahead);
@@ -221,7 +221,7 @@ impl Bbb {
     }
 
     /// The parts before and after `t`, which must be full; a closed spline becomes one open part.
-    pub fn cut(&self, t: f64) -> Vec<(Bbb, Vec<Row>)> {
+    pub fn cut(&self, t: f64) -> Vec<(Bbb, Vec<ControlCombination>)> {
         let Some(joint) = self.passed_at(t) else {
             return Vec::new();
         };
@@ -235,7 +235,7 @@ impl Bbb {
                 is_closed: false,
                 start,
             };
-            (bbb, (from..from + joints).map(|i| Row::one(i % count)).collect())
+            (bbb, (from..from + joints).map(|i| ControlCombination::one(i % count)).collect())
         };
         if self.is_closed {
             return vec![part(joint, count + 1, t)];
@@ -252,7 +252,7 @@ impl Bbb {
 
     /// From the other end: there the bias is 1 / bias, and the tension is tension / bias^3. In a closed spline joint 0
     /// stays the first.
-    pub fn reversed(&self) -> (Bbb, Vec<Row>) {
+    pub fn reversed(&self) -> (Bbb, Vec<ControlCombination>) {
         let turn = |list: &[f64], back: usize| {
             let mut turned: Vec<f64> = list.iter().rev().copied().collect();
             turned.rotate_right(if self.is_closed { back } else { 0 });
@@ -266,7 +266,7 @@ impl Bbb {
             is_closed: self.is_closed,
             start: self.start,
         };
-        let mut rows: Vec<Row> = (0..self.control_count()).rev().map(Row::one).collect();
+        let mut rows: Vec<ControlCombination> = (0..self.control_count()).rev().map(ControlCombination::one).collect();
         rows.rotate_right(usize::from(self.is_closed));
         (bbb, rows)
     }

@@ -107,27 +107,27 @@ pub(crate) fn control_net(points: &[Vec<DVec3>], weights: &[Vec<f64>]) -> Result
 ///
 /// The weights add up to 1. In a closed spline the last control point is followed by the first.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Row {
+pub(crate) struct ControlCombination {
     first: usize,
     weights: Vec<f64>,
     /// The place of the largest weight: the sum is formed around its point.
     largest: usize,
 }
 
-impl Row {
+impl ControlCombination {
     /// The sum of the points from `first` on with `weights`; zeros at either end are left out.
-    pub fn new(first: usize, weights: &[f64]) -> Row {
+    pub fn new(first: usize, weights: &[f64]) -> ControlCombination {
         let from = weights.iter().position(|weight| *weight != 0.0).unwrap_or(0);
         let to = weights.iter().rposition(|weight| *weight != 0.0).map_or(weights.len(), |last| last + 1);
         let weights = weights[from..to].to_vec();
         let largest =
             (0..weights.len()).fold(0, |best, k| if weights[k].abs() > weights[best].abs() { k } else { best });
-        Row { first: first + from, weights, largest }
+        ControlCombination { first: first + from, weights, largest }
     }
 
     /// The point `index` itself.
-    pub fn one(index: usize) -> Row {
-        Row { first: index, weights: vec![1.0], largest: 0 }
+    pub fn one(index: usize) -> ControlCombination {
+        ControlCombination { first: index, weights: vec![1.0], largest: 0 }
     }
 
     /// The sum over `count` control points, of which `at` gives each.
@@ -143,7 +143,7 @@ impl Row {
     }
 
     /// Whether the same points have weights that differ by no more than `within`.
-    pub fn is_close(&self, other: &Row, within: f64) -> bool {
+    pub fn is_close(&self, other: &ControlCombination, within: f64) -> bool {
         let mut pairs = self.weights.iter().zip(&other.weights);
         let has_same_points = self.first == other.first && self.weights.len() == other.weights.len();
         has_same_points && pairs.all(|(a, b)| (a - b).abs() <= within)
@@ -163,7 +163,7 @@ mod tests {
     fn coinciding_points_stay_one_point_to_the_bit() {
         let point = DVec3::new(0.1, -0.7, 1e6 / 3.0);
         let control = [1.0, 0.3, 1e-6, 1e6].map(|weight| ControlPoint { point, weight });
-        let row = Row::new(0, &[0.2, 0.3, 0.4, 0.1]);
+        let row = ControlCombination::new(0, &[0.2, 0.3, 0.4, 0.1]);
         assert_eq!(row.apply(4, |k| control[k]).point, point);
         assert_eq!(ControlPoint::mix(control[2], control[3], 0.3).point, point);
     }

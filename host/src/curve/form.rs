@@ -1,7 +1,7 @@
 //! The Bezier form of a spline: how the Bezier points of its spans come from its control points.
 
 use super::SplineError;
-use super::control::{ControlPoint, Row};
+use super::control::{ControlPoint, ControlCombination};
 
 /// The shortest span, as a part of the domain: below it, parameters are mostly rounding.
 const SHORTEST: f64 = 1e-13;
@@ -15,7 +15,7 @@ pub(crate) struct BezierForm {
     /// The parameters of the joints that bound the spans, increasing; one more than spans.
     pub breaks: Vec<f64>,
     /// The Bezier points in their order. In a closed spline the last span ends in the first of them.
-    pub rows: Vec<Row>,
+    pub rows: Vec<ControlCombination>,
 }
 
 impl BezierForm {
@@ -49,6 +49,6 @@ impl BezierForm {
 }
 
 /// All points that `rows` make of `control`.
-pub(crate) fn apply(rows: &[Row], control: &[ControlPoint]) -> Vec<ControlPoint> {
+pub(crate) fn apply(rows: &[ControlCombination], control: &[ControlPoint]) -> Vec<ControlPoint> {
     rows.iter().map(|row| row.apply(control.len(), |k| control[k])).collect()
 }

@@ -6,7 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::bezier::check_degree;
-use super::control::Row;
+use super::control::ControlCombination;
 use super::form::BezierForm;
 use super::{MAX_DEGREE, SplineError};
 
@@ -99,7 +99,7 @@ impl Knots {
 
     /// The value of the polar form of the span after knot `k`, by de Boor's construction. Arguments within the span give
     /// convex combinations.
-    fn blossom(&self, k: isize, arguments: &[f64]) -> Row {
+    fn blossom(&self, k: isize, arguments: &[f64]) -> ControlCombination {
         let p = self.degree;
         let mut rows = vec![vec![0.0; p + 1]; p + 1];
         for (j, row) in rows.iter_mut().enumerate() {
@@ -116,7 +116,7 @@ impl Knots {
                 }
             }
         }
-        Row::new(self.wrap(k - p as isize), &rows[p])
+        ControlCombination::new(self.wrap(k - p as isize), &rows[p])
     }
 
     pub fn form(&self) -> BezierForm {
@@ -144,22 +144,22 @@ impl Knots {
     }
 
     /// With `x` as another knot, and the control points of that.
-    pub fn inserted(&self, x: f64) -> (Knots, Vec<Row>) {
+    pub fn inserted(&self, x: f64) -> (Knots, Vec<ControlCombination>) {
         let [low, high] = self.domain();
         let x = if self.is_closed && x == high { low } else { x };
         let k = self.place(x);
         let (p, count) = (self.degree as isize, self.control_count() as isize);
         let multiplicity = (0..=p).take_while(|back| (self.is_closed || *back <= k) && self.at(k - back) == x).count();
         let first = if self.is_closed { k - p + 1 } else { 0 };
-        let mut rows = vec![Row::one(0); count as usize + 1];
+        let mut rows = vec![ControlCombination::one(0); count as usize + 1];
         for i in first..=first + count {
             let row = if i <= k - p {
-                Row::one(self.wrap(i))
+                ControlCombination::one(self.wrap(i))
             } else if i > k - multiplicity as isize {
-                Row::one(self.wrap(i - 1))
+                ControlCombination::one(self.wrap(i - 1))
             } else {
                 let (from, to) = (self.at(i), self.at(i + p));
-                Row::new(self.wrap(i - 1), &[(to - x) / (to - from), (x - from) / (to - from)])
+                ControlCombination::new(self.wrap(i - 1), &[(to - x) / (to - from), (x - from) / (to - from)])
             };
             rows[i.rem_euclid(count + 1) as usize] = row;
         }
@@ -177,10 +177,10 @@ impl Knots {
     }
 
     /// The parts before and after `x`, which must occur at least `degree` times; a closed spline becomes one open part.
-    pub fn cut(&self, x: f64) -> Vec<(Knots, Vec<Row>)> {
+    pub fn cut(&self, x: f64) -> Vec<(Knots, Vec<ControlCombination>)> {
         let p = self.degree;
         let open = |values: Vec<f64>, from: usize, count: usize| {
-            let rows = (from..from + count).map(|i| Row::one(self.wrap(i as isize))).collect();
+            let rows = (from..from + count).map(|i| ControlCombination::one(self.wrap(i as isize))).collect();
             (Knots { degree: p, values, is_closed: false }, rows)
         };
         if self.is_closed {
@@ -208,7 +208,7 @@ impl Knots {
     }
 
     /// With a degree higher by one: every knot occurs once more. An open one must be clamped.
-    pub fn elevated(&self) -> Result<(Knots, Vec<Row>), SplineError> {
+    pub fn elevated(&self) -> Result<(Knots, Vec<ControlCombination>), SplineError> {
         let degree = self.degree + 1;
         check_degree(degree)?;
         let (inner, last) = self.values.split_at(self.values.len() - usize::from(self.is_closed));
@@ -226,7 +226,7 @@ impl Knots {
     }
 
     /// The mean of the polar form over all ways to leave one of the arguments out.
-    fn mean_blossom(&self, spans: &[isize], arguments: &[f64]) -> Row {
+    fn mean_blossom(&self, spans: &[isize], arguments: &[f64]) -> ControlCombination {
         let mean = arguments.iter().sum::<f64>() / arguments.len() as f64;
         let [low, high] = self.domain();
         // In a closed spline the arguments may lie beyond the period: count whole periods off.
@@ -247,16 +247,16 @@ impl Knots {
                 sum[(index + count - first) % count] += weight / local.len() as f64;
             }
         }
-        Row::new(first, &sum)
+        ControlCombination::new(first, &sum)
     }
 
     /// The knots from the other end, and the order of the control points.
-    pub fn reversed(&self) -> (Knots, Vec<Row>) {
+    pub fn reversed(&self) -> (Knots, Vec<ControlCombination>) {
         let [low, high] = self.domain();
         let values = self.values.iter().rev().map(|knot| low + (high - knot)).collect();
         let count = self.control_count();
         let shift = if self.is_closed { self.degree } else { 0 };
-        let rows = (0..count).map(|i| Row::one((2 * count - 1 - i - shift) % count)).collect();
+        let rows = (0..count).map(|i| ControlCombination::one((2 * count - 1 - i - shift) % count)).collect();
         (Knots { degree: self.degree, values, is_closed: self.is_closed }, rows)
     }
 }

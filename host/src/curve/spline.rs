@@ -11,7 +11,7 @@ use super::{Curve, SplineError};
 
 /// A curve of control points over a [`Basis`], polynomial or rational; evaluated through the Bezier curves of its spans.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Plain", into = "Plain")]
+#[serde(try_from = "SplineData", into = "SplineData")]
 pub struct SplineCurve {
     basis: Basis,
     control: Vec<ControlPoint>,
@@ -20,15 +20,15 @@ pub struct SplineCurve {
 
 /// What a curve is made of.
 #[derive(Serialize, Deserialize)]
-struct Plain {
+struct SplineData {
     basis: Basis,
     control: Vec<ControlPoint>,
 }
 
-impl TryFrom<Plain> for SplineCurve {
+impl TryFrom<SplineData> for SplineCurve {
     type Error = SplineError;
 
-    fn try_from(Plain { basis, control }: Plain) -> Result<SplineCurve, SplineError> {
+    fn try_from(SplineData { basis, control }: SplineData) -> Result<SplineCurve, SplineError> {
         let (found, needed) = (control.len(), basis.control_count());
         if found != needed {
             return Err(SplineError::Count { what: "control points", found, needed });
@@ -38,9 +38,9 @@ impl TryFrom<Plain> for SplineCurve {
     }
 }
 
-impl From<SplineCurve> for Plain {
-    fn from(curve: SplineCurve) -> Plain {
-        Plain { basis: curve.basis, control: curve.control }
+impl From<SplineCurve> for SplineData {
+    fn from(curve: SplineCurve) -> SplineData {
+        SplineData { basis: curve.basis, control: curve.control }
     }
 }
 

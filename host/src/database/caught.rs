@@ -5,16 +5,16 @@ use serde::{Deserialize, Serialize};
 
 /// Light of a lamp that was caught on the surfaces of a scene.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct CaughtLight {
+pub struct StoredPhotons {
     /// Values of flux of each piece of light, 1..=255.
     pub lanes: u8,
     /// In the order in which it was followed.
-    pub blocks: Vec<CaughtBlock>,
+    pub blocks: Vec<PhotonBlock>,
 }
 
 /// Light that was followed together. The tables are as long as one another, `flux` for each lane.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct CaughtBlock {
+pub struct PhotonBlock {
     /// The number of the thing that the light was aimed at.
     pub aim: u32,
     /// The number of the block among those aimed at that thing.
@@ -35,7 +35,7 @@ pub struct CaughtBlock {
     pub combs: Vec<u8>,
 }
 
-impl CaughtLight {
+impl StoredPhotons {
     /// How many ways of light were followed.
     pub fn ways(&self) -> u64 {
         self.blocks.iter().map(|block| block.ways).fold(0, u64::saturating_add)

@@ -1,38 +1,38 @@
 //! What can be said of a whole database: which of its records are whole.
 
-use super::{DatabaseError, Kind, Record, Store};
+use super::{DatabaseError, RecordKind, Record, Store};
 use serde::Serialize;
 use std::path::Path;
 
 /// What was found out about a database.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Report {
+pub struct DatabaseReport {
     /// How many records are whole.
     pub whole: usize,
     /// The records that are not.
-    pub problems: Vec<Problem>,
+    pub problems: Vec<DamagedRecord>,
     /// What is wrong with the file as a whole; none if nothing is.
     pub file: Option<String>,
 }
 
 /// A record that is not whole.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Problem {
+pub struct DamagedRecord {
     /// Its kind.
-    pub kind: Kind,
+    pub kind: RecordKind,
     /// Its name.
     pub name: String,
     /// What is wrong with it.
     pub problem: String,
 }
 
-impl Report {
+impl DatabaseReport {
     /// Checks the pages of a file and every number of every record.
     ///
     /// # Errors
     /// [`DatabaseError`] if there is no such file, it is no database, or another process writes to it.
-    pub fn of(path: &Path) -> Result<Report, DatabaseError> {
-        let mut report = Report::default();
+    pub fn of(path: &Path) -> Result<DatabaseReport, DatabaseError> {
+        let mut report = DatabaseReport::default();
         let store = match Store::open_existing(path) {
             Err(error @ DatabaseError::Damaged { .. }) => {
                 report.file = Some(error.to_string());
@@ -47,12 +47,12 @@ impl Report {
             }
             other => other?,
         };
-        for kind in Kind::ALL {
+        for kind in RecordKind::ALL {
             let listed = store.each(&[kind], |kind, name, bytes| {
                 match Record::of_bytes(kind, name, bytes) {
                     Ok(_) => report.whole += 1,
                     Err(error) => {
-                        report.problems.push(Problem { kind, name: name.into(), problem: error.to_string() });
+                        report.problems.push(DamagedRecord { kind, name: name.into(), problem: error.to_string() });
                     }
                 }
                 Ok(())

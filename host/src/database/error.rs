@@ -1,6 +1,6 @@
 //! What can be wrong with a database, and where.
 
-use super::{Kind, LONGEST_NAME, MAX_RECORD};
+use super::{RecordKind, LONGEST_NAME, MAX_RECORD};
 use crate::mesh::MeshError;
 use crate::picture::PictureError;
 use std::path::PathBuf;
@@ -77,7 +77,7 @@ pub enum DatabaseError {
     #[error("there is a {kind} \"{name}\" already")]
     Exists {
         /// What.
-        kind: Kind,
+        kind: RecordKind,
         /// Its name.
         name: String,
     },
@@ -90,7 +90,7 @@ pub enum DatabaseError {
     #[error("{kind} \"{name}\": larger than {MAX_RECORD} bytes")]
     TooLarge {
         /// What.
-        kind: Kind,
+        kind: RecordKind,
         /// Its name.
         name: String,
     },
@@ -98,7 +98,7 @@ pub enum DatabaseError {
     #[error("{kind} \"{name}\": {problem}")]
     Record {
         /// What.
-        kind: Kind,
+        kind: RecordKind,
         /// Its name.
         name: String,
         /// What is wrong.

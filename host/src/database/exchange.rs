@@ -4,9 +4,9 @@
 //! [`columns`]), and all but meshes and pictures as JSON: `{"name": "...", "source": "...", "terms": "...", "material":
 //! {...}}`, with `light` or `spectrum` in place of `material`.
 
-use super::{Content, Curves, DatabaseError, Record, check_name};
-use crate::color::shipped::Metal;
-use crate::color::{Beyond, Origin, Spectrum, columns};
+use super::{RecordContent, Curves, DatabaseError, Record, check_name};
+use crate::color::shipped::ComplexIndex;
+use crate::color::{Extrapolation, Origin, Spectrum, columns};
 use crate::illumination::{Light, Material};
 use crate::memory;
 use crate::mesh;
@@ -21,7 +21,7 @@ const MAX_TEXT: u64 = 64 << 20;
 
 /// What the columns of a text are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum Quantity {
+pub enum ColumnQuantity {
     /// Each what a surface reflects, 0..=1.
     Reflectance,
     /// Each the power of a light.
@@ -35,7 +35,7 @@ pub enum Quantity {
 /// A record as JSON.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Sheet {
+struct RecordJson {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     name: Option<String>,
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -57,12 +57,12 @@ impl Record {
     pub fn json(&self) -> Option<serde_json::Value> {
         let Origin { what, source, terms } = self.origin.clone();
         let mut sheet =
-            Sheet { name: Some(self.name.clone()), what, source, terms, material: None, light: None, spectrum: None };
+            RecordJson { name: Some(self.name.clone()), what, source, terms, material: None, light: None, spectrum: None };
         match &self.content {
-            Content::Material(material) => sheet.material = Some((**material).clone()),
-            Content::Light(light) => sheet.light = Some((**light).clone()),
-            Content::Spectrum(curves) => sheet.spectrum = Some(curves.clone()),
-            Content::Geometry(_) | Content::Texture(_) | Content::CaughtLight(_) => return None,
+            RecordContent::Material(material) => sheet.material = Some((**material).clone()),
+            RecordContent::Light(light) => sheet.light = Some((**light).clone()),
+            RecordContent::Spectrum(curves) => sheet.spectrum = Some(curves.clone()),
+            RecordContent::Geometry(_) | RecordContent::Texture(_) | RecordContent::CaughtLight(_) => return None,
         }
         serde_json::to_value(&sheet).ok()
     }
@@ -76,14 +76,14 @@ impl Record {
 ///
 /// # Errors
 /// [`DatabaseError`], with the place where the content is wrong.
-pub fn read(path: &Path, name: Option<&str>, quantity: Option<Quantity>) -> Result<Vec<Record>, DatabaseError> {
+pub fn read(path: &Path, name: Option<&str>, quantity: Option<ColumnQuantity>) -> Result<Vec<Record>, DatabaseError> {
     let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
     let one = |content| Record { name: name.unwrap_or(stem).to_owned(), origin: Origin::default(), content };
     let records = match ending(path).as_str() {
         _ if mesh::Format::of(path).is_some() => {
-            vec![one(Content::Geometry(Box::new(mesh::read_grouped(path)?)))]
+            vec![one(RecordContent::Geometry(Box::new(mesh::read_grouped(path)?)))]
         }
-        "png" | "exr" => vec![one(Content::Texture(Box::new(Picture::read_finite(path)?)))],
+        "png" | "exr" => vec![one(RecordContent::Texture(Box::new(Picture::read_finite(path)?)))],
         "txt" => of_columns(path, name, stem, quantity)?,
         "json" => vec![of_sheet(path, name, stem)?],
         _ => return Err(unknown_ending(path)),
@@ -100,14 +100,14 @@ pub fn write(record: &Record, destination: &Destination) -> Result<(), DatabaseE
     let path = destination.path();
     let failed = |problem: &str| DatabaseError::Exchange { path: path.into(), problem: problem.into() };
     let text = match (&record.content, ending(path).as_str()) {
-        (Content::Geometry(grouped), _) if mesh::Format::of(path).is_some() => {
+        (RecordContent::Geometry(grouped), _) if mesh::Format::of(path).is_some() => {
             return Ok(mesh::write_grouped(grouped, destination)?);
         }
-        (Content::Geometry(_), _) => return Err(failed("a mesh goes into .obj, .ply, .stl, .gltf, .glb or .cmesh")),
-        (Content::Texture(picture), "png" | "exr") => return Ok(picture.write(destination)?),
-        (Content::Texture(_), _) => return Err(failed("a texture goes into .png or .exr")),
-        (Content::CaughtLight(_), _) => return Err(failed("caught light is of use in its database only")),
-        (Content::Spectrum(curves), "txt") => {
+        (RecordContent::Geometry(_), _) => return Err(failed("a mesh goes into .obj, .ply, .stl, .gltf, .glb or .cmesh")),
+        (RecordContent::Texture(picture), "png" | "exr") => return Ok(picture.write(destination)?),
+        (RecordContent::Texture(_), _) => return Err(failed("a texture goes into .png or .exr")),
+        (RecordContent::CaughtLight(_), _) => return Err(failed("caught light is of use in its database only")),
+        (RecordContent::Spectrum(curves), "txt") => {
             let named = match curves {
                 Curves::Reflectance(spectrum) | Curves::Light(spectrum) => vec![(&*record.name, spectrum)],
                 _ => curves.named(),
@@ -119,7 +119,7 @@ pub fn write(record: &Record, destination: &Destination) -> Result<(), DatabaseE
             Some(Ok(text)) => text + "\n",
             _ => return Err(failed("it cannot be written as JSON")),
         },
-        (Content::Spectrum(_), _) => return Err(failed("a spectrum goes into .txt or .json")),
+        (RecordContent::Spectrum(_), _) => return Err(failed("a spectrum goes into .txt or .json")),
         _ => return Err(failed("a material or a light goes into .json")),
     };
     Ok(destination.write_or_keep(|file| file.write_all(text.as_bytes()))?)
@@ -144,48 +144,48 @@ fn of_columns(
     path: &Path,
     name: Option<&str>,
     stem: &str,
-    quantity: Option<Quantity>,
+    quantity: Option<ColumnQuantity>,
 ) -> Result<Vec<Record>, DatabaseError> {
     let failed = |problem: String| DatabaseError::Exchange { path: path.into(), problem };
     let text = text_of(path)?;
     let origin = columns::origin(&text);
     let found = |beyond| columns::spectra(&text, beyond).map_err(|error| failed(error.to_string()));
-    let held = found(Beyond::Held)?;
+    let held = found(Extrapolation::Held)?;
     let is_metal = held.len() == 2 && held[0].0 == "n" && held[1].0 == "k";
-    let quantity = quantity.unwrap_or(if is_metal { Quantity::Metal } else { Quantity::Reflectance });
+    let quantity = quantity.unwrap_or(if is_metal { ColumnQuantity::Metal } else { ColumnQuantity::Reflectance });
     let whole = |curves| vec![(name.unwrap_or(stem).to_owned(), curves)];
     let each = |columns: Vec<(&str, Spectrum)>, of: fn(Spectrum) -> Curves| match (name, columns.len()) {
         (Some(_), 2..) => Err(failed("a name for several columns; each is called by its head".into())),
         _ => Ok(columns.into_iter().map(|(head, s)| (name.unwrap_or(head).to_owned(), of(s))).collect()),
     };
     let all: Vec<(String, Curves)> = match quantity {
-        Quantity::Metal if is_metal => {
+        ColumnQuantity::Metal if is_metal => {
             let mut both = held.into_iter().map(|(_, spectrum)| spectrum);
-            let metal = both.next().zip(both.next()).map(|(n, k)| Curves::Metal(Metal { n, k }));
+            let metal = both.next().zip(both.next()).map(|(n, k)| Curves::Metal(ComplexIndex { n, k }));
             metal.map(whole).unwrap_or_default()
         }
-        Quantity::Metal => return Err(failed("a metal has two columns, called n and k".into())),
-        Quantity::Reflectance => each(held, Curves::Reflectance)?,
-        Quantity::Light => each(found(Beyond::Zero)?, Curves::Light)?,
-        Quantity::Functions => {
-            whole(Curves::Functions(found(Beyond::Zero)?.into_iter().map(|(head, s)| (head.to_owned(), s)).collect()))
+        ColumnQuantity::Metal => return Err(failed("a metal has two columns, called n and k".into())),
+        ColumnQuantity::Reflectance => each(held, Curves::Reflectance)?,
+        ColumnQuantity::Light => each(found(Extrapolation::Zero)?, Curves::Light)?,
+        ColumnQuantity::Functions => {
+            whole(Curves::Functions(found(Extrapolation::Zero)?.into_iter().map(|(head, s)| (head.to_owned(), s)).collect()))
         }
     };
     let record = |(name, curves): (String, Curves)| {
-        let hint = if quantity == Quantity::Reflectance { " (or is it a light?)" } else { "" };
+        let hint = if quantity == ColumnQuantity::Reflectance { " (or is it a light?)" } else { "" };
         curves.check().map_err(|problem| failed(format!("{name}: {problem}{hint}")))?;
-        Ok(Record { name, origin: origin.clone(), content: Content::Spectrum(curves) })
+        Ok(Record { name, origin: origin.clone(), content: RecordContent::Spectrum(curves) })
     };
     all.into_iter().map(record).collect()
 }
 
 fn of_sheet(path: &Path, name: Option<&str>, stem: &str) -> Result<Record, DatabaseError> {
     let failed = |problem: String| DatabaseError::Exchange { path: path.into(), problem };
-    let sheet: Sheet = serde_json::from_str(&text_of(path)?).map_err(|error| failed(error.to_string()))?;
+    let sheet: RecordJson = serde_json::from_str(&text_of(path)?).map_err(|error| failed(error.to_string()))?;
     let content = match (sheet.material, sheet.light, sheet.spectrum) {
-        (Some(material), None, None) => Content::Material(Box::new(material)),
-        (None, Some(light), None) => Content::Light(Box::new(light)),
-        (None, None, Some(curves)) => Content::Spectrum(curves),
+        (Some(material), None, None) => RecordContent::Material(Box::new(material)),
+        (None, Some(light), None) => RecordContent::Light(Box::new(light)),
+        (None, None, Some(curves)) => RecordContent::Spectrum(curves),
         _ => return Err(failed("it must hold one of material, light and spectrum".into())),
     };
     let name = name.map(str::to_owned).or(sheet.name).unwrap_or_else(|| stem.to_owned());

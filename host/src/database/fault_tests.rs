@@ -184,7 +184,7 @@ fn io(error: BackendError) -> Error {
 
 fn material(name: &str, grey: f64) -> Record {
     let classic = Classic { diffuse: crate::color::Color::grey(grey).into(), ..Classic::default() };
-    let content = Content::Material(Box::new(classic.into()));
+    let content = RecordContent::Material(Box::new(classic.into()));
     Record { name: name.into(), origin: Default::default(), content }
 }
 
@@ -194,7 +194,7 @@ fn large() -> Record {
     for (pixel, value) in picture.pixels_mut().iter_mut().zip(0..) {
         (pixel.radiance, pixel.coverage) = ([value as f32, 0.5, 0.25], 1.0);
     }
-    Record { name: "large".into(), origin: Default::default(), content: Content::Texture(Box::new(picture)) }
+    Record { name: "large".into(), origin: Default::default(), content: RecordContent::Texture(Box::new(picture)) }
 }
 
 /// A database with two records.
@@ -228,13 +228,13 @@ fn a_change_is_whole_or_has_not_been_whatever_the_storage_does_at_whichever_call
             let left = storage.disk().left();
             let store = Store::over(Disk::of(left, None), false);
             let store = store.unwrap_or_else(|error| panic!("{fault:?} at call {call}: {error}"));
-            let names = store.names(Kind::Material).expect("they can be read");
+            let names = store.names(RecordKind::Material).expect("they can be read");
             let is_new = names.contains(&"new".to_owned());
             let grey = if is_new { 0.4 } else { 0.2 };
-            let found = |name: &str| store.record(Kind::Material, name).expect("it is whole");
+            let found = |name: &str| store.record(RecordKind::Material, name).expect("it is whole");
             assert!(found("kept") == material("kept", 0.1) && found("replaced") == material("replaced", grey));
             assert_eq!(names.len(), if is_new { 3 } else { 2 }, "{fault:?} at call {call}");
-            let texture = store.find(Kind::Texture, "large").expect("it is whole or not there");
+            let texture = store.find(RecordKind::Texture, "large").expect("it is whole or not there");
             assert_eq!(texture, is_new.then(large), "{fault:?} at call {call}");
             assert!(is_new || changed.is_err(), "{fault:?} at call {call}: what was acknowledged is lost");
             // And it takes further changes.

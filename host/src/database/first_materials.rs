@@ -2,32 +2,32 @@
 
 use crate::color::{Color, Spectrum};
 use crate::illumination::distribution::{FacetTable, Tabulated};
-use crate::illumination::material::{self, Index};
+use crate::illumination::material::{self, RefractiveIndex};
 use crate::illumination::texture::{Paint, Relief};
 use glam::{DVec2, DVec3};
 use serde::Deserialize;
 
 #[derive(Deserialize)]
 #[cfg_attr(test, derive(serde::Serialize))]
-pub(super) struct Material {
-    pub(super) body: Body,
+pub(super) struct MaterialV1 {
+    pub(super) body: BodyV1,
     pub(super) emission: Color,
     pub(super) relief: Option<Relief>,
 }
 
 #[derive(Deserialize)]
 #[cfg_attr(test, derive(serde::Serialize))]
-pub(super) enum Body {
+pub(super) enum BodyV1 {
     Classic { diffuse: Paint, specular: Paint, exponent: f64, mirror: Paint, transparency: Paint },
-    Shaped { reflectance: Paint, form: Form },
-    Metal { n: Spectrum, k: Spectrum, finish: Finish },
-    Transparent { index: Index, roughness: f64, absorption: Color },
+    Shaped { reflectance: Paint, form: FormV1 },
+    Metal { n: Spectrum, k: Spectrum, finish: FinishV1 },
+    Transparent { index: RefractiveIndex, roughness: f64, absorption: Color },
     Coated { diffuse: Paint, index: f64, roughness: f64 },
 }
 
 #[derive(Deserialize)]
 #[cfg_attr(test, derive(serde::Serialize))]
-pub(super) enum Form {
+pub(super) enum FormV1 {
     Member { name: String, roughness: f64 },
     Table(Tabulated),
     Facets(FacetTable),
@@ -35,50 +35,50 @@ pub(super) enum Form {
 
 #[derive(Deserialize)]
 #[cfg_attr(test, derive(serde::Serialize))]
-pub(super) enum Finish {
+pub(super) enum FinishV1 {
     Polished,
     Rough { name: String, roughness: f64 },
     Brushed { roughness: DVec2, along: DVec3 },
 }
 
-impl From<Material> for material::Material {
-    fn from(Material { body, emission, relief }: Material) -> material::Material {
+impl From<MaterialV1> for material::Material {
+    fn from(MaterialV1 { body, emission, relief }: MaterialV1) -> material::Material {
         material::Material { body: body.into(), emission, relief }
     }
 }
 
-impl From<Body> for material::Body {
-    fn from(body: Body) -> material::Body {
+impl From<BodyV1> for material::MaterialKind {
+    fn from(body: BodyV1) -> material::MaterialKind {
         match body {
-            Body::Classic { diffuse, specular, exponent, mirror, transparency } => {
+            BodyV1::Classic { diffuse, specular, exponent, mirror, transparency } => {
                 let exponent = exponent.into();
-                material::Body::Classic(material::Classic { diffuse, specular, exponent, mirror, transparency })
+                material::MaterialKind::Classic(material::Classic { diffuse, specular, exponent, mirror, transparency })
             }
-            Body::Shaped { reflectance, form } => {
+            BodyV1::Shaped { reflectance, form } => {
                 let form = match form {
-                    Form::Member { name, roughness } => material::Form::Member { name, roughness: roughness.into() },
-                    Form::Table(table) => material::Form::Table(table),
-                    Form::Facets(table) => material::Form::Facets(table),
+                    FormV1::Member { name, roughness } => material::DistributionForm::Member { name, roughness: roughness.into() },
+                    FormV1::Table(table) => material::DistributionForm::Table(table),
+                    FormV1::Facets(table) => material::DistributionForm::Facets(table),
                 };
-                material::Body::Shaped(material::Shaped { reflectance, form })
+                material::MaterialKind::Shaped(material::Distributed { reflectance, form })
             }
-            Body::Metal { n, k, finish } => {
+            BodyV1::Metal { n, k, finish } => {
                 let finish = match finish {
-                    Finish::Polished => material::Finish::Polished,
-                    Finish::Rough { name, roughness } => material::Finish::Rough { name, roughness: roughness.into() },
-                    Finish::Brushed { roughness, along } => {
+                    FinishV1::Polished => material::Finish::Polished,
+                    FinishV1::Rough { name, roughness } => material::Finish::Rough { name, roughness: roughness.into() },
+                    FinishV1::Brushed { roughness, along } => {
                         material::Finish::Brushed { roughness: roughness.to_array().map(Into::into), along }
                     }
                 };
-                material::Body::Metal(material::Metal { n, k, finish })
+                material::MaterialKind::Metal(material::Metal { n, k, finish })
             }
-            Body::Transparent { index, roughness, absorption } => material::Body::Transparent(material::Transparent {
+            BodyV1::Transparent { index, roughness, absorption } => material::MaterialKind::Transparent(material::Transparent {
                 roughness: roughness.into(),
                 absorption,
                 ..material::Transparent::clear(index)
             }),
-            Body::Coated { diffuse, index, roughness } => {
-                material::Body::Coated(material::Coated { diffuse, index, roughness: roughness.into() })
+            BodyV1::Coated { diffuse, index, roughness } => {
+                material::MaterialKind::Coated(material::Coated { diffuse, index, roughness: roughness.into() })
             }
         }
     }

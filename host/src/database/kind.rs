@@ -11,7 +11,7 @@ pub const MAX_RECORD: usize = 1 << 30;
 /// What a record is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
-pub enum Kind {
+pub enum RecordKind {
     /// A mesh with its groups.
     Geometry,
     /// A picture.
@@ -26,20 +26,20 @@ pub enum Kind {
     CaughtLight,
 }
 
-impl Kind {
+impl RecordKind {
     /// Every kind.
-    pub const ALL: [Kind; 6] =
-        [Kind::Geometry, Kind::Texture, Kind::Material, Kind::Light, Kind::Spectrum, Kind::CaughtLight];
+    pub const ALL: [RecordKind; 6] =
+        [RecordKind::Geometry, RecordKind::Texture, RecordKind::Material, RecordKind::Light, RecordKind::Spectrum, RecordKind::CaughtLight];
 
     /// The kind in a word; the name of its table, too.
     pub fn word(self) -> &'static str {
         match self {
-            Kind::Geometry => "geometry",
-            Kind::Texture => "texture",
-            Kind::Material => "material",
-            Kind::Light => "light",
-            Kind::Spectrum => "spectrum",
-            Kind::CaughtLight => "caught-light",
+            RecordKind::Geometry => "geometry",
+            RecordKind::Texture => "texture",
+            RecordKind::Material => "material",
+            RecordKind::Light => "light",
+            RecordKind::Spectrum => "spectrum",
+            RecordKind::CaughtLight => "caught-light",
         }
     }
 
@@ -48,13 +48,13 @@ impl Kind {
     pub(super) fn version(self) -> u32 {
         match self {
             // Numbers that change from place to place, priorities of transparent bodies.
-            Kind::Material => 2,
+            RecordKind::Material => 2,
             _ => 1,
         }
     }
 }
 
-impl fmt::Display for Kind {
+impl fmt::Display for RecordKind {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(self.word())
     }

@@ -1,9 +1,9 @@
 //! Several databases as one: files, and behind them what ships with the program.
 
 use super::store::unknown;
-use super::{Content, Curves, DatabaseError, Kind, Record, Store, shipped};
+use super::{RecordContent, Curves, DatabaseError, RecordKind, Record, Store, shipped};
 use crate::color::Spectrum;
-use crate::color::shipped::Metal;
+use crate::color::shipped::ComplexIndex;
 use std::path::{Path, PathBuf};
 
 /// The databases in which names are looked up: those in files, the last one first, then the one that ships.
@@ -35,7 +35,7 @@ impl Library {
     ///
     /// # Errors
     /// [`DatabaseError::Unknown`] with the names that there are, or another one if it is damaged.
-    pub fn record(&self, kind: Kind, name: &str) -> Result<(Record, Option<PathBuf>), DatabaseError> {
+    pub fn record(&self, kind: RecordKind, name: &str) -> Result<(Record, Option<PathBuf>), DatabaseError> {
         for store in self.stores.iter().rev() {
             if let Some(record) = store.find(kind, name)? {
                 return Ok((record, Some(store.path().to_owned())));
@@ -51,7 +51,7 @@ impl Library {
     ///
     /// # Errors
     /// [`DatabaseError`] if a file is damaged.
-    pub fn names(&self, kind: Kind) -> Result<Vec<String>, DatabaseError> {
+    pub fn names(&self, kind: RecordKind) -> Result<Vec<String>, DatabaseError> {
         let mut names = Vec::new();
         for store in self.stores.iter().rev() {
             names.extend(store.names(kind)?);
@@ -88,7 +88,7 @@ impl Library {
     ///
     /// # Errors
     /// [`DatabaseError::Unknown`] with the names of the metals.
-    pub fn metal(&self, name: &str) -> Result<Metal, DatabaseError> {
+    pub fn metal(&self, name: &str) -> Result<ComplexIndex, DatabaseError> {
         self.curves("metal", name, |curves| match curves {
             Curves::Metal(metal) => Some(metal),
             _ => None,
@@ -97,8 +97,8 @@ impl Library {
 
     /// Curves of one sort, by their name.
     fn curves<T>(&self, sort: &str, name: &str, of: impl Fn(Curves) -> Option<T>) -> Result<T, DatabaseError> {
-        let found = |name: &str| match self.record(Kind::Spectrum, name).map(|(record, _)| record.content) {
-            Ok(Content::Spectrum(curves)) => Ok(of(curves)),
+        let found = |name: &str| match self.record(RecordKind::Spectrum, name).map(|(record, _)| record.content) {
+            Ok(RecordContent::Spectrum(curves)) => Ok(of(curves)),
             Ok(_) | Err(DatabaseError::Unknown { .. }) => Ok(None),
             Err(error) => Err(error),
         };
@@ -106,7 +106,7 @@ impl Library {
             return Ok(curves);
         }
         let mut known = Vec::new();
-        for name in self.names(Kind::Spectrum)? {
+        for name in self.names(RecordKind::Spectrum)? {
             if found(&name)?.is_some() {
                 known.push(name);
             }

@@ -22,11 +22,11 @@ mod fault_tests;
 #[cfg(test)]
 mod tests;
 
-pub use caught::{CaughtBlock, CaughtLight};
-pub use check::{Problem, Report};
+pub use caught::{PhotonBlock, StoredPhotons};
+pub use check::{DamagedRecord, DatabaseReport};
 pub use error::DatabaseError;
-pub use exchange::{Quantity, read, write};
-pub use kind::{Kind, LONGEST_NAME, MAX_RECORD};
+pub use exchange::{ColumnQuantity, read, write};
+pub use kind::{RecordKind, LONGEST_NAME, MAX_RECORD};
 pub use library::Library;
-pub use record::{Content, Curves, Entry, Record, check_name};
+pub use record::{RecordContent, Curves, RecordEntry, Record, check_name};
 pub use store::Store;

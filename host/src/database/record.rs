@@ -4,8 +4,8 @@
 //! it is in a few words, source, terms) and the content. The checksum covers kind, name and all behind it.
 
 use super::kind::{LONGEST_NAME, MAX_RECORD};
-use super::{CaughtLight, DatabaseError, Kind, first_materials};
-use crate::color::shipped::Metal;
+use super::{StoredPhotons, DatabaseError, RecordKind, first_materials};
+use crate::color::shipped::ComplexIndex;
 use crate::color::{Origin, Spectrum};
 use crate::encoding::{Integers, decode, encode};
 use crate::illumination::light::{Light, SkyMap};
@@ -26,12 +26,12 @@ pub struct Record {
     /// Where it comes from; empty where that is not known.
     pub origin: Origin,
     /// What it holds.
-    pub content: Content,
+    pub content: RecordContent,
 }
 
 /// What a record holds.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Content {
+pub enum RecordContent {
     /// A mesh with its groups.
     Geometry(Box<Grouped>),
     /// A picture.
@@ -43,7 +43,7 @@ pub enum Content {
     /// A quantity over the wavelength, or several.
     Spectrum(Curves),
     /// Light of a lamp that was caught on surfaces.
-    CaughtLight(Box<CaughtLight>),
+    CaughtLight(Box<StoredPhotons>),
 }
 
 /// Quantities over the wavelength.
@@ -55,16 +55,16 @@ pub enum Curves {
     /// The power of a light, relative to any unit, 0 and more.
     Light(Spectrum),
     /// Index and extinction of a metal, 0 and more.
-    Metal(Metal),
+    Metal(ComplexIndex),
     /// Functions that belong together, each with its name.
     Functions(Vec<(String, Spectrum)>),
 }
 
 /// What a list says of a record.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Entry {
+pub struct RecordEntry {
     /// Its kind.
-    pub kind: Kind,
+    pub kind: RecordKind,
     /// Its name.
     pub name: String,
     /// What it holds, in a few words.
@@ -106,85 +106,85 @@ pub fn check_name(name: &str) -> Result<(), DatabaseError> {
     if possible && !name.chars().any(char::is_control) { Ok(()) } else { Err(DatabaseError::Name(name.into())) }
 }
 
-impl Content {
+impl RecordContent {
     /// Its kind.
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> RecordKind {
         match self {
-            Content::Geometry(_) => Kind::Geometry,
-            Content::Texture(_) => Kind::Texture,
-            Content::Material(_) => Kind::Material,
-            Content::Light(_) => Kind::Light,
-            Content::Spectrum(_) => Kind::Spectrum,
-            Content::CaughtLight(_) => Kind::CaughtLight,
+            RecordContent::Geometry(_) => RecordKind::Geometry,
+            RecordContent::Texture(_) => RecordKind::Texture,
+            RecordContent::Material(_) => RecordKind::Material,
+            RecordContent::Light(_) => RecordKind::Light,
+            RecordContent::Spectrum(_) => RecordKind::Spectrum,
+            RecordContent::CaughtLight(_) => RecordKind::CaughtLight,
         }
     }
 
     /// What it holds, in a few words.
     pub fn summary(&self) -> String {
         match self {
-            Content::Geometry(grouped) => {
+            RecordContent::Geometry(grouped) => {
                 format!("{} vertices, {} triangles", grouped.mesh.vertices.len(), grouped.mesh.triangles.len())
             }
-            Content::Texture(picture) => format!("{} x {} pixels", picture.width(), picture.height()),
-            Content::Material(material) => material.word().into(),
-            Content::Light(light) => light.words().into(),
-            Content::Spectrum(curves) => curves.summary(),
-            Content::CaughtLight(caught) => caught.summary(),
+            RecordContent::Texture(picture) => format!("{} x {} pixels", picture.width(), picture.height()),
+            RecordContent::Material(material) => material.word().into(),
+            RecordContent::Light(light) => light.words().into(),
+            RecordContent::Spectrum(curves) => curves.summary(),
+            RecordContent::CaughtLight(caught) => caught.summary(),
         }
     }
 
     /// Checks every number; the problem in words.
     fn check(&self) -> Result<(), String> {
         match self {
-            Content::Geometry(grouped) => {
-                let finite = |look: &crate::mesh::Look| {
+            RecordContent::Geometry(grouped) => {
+                let finite = |look: &crate::mesh::MetallicRoughness| {
                     look.base.is_finite() && look.metallic.is_finite() && look.roughness.is_finite()
                 };
                 grouped.mesh.validate().map_err(|fault| fault.to_string())?;
                 let looks = grouped.looks.iter().flatten().all(finite);
                 if looks { Ok(()) } else { Err("the look of a surface is not finite".into()) }
             }
-            Content::Texture(picture) if picture.is_finite() => Ok(()),
-            Content::Texture(_) => Err("a pixel is not finite".into()),
-            Content::Material(material) => material.check().map_err(|error| error.to_string()),
-            Content::Light(light) => match light.sky_map() {
+            RecordContent::Texture(picture) if picture.is_finite() => Ok(()),
+            RecordContent::Texture(_) => Err("a pixel is not finite".into()),
+            RecordContent::Material(material) => material.check().map_err(|error| error.to_string()),
+            RecordContent::Light(light) => match light.sky_map() {
                 Some(SkyMap { file, .. }) => {
                     Err(format!("the picture {file} of a sky is kept as a texture, not in a light"))
                 }
                 None => light.check().map_err(|error| error.to_string()),
             },
-            Content::Spectrum(curves) => curves.check(),
-            Content::CaughtLight(caught) => caught.check(),
+            RecordContent::Spectrum(curves) => curves.check(),
+            RecordContent::CaughtLight(caught) => caught.check(),
         }
     }
 
     fn bytes(&self) -> Result<Vec<u8>, String> {
         match self {
-            Content::Geometry(grouped) => encoded(grouped),
-            Content::Texture(picture) => {
+            RecordContent::Geometry(grouped) => encoded(grouped),
+            RecordContent::Texture(picture) => {
                 let of = |p: &crate::picture::Pixel| [p.radiance[0], p.radiance[1], p.radiance[2], p.coverage];
                 let pixels = picture.pixels().iter().map(of).collect();
                 encoded(&Pixels { width: picture.width(), height: picture.height(), pixels })
             }
-            Content::Material(material) => encoded(material),
-            Content::Light(light) => encoded(light),
-            Content::Spectrum(curves) => encoded(curves),
-            Content::CaughtLight(caught) => encoded(caught),
+            RecordContent::Material(material) => encoded(material),
+            RecordContent::Light(light) => encoded(light),
+            RecordContent::Spectrum(curves) => encoded(curves),
+            RecordContent::CaughtLight(caught) => encoded(caught),
         }
     }
 
     /// - `version`: of the form in which it was stored, up to that of the kind.
-    fn of_bytes(kind: Kind, version: u32, bytes: &[u8]) -> Result<Content, String> {
+    fn of_bytes(kind: RecordKind, version: u32, bytes: &[u8]) -> Result<RecordContent, String> {
         let content = match kind {
-            Kind::Geometry => Content::Geometry(Box::new(decoded(bytes)?)),
-            Kind::Texture => Content::Texture(Box::new(decoded::<Pixels>(bytes)?.picture()?)),
-            Kind::Material if version == 1 => {
-                Content::Material(Box::new(decoded::<first_materials::Material>(bytes)?.into()))
+            RecordKind::Geometry => RecordContent::Geometry(Box::new(decoded(bytes)?)),
+            RecordKind::Texture => RecordContent::Texture(Box::new(decoded::<Pixels>(bytes)?.picture()?)),
+            RecordKind::Material if version == 1 => {
+                RecordContent::Material(Box::new(decoded::<first_materials::MaterialV1>(bytes)?.into()))
             }
-            Kind::Material => Content::Material(Box::new(decoded(bytes)?)),
-            Kind::Light => Content::Light(Box::new(decoded(bytes)?)),
-            Kind::Spectrum => Content::Spectrum(decoded(bytes)?),
-            Kind::CaughtLight => Content::CaughtLight(Box::new(decoded(bytes)?)),
+            RecordKind::Material => RecordContent::Material(Box::new(decoded(bytes)?)),
+            RecordKind::Light => RecordContent::Light(Box::new(decoded(bytes)?)),
+            RecordKind::Spectrum => RecordContent::Spectrum(decoded(bytes)?),
+            RecordKind::CaughtLight => RecordContent::CaughtLight(Box::new(decoded(bytes)?)),
         };
         content.check().map(|()| content)
     }
@@ -255,14 +255,14 @@ impl Curves {
 
 impl Record {
     /// Its kind.
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> RecordKind {
         self.content.kind()
     }
 
     /// What a list says of it.
-    pub fn entry(&self, bytes: u64) -> Entry {
+    pub fn entry(&self, bytes: u64) -> RecordEntry {
         let Origin { what, source, terms } = self.origin.clone();
-        Entry {
+        RecordEntry {
             kind: self.kind(),
             name: self.name.clone(),
             summary: self.content.summary(),
@@ -302,27 +302,27 @@ impl Record {
     /// # Errors
     /// [`DatabaseError::Record`] for bytes that are damaged or of another record, [`DatabaseError::Newer`] for those of a
     /// later program.
-    pub fn of_bytes(kind: Kind, name: &str, bytes: &[u8]) -> Result<Record, DatabaseError> {
+    pub fn of_bytes(kind: RecordKind, name: &str, bytes: &[u8]) -> Result<Record, DatabaseError> {
         let failed = |problem: String| DatabaseError::Record { kind, name: name.into(), problem };
         let (version, Head { what, source, terms, .. }, content) = head(kind, name, bytes)?;
         if checksum(kind, name, bytes).to_le_bytes() != bytes[4..BEFORE] {
             return Err(failed("damaged: its checksum is another".into()));
         }
-        let content = Content::of_bytes(kind, version, content).map_err(failed)?;
+        let content = RecordContent::of_bytes(kind, version, content).map_err(failed)?;
         Ok(Record { name: name.into(), origin: Origin { what, source, terms }, content })
     }
 }
 
-impl Entry {
+impl RecordEntry {
     /// What a list says of a record, from its bytes; only its head is read.
-    pub(super) fn of_bytes(kind: Kind, name: &str, bytes: &[u8]) -> Result<Entry, DatabaseError> {
+    pub(super) fn of_bytes(kind: RecordKind, name: &str, bytes: &[u8]) -> Result<RecordEntry, DatabaseError> {
         let (_, Head { summary, what, source, terms }, _) = head(kind, name, bytes)?;
-        Ok(Entry { kind, name: name.into(), summary, what, source, terms, bytes: bytes.len() as u64 })
+        Ok(RecordEntry { kind, name: name.into(), summary, what, source, terms, bytes: bytes.len() as u64 })
     }
 }
 
 /// The version of a record, its head, and the bytes behind it.
-fn head<'a>(kind: Kind, name: &str, bytes: &'a [u8]) -> Result<(u32, Head, &'a [u8]), DatabaseError> {
+fn head<'a>(kind: RecordKind, name: &str, bytes: &'a [u8]) -> Result<(u32, Head, &'a [u8]), DatabaseError> {
     let failed = |problem: String| DatabaseError::Record { kind, name: name.into(), problem };
     let (before, rest) = bytes.split_at_checked(BEFORE).ok_or_else(|| failed("damaged: it has no head".into()))?;
     let version = before[..4].iter().rev().fold(0, |number, byte| number << 8 | u32::from(*byte));
@@ -340,7 +340,7 @@ fn head<'a>(kind: Kind, name: &str, bytes: &'a [u8]) -> Result<(u32, Head, &'a [
 }
 
 /// The checksum over kind, name, version and all behind the checksum.
-fn checksum(kind: Kind, name: &str, bytes: &[u8]) -> u32 {
+fn checksum(kind: RecordKind, name: &str, bytes: &[u8]) -> u32 {
     let mut sum = crc32fast::Hasher::new();
     for part in [kind.word().as_bytes(), &[0], name.as_bytes(), &[0], &bytes[..4], &bytes[BEFORE..]] {
         sum.update(part);
@@ -356,13 +356,13 @@ pub(super) fn first_for_tests(record: &Record, content: &impl Serialize) -> Vec<
     let mut bytes = vec![1, 0, 0, 0, 0, 0, 0, 0];
     bytes.extend(encoded(&head).expect("a head"));
     bytes.extend(encoded(content).expect("a content"));
-    let sum = checksum(Kind::Material, &record.name, &bytes);
+    let sum = checksum(RecordKind::Material, &record.name, &bytes);
     bytes[4..BEFORE].copy_from_slice(&sum.to_le_bytes());
     bytes
 }
 
 #[cfg(test)]
-pub(super) fn checksum_for_tests(kind: Kind, name: &str, bytes: &[u8]) -> u32 {
+pub(super) fn checksum_for_tests(kind: RecordKind, name: &str, bytes: &[u8]) -> u32 {
     if bytes.len() < BEFORE { 0 } else { checksum(kind, name, bytes) }
 }
 

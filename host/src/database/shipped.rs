@@ -1,37 +1,37 @@
 //! The database that ships with the program: read-only, each record with its source and its terms.
 
 use super::store::unknown;
-use super::{Content, Curves, DatabaseError, Entry, Kind, Record};
+use super::{RecordContent, Curves, DatabaseError, RecordEntry, RecordKind, Record};
 use crate::color::shipped;
 use crate::color::{ColorError, Origin};
-use crate::illumination::material::{Body, Finish, Index, Metal, Transparent};
+use crate::illumination::material::{MaterialKind, Finish, RefractiveIndex, Metal, Transparent};
 use crate::mesh;
 
 /// The name of the mesh that ships.
 const BUNNY: &str = "bunny";
 
 /// The names of a kind, in the order of their tables.
-pub fn names(kind: Kind) -> Vec<&'static str> {
+pub fn names(kind: RecordKind) -> Vec<&'static str> {
     match kind {
-        Kind::Geometry => {
+        RecordKind::Geometry => {
             if cfg!(feature = "bunny") {
                 vec![BUNNY]
             } else {
                 Vec::new()
             }
         }
-        Kind::Material => [shipped::metals(), shipped::glasses(), shipped::liquids()].concat(),
-        Kind::Spectrum => {
+        RecordKind::Material => [shipped::metals(), shipped::glasses(), shipped::liquids()].concat(),
+        RecordKind::Spectrum => {
             [shipped::lights(), shipped::metals(), shipped::reflectances(), shipped::functions()].concat()
         }
-        Kind::Texture | Kind::Light | Kind::CaughtLight => Vec::new(),
+        RecordKind::Texture | RecordKind::Light | RecordKind::CaughtLight => Vec::new(),
     }
 }
 
 /// What there is, of one kind or of all.
-pub fn entries(kind: Option<Kind>) -> Vec<Entry> {
-    let all = |kind: &Kind| names(*kind).into_iter().filter_map(|name| find(*kind, name).ok()?).collect::<Vec<_>>();
-    let kinds = kind.as_ref().map_or(&Kind::ALL[..], std::slice::from_ref);
+pub fn entries(kind: Option<RecordKind>) -> Vec<RecordEntry> {
+    let all = |kind: &RecordKind| names(*kind).into_iter().filter_map(|name| find(*kind, name).ok()?).collect::<Vec<_>>();
+    let kinds = kind.as_ref().map_or(&RecordKind::ALL[..], std::slice::from_ref);
     kinds.iter().flat_map(all).map(|record| record.entry(0)).collect()
 }
 
@@ -39,7 +39,7 @@ pub fn entries(kind: Option<Kind>) -> Vec<Entry> {
 ///
 /// # Errors
 /// [`DatabaseError::Unknown`] with the names that there are.
-pub fn record(kind: Kind, name: &str) -> Result<Record, DatabaseError> {
+pub fn record(kind: RecordKind, name: &str) -> Result<Record, DatabaseError> {
     find(kind, name)?.ok_or_else(|| unknown(kind.word(), name, &names(kind)))
 }
 
@@ -47,8 +47,8 @@ pub fn record(kind: Kind, name: &str) -> Result<Record, DatabaseError> {
 ///
 /// # Errors
 /// [`DatabaseError::Record`] if what is in the program is damaged, or was left out when it was built.
-pub fn find(kind: Kind, name: &str) -> Result<Option<Record>, DatabaseError> {
-    if (kind, name) == (Kind::Geometry, BUNNY) {
+pub fn find(kind: RecordKind, name: &str) -> Result<Option<Record>, DatabaseError> {
+    if (kind, name) == (RecordKind::Geometry, BUNNY) {
         return bunny().map(Some);
     }
     if !names(kind).contains(&name) {
@@ -57,15 +57,15 @@ pub fn find(kind: Kind, name: &str) -> Result<Option<Record>, DatabaseError> {
     let failed = |error: ColorError| DatabaseError::Record { kind, name: name.into(), problem: error.to_string() };
     let origin = shipped::origin(name).unwrap_or_default();
     let made = match kind {
-        Kind::Material if shipped::metals().contains(&name) => {
-            shipped::metal(name).map(|shipped::Metal { n, k }| polished(n, k))
+        RecordKind::Material if shipped::metals().contains(&name) => {
+            shipped::metal(name).map(|shipped::ComplexIndex { n, k }| polished(n, k))
         }
-        Kind::Material if shipped::liquids().contains(&name) => {
+        RecordKind::Material if shipped::liquids().contains(&name) => {
             shipped::liquid(name).map(|liquid| clear(liquid, Transparent::LIQUID))
         }
-        Kind::Material => shipped::glass(name).map(|glass| clear(glass, 0)),
-        Kind::Spectrum => curves(name).map(Content::Spectrum),
-        Kind::Geometry | Kind::Texture | Kind::Light | Kind::CaughtLight => return Ok(None),
+        RecordKind::Material => shipped::glass(name).map(|glass| clear(glass, 0)),
+        RecordKind::Spectrum => curves(name).map(RecordContent::Spectrum),
+        RecordKind::Geometry | RecordKind::Texture | RecordKind::Light | RecordKind::CaughtLight => return Ok(None),
     };
     Ok(Some(Record { name: name.into(), origin, content: made.map_err(failed)? }))
 }
@@ -83,18 +83,18 @@ fn curves(name: &str) -> Result<Curves, ColorError> {
     }
 }
 
-fn polished(n: crate::color::Spectrum, k: crate::color::Spectrum) -> Content {
-    Content::Material(Box::new(Body::Metal(Metal { n, k, finish: Finish::Polished }).into()))
+fn polished(n: crate::color::Spectrum, k: crate::color::Spectrum) -> RecordContent {
+    RecordContent::Material(Box::new(MaterialKind::Metal(Metal { n, k, finish: Finish::Polished }).into()))
 }
 
-fn clear(substance: crate::color::Glass, priority: i32) -> Content {
-    let body = Transparent { priority, ..Transparent::clear(Index::Dispersive(substance)) };
-    Content::Material(Box::new(Body::Transparent(body).into()))
+fn clear(substance: crate::color::Glass, priority: i32) -> RecordContent {
+    let body = Transparent { priority, ..Transparent::clear(RefractiveIndex::Dispersive(substance)) };
+    RecordContent::Material(Box::new(MaterialKind::Transparent(body).into()))
 }
 
 fn bunny() -> Result<Record, DatabaseError> {
     let left_out = |error: mesh::NoBunny| DatabaseError::Record {
-        kind: Kind::Geometry,
+        kind: RecordKind::Geometry,
         name: BUNNY.into(),
         problem: error.to_string(),
     };
@@ -107,5 +107,5 @@ fn bunny() -> Result<Record, DatabaseError> {
                 use without its permission."
                 .into(),
     };
-    Ok(Record { name: BUNNY.into(), origin, content: Content::Geometry(Box::new(mesh.into())) })
+    Ok(Record { name: BUNNY.into(), origin, content: RecordContent::Geometry(Box::new(mesh.into())) })
 }

@@ -1,6 +1,6 @@
 //! The file: transactions, many readers beside one writer, and what happens when it is damaged.
 
-use super::{DatabaseError, Entry, Kind, Record};
+use super::{DatabaseError, RecordEntry, RecordKind, Record};
 use crate::spelling;
 use files::Destination;
 use redb::backends::FileBackend;
@@ -37,7 +37,7 @@ enum Handle {
     Read(ReadOnlyDatabase),
 }
 
-fn table(kind: Kind) -> TableDefinition<'static, &'static str, &'static [u8]> {
+fn table(kind: RecordKind) -> TableDefinition<'static, &'static str, &'static [u8]> {
     TableDefinition::new(kind.word())
 }
 
@@ -185,8 +185,8 @@ impl Store {
     /// Calls a function with kind, name and bytes of every record, of one transaction.
     pub(super) fn each(
         &self,
-        kinds: &[Kind],
-        mut found: impl FnMut(Kind, &str, &[u8]) -> Result<(), DatabaseError>,
+        kinds: &[RecordKind],
+        mut found: impl FnMut(RecordKind, &str, &[u8]) -> Result<(), DatabaseError>,
     ) -> Result<(), DatabaseError> {
         let failed = |error: redb::Error| failure(&self.path, error);
         guarded(&self.path, || {
@@ -209,10 +209,10 @@ impl Store {
     ///
     /// # Errors
     /// [`DatabaseError`] if the file is damaged or a later program wrote a record.
-    pub fn entries(&self, kind: Option<Kind>) -> Result<Vec<Entry>, DatabaseError> {
+    pub fn entries(&self, kind: Option<RecordKind>) -> Result<Vec<RecordEntry>, DatabaseError> {
         let mut entries = Vec::new();
-        self.each(kind.as_ref().map_or(&Kind::ALL[..], std::slice::from_ref), |kind, name, bytes| {
-            entries.push(Entry::of_bytes(kind, name, bytes)?);
+        self.each(kind.as_ref().map_or(&RecordKind::ALL[..], std::slice::from_ref), |kind, name, bytes| {
+            entries.push(RecordEntry::of_bytes(kind, name, bytes)?);
             Ok(())
         })?;
         Ok(entries)
@@ -222,7 +222,7 @@ impl Store {
     ///
     /// # Errors
     /// [`DatabaseError`] if the file is damaged.
-    pub fn names(&self, kind: Kind) -> Result<Vec<String>, DatabaseError> {
+    pub fn names(&self, kind: RecordKind) -> Result<Vec<String>, DatabaseError> {
         let mut names = Vec::new();
         self.each(&[kind], |_, name, _| {
             names.push(name.to_owned());
@@ -235,7 +235,7 @@ impl Store {
     ///
     /// # Errors
     /// [`DatabaseError::Unknown`] with the names that there are, or another one if it is damaged.
-    pub fn record(&self, kind: Kind, name: &str) -> Result<Record, DatabaseError> {
+    pub fn record(&self, kind: RecordKind, name: &str) -> Result<Record, DatabaseError> {
         match self.find(kind, name)? {
             Some(record) => Ok(record),
             None => Err(unknown(kind.word(), name, &self.names(kind)?)),
@@ -246,7 +246,7 @@ impl Store {
     ///
     /// # Errors
     /// [`DatabaseError`] if it is damaged.
-    pub fn find(&self, kind: Kind, name: &str) -> Result<Option<Record>, DatabaseError> {
+    pub fn find(&self, kind: RecordKind, name: &str) -> Result<Option<Record>, DatabaseError> {
         let failed = |error: redb::Error| failure(&self.path, error);
         guarded(&self.path, || {
             let read = self.begin()?;
@@ -267,7 +267,7 @@ impl Store {
     /// [`DatabaseError::Exists`], or the first record that is impossible, or the file cannot be written.
     pub fn add(&self, records: &[Record], replace: bool) -> Result<(), DatabaseError> {
         let rows = records.iter().map(|record| Ok((record.kind(), &*record.name, record.to_bytes()?)));
-        let rows: Vec<(Kind, &str, Vec<u8>)> = rows.collect::<Result<_, DatabaseError>>()?;
+        let rows: Vec<(RecordKind, &str, Vec<u8>)> = rows.collect::<Result<_, DatabaseError>>()?;
         self.change(|write| {
             for (kind, name, bytes) in &rows {
                 let mut table = write.open_table(table(*kind)).map_err(|error| self.failed(error.into()))?;
@@ -284,7 +284,7 @@ impl Store {
     ///
     /// # Errors
     /// [`DatabaseError::Unknown`], or the file cannot be written.
-    pub fn remove(&self, records: &[(Kind, &str)]) -> Result<(), DatabaseError> {
+    pub fn remove(&self, records: &[(RecordKind, &str)]) -> Result<(), DatabaseError> {
         self.change(|write| {
             for (kind, name) in records {
                 let mut table = write.open_table(table(*kind)).map_err(|error| self.failed(error.into()))?;
@@ -326,7 +326,7 @@ impl Store {
 
     /// Writes bytes as a record, for tests of damaged ones.
     #[cfg(test)]
-    pub(super) fn put_bytes(&self, kind: Kind, name: &str, bytes: &[u8]) -> Result<(), DatabaseError> {
+    pub(super) fn put_bytes(&self, kind: RecordKind, name: &str, bytes: &[u8]) -> Result<(), DatabaseError> {
         self.change(|write| {
             let mut table = write.open_table(table(kind)).map_err(|error| self.failed(error.into()))?;
             table.insert(name, bytes).map_err(|error| self.failed(error.into()))?;

@@ -1,14 +1,14 @@
 //! Facts about databases.
 
 use super::*;
-use crate::color::shipped::Metal;
-use crate::color::{Beyond, Color, Origin, Spectrum, shipped as colors};
+use crate::color::shipped::ComplexIndex;
+use crate::color::{Extrapolation, Color, Origin, Spectrum, shipped as colors};
 use crate::encoding::{Integers, decode, encode};
 use crate::illumination::distribution::Tabulated;
-use crate::illumination::light::{Goniometry, Light, Patch, SkyMap};
-use crate::illumination::material::{Body, Classic, Coated, Form, Index, Material, Shaped, Transparent};
-use crate::illumination::texture::{Laying, Motif, Paint, Pattern};
-use crate::mesh::{self, Grouped, Look, Mesh};
+use crate::illumination::light::{Goniometry, Light, LightShape, SkyMap};
+use crate::illumination::material::{MaterialKind, Classic, Coated, DistributionForm, RefractiveIndex, Material, Distributed, Transparent};
+use crate::illumination::texture::{TextureMapping, Motif, Paint, Pattern};
+use crate::mesh::{self, Grouped, MetallicRoughness, Mesh};
 use crate::picture::Picture;
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
@@ -23,13 +23,13 @@ fn origin() -> Origin {
     Origin { what: "A thing.".into(), source: "Ours.".into(), terms: "MIT or Apache-2.0.".into() }
 }
 
-fn record(name: &str, content: Content) -> Record {
+fn record(name: &str, content: RecordContent) -> Record {
     Record { name: name.into(), origin: origin(), content }
 }
 
 fn material(name: &str, diffuse: f64) -> Record {
     let classic = Classic { diffuse: Color::grey(diffuse).into(), ..Classic::default() };
-    record(name, Content::Material(Box::new(classic.into())))
+    record(name, RecordContent::Material(Box::new(classic.into())))
 }
 
 fn square() -> Grouped {
@@ -40,7 +40,7 @@ fn square() -> Grouped {
         corner_parameters: vec![[DVec2::new(0.25, 0.5); 3]; 2],
         surfaces: vec![0, 1],
     };
-    let look = Look { base: DVec3::new(0.1, 0.2, 0.3), metallic: 0.0, roughness: 0.5 };
+    let look = MetallicRoughness { base: DVec3::new(0.1, 0.2, 0.3), metallic: 0.0, roughness: 0.5 };
     Grouped { mesh, names: vec!["a".into(), "b".into()], looks: vec![Some(look), None] }
 }
 
@@ -57,11 +57,11 @@ fn many() -> Vec<Record> {
     let copper = colors::metal("copper").expect("copper");
     let red = Color::Spectrum(colors::reflectance("red_brick").expect("a brick"));
     let table = Tabulated::new("mine", 4, |_, view| view.z).expect("a table");
-    let glass = Index::Dispersive(colors::glass("SF11").expect("a glass"));
+    let glass = RefractiveIndex::Dispersive(colors::glass("SF11").expect("a glass"));
     let bodies = [
-        Body::Coated(Coated { diffuse: red.clone().into(), index: 1.5, roughness: 0.1.into() }),
-        Body::Shaped(Shaped { reflectance: red.clone().into(), form: Form::Table(table) }),
-        Body::Transparent(Transparent { absorption: Color::grey(0.25), ..Transparent::clear(glass) }),
+        MaterialKind::Coated(Coated { diffuse: red.clone().into(), index: 1.5, roughness: 0.1.into() }),
+        MaterialKind::Shaped(Distributed { reflectance: red.clone().into(), form: DistributionForm::Table(table) }),
+        MaterialKind::Transparent(Transparent { absorption: Color::grey(0.25), ..Transparent::clear(glass) }),
     ];
     let table = Goniometry::new(vec![0.0, 90.0], vec![0.0], vec![100.0, 0.0]).expect("a table");
     let luminaire = Light::Luminaire {
@@ -71,26 +71,26 @@ fn many() -> Vec<Record> {
         goniometry: table,
         color: Color::grey(1.0),
     };
-    let disc = Patch::Disc { center: DVec3::Y, normal: DVec3::NEG_Y, radius: 0.5 };
+    let disc = LightShape::Disc { center: DVec3::Y, normal: DVec3::NEG_Y, radius: 0.5 };
     let lights = [luminaire, Light::Area { patch: disc, radiance: red }];
     let functions = Curves::Functions(vec![("x".into(), colors::D65.clone()), ("y".into(), copper.k.clone())]);
     let mut all = vec![
-        record("square", Content::Geometry(Box::new(square()))),
-        record("checks", Content::Texture(Box::new(picture()))),
+        record("square", RecordContent::Geometry(Box::new(square()))),
+        record("checks", RecordContent::Texture(Box::new(picture()))),
         material("grey", 0.5),
-        record("D65", Content::Spectrum(Curves::Light(colors::D65.clone()))),
-        record("copper", Content::Spectrum(Curves::Metal(copper))),
-        record("functions", Content::Spectrum(functions)),
+        record("D65", RecordContent::Spectrum(Curves::Light(colors::D65.clone()))),
+        record("copper", RecordContent::Spectrum(Curves::Metal(copper))),
+        record("functions", RecordContent::Spectrum(functions)),
     ];
     let number = |index: usize, content| record(&format!("thing {index}"), content);
-    all.extend(bodies.into_iter().enumerate().map(|(i, body)| number(i, Content::Material(Box::new(body.into())))));
-    all.extend(lights.into_iter().enumerate().map(|(i, light)| number(i, Content::Light(Box::new(light)))));
-    all.push(record("beam", Content::CaughtLight(Box::new(beam()))));
+    all.extend(bodies.into_iter().enumerate().map(|(i, body)| number(i, RecordContent::Material(Box::new(body.into())))));
+    all.extend(lights.into_iter().enumerate().map(|(i, light)| number(i, RecordContent::Light(Box::new(light)))));
+    all.push(record("beam", RecordContent::CaughtLight(Box::new(beam()))));
     all
 }
 
-fn beam() -> CaughtLight {
-    let block = CaughtBlock {
+fn beam() -> StoredPhotons {
+    let block = PhotonBlock {
         aim: 1,
         number: 2,
         ways: 1024,
@@ -101,7 +101,7 @@ fn beam() -> CaughtLight {
         sides: vec![3, 77],
         combs: vec![0, 0x83],
     };
-    CaughtLight { lanes: 3, blocks: vec![block] }
+    StoredPhotons { lanes: 3, blocks: vec![block] }
 }
 
 fn filled(path: &Path) -> Vec<Record> {
@@ -121,12 +121,12 @@ fn every_kind_of_record_comes_back_to_the_last_bit() {
     }
     let entries = store.entries(None).expect("a list");
     assert_eq!(entries.len(), records.len());
-    for Entry { kind, name, summary, source, terms, bytes, .. } in entries {
+    for RecordEntry { kind, name, summary, source, terms, bytes, .. } in entries {
         let record = store.record(kind, &name).expect("it is there");
         assert_eq!((summary, &*source, &*terms), (record.content.summary(), "Ours.", "MIT or Apache-2.0."));
         assert!(bytes > 0);
     }
-    assert_eq!(Report::of(&path).expect("a report"), Report { whole: records.len(), ..Report::default() });
+    assert_eq!(DatabaseReport::of(&path).expect("a report"), DatabaseReport { whole: records.len(), ..DatabaseReport::default() });
 }
 
 #[test]
@@ -139,7 +139,7 @@ fn everything_that_ships_is_whole_and_tells_its_source() {
         let bytes = record.to_bytes().expect("it can be stored");
         assert_eq!(Record::of_bytes(entry.kind, &entry.name, &bytes).expect("whole"), record);
     }
-    let message = shipped::record(Kind::Material, "walnut").expect_err("unknown").to_string();
+    let message = shipped::record(RecordKind::Material, "walnut").expect_err("unknown").to_string();
     assert!(message.starts_with("no material is called \"walnut\"; there are copper, gold,"), "{message}");
 }
 
@@ -147,7 +147,7 @@ fn everything_that_ships_is_whole_and_tells_its_source() {
 #[cfg(not(feature = "bunny"))]
 fn a_bunny_that_was_left_out_is_told_with_the_feature() {
     assert_eq!(shipped::names(Kind::Geometry), [""; 0]);
-    let error = shipped::find(Kind::Geometry, "bunny").expect_err("it was left out").to_string();
+    let error = shipped::find(RecordKind::Geometry, "bunny").expect_err("it was left out").to_string();
     assert!(error.contains("feature `bunny`"), "{error}");
 }
 
@@ -158,13 +158,13 @@ fn a_record_is_replaced_or_removed_only_when_that_is_asked_for() {
     store.add(&[material("paint", 0.5)], false).expect("added");
     let error = store.add(&[material("other", 0.1), material("paint", 0.2)], false).expect_err("there is one");
     assert_eq!(error.to_string(), "there is a material \"paint\" already");
-    assert_eq!(store.names(Kind::Material).expect("names"), ["paint"], "nothing of the transaction is left");
+    assert_eq!(store.names(RecordKind::Material).expect("names"), ["paint"], "nothing of the transaction is left");
     store.add(&[material("paint", 0.2)], true).expect("replaced");
-    assert_eq!(store.record(Kind::Material, "paint").expect("there"), material("paint", 0.2));
-    let error = store.remove(&[(Kind::Material, "paint"), (Kind::Material, "varnish")]).expect_err("unknown");
+    assert_eq!(store.record(RecordKind::Material, "paint").expect("there"), material("paint", 0.2));
+    let error = store.remove(&[(RecordKind::Material, "paint"), (RecordKind::Material, "varnish")]).expect_err("unknown");
     assert!(error.to_string().starts_with("no material is called \"varnish\""), "{error}");
-    assert_eq!(store.names(Kind::Material).expect("names"), ["paint"]);
-    store.remove(&[(Kind::Material, "paint")]).expect("removed");
+    assert_eq!(store.names(RecordKind::Material).expect("names"), ["paint"]);
+    store.remove(&[(RecordKind::Material, "paint")]).expect("removed");
     assert_eq!(store.entries(None).expect("a list"), []);
 }
 
@@ -174,7 +174,7 @@ fn patterns_without_end_are_refused_when_they_are_read() {
     let nested = |depth: usize| {
         (0..depth).fold(plain.clone(), |paint, _| {
             let paints = vec![paint, plain.clone()];
-            Paint::Pattern(Box::new(Pattern { motif: Motif::Checker, laying: Laying::default(), paints }))
+            Paint::Pattern(Box::new(Pattern { motif: Motif::Checker, laying: TextureMapping::default(), paints }))
         })
     };
     let read = |depth: usize| {
@@ -196,7 +196,7 @@ fn names_are_checked() {
     for name in ["a", "Nußbaum", "two words", "../x", &longest] {
         store.add(&[material(name, 0.5)], false).expect(name);
     }
-    assert_eq!(store.names(Kind::Material).expect("names").len(), 5);
+    assert_eq!(store.names(RecordKind::Material).expect("names").len(), 5);
 }
 
 #[test]
@@ -207,17 +207,17 @@ fn impossible_content_is_not_stored() {
     let sky = Light::Sky { map: Some(map), radiance: Color::grey(1.0), turned: 0.0 };
     let mut open = square();
     open.mesh.triangles[0] = [0, 1, 9];
-    let bright = Spectrum::regular(400.0, 10.0, vec![0.5, 1.5], Beyond::Held).expect("a spectrum");
+    let bright = Spectrum::regular(400.0, 10.0, vec![0.5, 1.5], Extrapolation::Held).expect("a spectrum");
     for content in [
-        Content::Light(Box::new(sky)),
-        Content::Geometry(Box::new(open)),
-        Content::Spectrum(Curves::Reflectance(bright)),
-        Content::Spectrum(Curves::Functions(Vec::new())),
-        Content::CaughtLight(Box::new(CaughtLight {
-            blocks: vec![CaughtBlock { flux: vec![1.0], ..CaughtBlock::default() }],
+        RecordContent::Light(Box::new(sky)),
+        RecordContent::Geometry(Box::new(open)),
+        RecordContent::Spectrum(Curves::Reflectance(bright)),
+        RecordContent::Spectrum(Curves::Functions(Vec::new())),
+        RecordContent::CaughtLight(Box::new(StoredPhotons {
+            blocks: vec![PhotonBlock { flux: vec![1.0], ..PhotonBlock::default() }],
             ..beam()
         })),
-        Content::Material(Box::new(Material { emission: Color::grey(-1.0), ..Material::default() })),
+        RecordContent::Material(Box::new(Material { emission: Color::grey(-1.0), ..Material::default() })),
     ] {
         let error = store.add(&[record("x", content)], false).expect_err("impossible");
         assert!(matches!(error, DatabaseError::Record { .. }), "{error}");
@@ -233,12 +233,12 @@ fn a_record_of_a_later_program_is_named_and_the_others_can_be_had() {
     store.add(&[material("now", 0.5)], false).expect("added");
     let mut later = material("later", 0.5).to_bytes().expect("bytes");
     later[0] += 1;
-    store.put_bytes(Kind::Material, "later", &later).expect("written");
-    let message = store.record(Kind::Material, "later").expect_err("newer").to_string();
+    store.put_bytes(RecordKind::Material, "later", &later).expect("written");
+    let message = store.record(RecordKind::Material, "later").expect_err("newer").to_string();
     assert_eq!(message, "material \"later\" has the form 3; this program knows forms up to 2. Use a later one");
-    assert!(store.record(Kind::Material, "now").is_ok());
+    assert!(store.record(RecordKind::Material, "now").is_ok());
     drop(store);
-    let report = Report::of(&path).expect("a report");
+    let report = DatabaseReport::of(&path).expect("a report");
     assert_eq!((report.whole, report.problems.len(), report.is_whole()), (1, 1, false));
     assert_eq!(report.problems[0].name, "later");
 }
@@ -248,7 +248,7 @@ fn stored_forms_have_not_changed_without_a_new_version() {
     // When this fails, records of before cannot be read any more: raise the version of the kind, and read the old form.
     let sum = |record: &Record| crc32fast::hash(&record.to_bytes().expect("bytes"));
     // The table of a distribution holds sines, which may differ in the last bit from machine to machine.
-    let is_table = |record: &Record| record.kind() == Kind::Material && record.name == "thing 1";
+    let is_table = |record: &Record| record.kind() == RecordKind::Material && record.name == "thing 1";
     let sums: Vec<u32> = many().iter().filter(|record| !is_table(record)).map(sum).collect();
     assert_eq!(sums, SUMS, "{sums:?}");
 }
@@ -260,8 +260,8 @@ const SUMS: [u32; 11] = [
 
 #[test]
 fn materials_of_the_first_form_are_read() {
-    use super::first_materials::{Body as First, Material as FirstMaterial};
-    let glass = Index::Dispersive(colors::glass("SF11").expect("a glass"));
+    use super::first_materials::{BodyV1 as First, MaterialV1 as FirstMaterial};
+    let glass = RefractiveIndex::Dispersive(colors::glass("SF11").expect("a glass"));
     let red = Color::Spectrum(colors::reflectance("red_brick").expect("a brick"));
     let paints = || [0.0; 3].map(Paint::grey);
     let [specular, mirror, transparency] = paints();
@@ -275,20 +275,20 @@ fn materials_of_the_first_form_are_read() {
         ("thing 0", First::Coated { diffuse: red.into(), index: 1.5, roughness: 0.1 }, 4158595621),
         ("thing 2", First::Transparent { index: glass, roughness: 0.0, absorption: Color::grey(0.25) }, 3341079355),
     ] {
-        let now = many().into_iter().find(|r| r.name == name && r.kind() == Kind::Material).expect("it is there");
+        let now = many().into_iter().find(|r| r.name == name && r.kind() == RecordKind::Material).expect("it is there");
         let first = FirstMaterial { body, emission: Color::BLACK, relief: None };
         let bytes = record::first_for_tests(&now, &first);
         assert_eq!(crc32fast::hash(&bytes), sum, "{name}");
-        assert_eq!(Record::of_bytes(Kind::Material, name, &bytes).expect("whole"), now);
+        assert_eq!(Record::of_bytes(RecordKind::Material, name, &bytes).expect("whole"), now);
     }
 }
 
 #[test]
 fn a_record_under_another_name_is_damaged() {
     let bytes = material("paint", 0.5).to_bytes().expect("bytes");
-    assert!(Record::of_bytes(Kind::Material, "paint", &bytes).is_ok());
-    assert!(Record::of_bytes(Kind::Material, "pain", &bytes).is_err());
-    assert!(Record::of_bytes(Kind::Light, "paint", &bytes).is_err());
+    assert!(Record::of_bytes(RecordKind::Material, "paint", &bytes).is_ok());
+    assert!(Record::of_bytes(RecordKind::Material, "pain", &bytes).is_err());
+    assert!(Record::of_bytes(RecordKind::Light, "paint", &bytes).is_err());
 }
 
 proptest! {
@@ -304,7 +304,7 @@ proptest! {
 
     #[test]
     fn any_bytes_are_a_record_or_an_error(mut bytes in prop::collection::vec(any::<u8>(), 0..300)) {
-        for kind in Kind::ALL {
+        for kind in RecordKind::ALL {
             if let Some(version) = bytes.get_mut(..4) {
                 version.copy_from_slice(&[1, 0, 0, 0]);
             }
@@ -314,16 +314,16 @@ proptest! {
                 place.copy_from_slice(&sum.to_le_bytes());
             }
             let _ = Record::of_bytes(kind, "x", &bytes);
-            let _ = Entry::of_bytes(kind, "x", &bytes);
+            let _ = RecordEntry::of_bytes(kind, "x", &bytes);
         }
     }
 
     #[test]
     fn spectra_come_back_to_the_last_bit(values in prop::collection::vec(0.0_f64..=1.0, 2..50), first in 1.0_f64..900.0, step in 0.1_f64..20.0) {
-        let spectrum = Spectrum::regular(first, step, values, Beyond::Held).expect("a spectrum");
-        let record = record("any", Content::Spectrum(Curves::Reflectance(spectrum)));
+        let spectrum = Spectrum::regular(first, step, values, Extrapolation::Held).expect("a spectrum");
+        let record = record("any", RecordContent::Spectrum(Curves::Reflectance(spectrum)));
         let bytes = record.to_bytes().expect("bytes");
-        prop_assert_eq!(Record::of_bytes(Kind::Spectrum, "any", &bytes).expect("whole"), record);
+        prop_assert_eq!(Record::of_bytes(RecordKind::Spectrum, "any", &bytes).expect("whole"), record);
     }
 }
 
@@ -354,7 +354,7 @@ fn flipped_bytes_of_the_file_are_an_error_or_harmless_but_never_wrong() {
                 }
             }
         }
-        match Report::of(&damaged) {
+        match DatabaseReport::of(&damaged) {
             Ok(report) if report.is_whole() && report.whole == records.len() => clean += 1,
             Ok(_) | Err(_) => refused += 1,
         }
@@ -373,7 +373,7 @@ fn cut_files_and_other_files_are_errors() {
     for length in [1, 9, 100, 4096, whole.len() / 2] {
         std::fs::write(&other, &whole[..length]).expect("written");
         assert!(Store::open(&other).and_then(|store| store.entries(None)).is_err(), "{length} bytes");
-        assert!(Report::of(&other).map_or(true, |report| !report.is_whole()), "{length} bytes");
+        assert!(DatabaseReport::of(&other).map_or(true, |report| !report.is_whole()), "{length} bytes");
     }
     std::fs::write(&other, "# not a database\n".repeat(1000)).expect("written");
     assert!(matches!(Store::open(&other), Err(DatabaseError::Other { .. })));
@@ -432,7 +432,7 @@ fn a_second_writer_waits_and_is_then_told() {
         drop(first);
         second.join().expect("no panic").expect("it had its turn");
     });
-    assert_eq!(Store::open(&path).expect("there").names(Kind::Material).expect("names"), ["first", "second"]);
+    assert_eq!(Store::open(&path).expect("there").names(RecordKind::Material).expect("names"), ["first", "second"]);
 }
 
 #[test]
@@ -450,11 +450,11 @@ fn a_mesh_of_a_million_triangles_comes_back() {
         ..Mesh::default()
     };
     assert_eq!(mesh.triangles.len(), 999_698);
-    let record = record("large", Content::Geometry(Box::new(mesh.into())));
+    let record = record("large", RecordContent::Geometry(Box::new(mesh.into())));
     let folder = folder();
     let path = folder.path().join("a.redb");
     Store::open_to_write(&path).expect("a new database").add(std::slice::from_ref(&record), false).expect("added");
-    assert_eq!(Store::open(&path).expect("there").record(Kind::Geometry, "large").expect("there"), record);
+    assert_eq!(Store::open(&path).expect("there").record(RecordKind::Geometry, "large").expect("there"), record);
 }
 
 #[test]
@@ -462,11 +462,11 @@ fn files_that_are_exported_come_back_to_the_last_bit() {
     let folder = folder();
     for record in many() {
         let endings: &[&str] = match &record.content {
-            Content::Geometry(_) => &["obj"],
-            Content::Texture(_) => &["exr"],
-            Content::Spectrum(Curves::Functions(_)) => &["json"],
-            Content::Spectrum(_) => &["txt", "json"],
-            Content::CaughtLight(_) => &[],
+            RecordContent::Geometry(_) => &["obj"],
+            RecordContent::Texture(_) => &["exr"],
+            RecordContent::Spectrum(Curves::Functions(_)) => &["json"],
+            RecordContent::Spectrum(_) => &["txt", "json"],
+            RecordContent::CaughtLight(_) => &[],
             _ => &["json"],
         };
         if endings.is_empty() {
@@ -478,15 +478,15 @@ fn files_that_are_exported_come_back_to_the_last_bit() {
         for ending in endings {
             let path = folder.path().join(format!("{}.{ending}", record.name));
             write(&record, &files::Destination::of(&path).expect("a destination")).expect("written");
-            let quantity = matches!(record.content, Content::Spectrum(Curves::Light(_))).then_some(Quantity::Light);
+            let quantity = matches!(record.content, RecordContent::Spectrum(Curves::Light(_))).then_some(ColumnQuantity::Light);
             let back = read(&path, None, quantity).expect("read").pop().expect("a record");
             let mut expected = record.content.clone();
-            if let Content::Geometry(grouped) = &mut expected {
+            if let RecordContent::Geometry(grouped) = &mut expected {
                 // What glTF alone can tell.
                 grouped.looks = vec![None, None];
             }
             let mut found = back.content;
-            if let Content::Geometry(grouped) = &mut found {
+            if let RecordContent::Geometry(grouped) = &mut found {
                 grouped.looks = vec![None, None];
             }
             assert_eq!((found, &back.name), (expected, &record.name), "{ending}");
@@ -517,12 +517,12 @@ fn files_that_give_no_record_are_told_with_the_place() {
     std::fs::write(&two, "# What.\n# Source: me.\nnm oak ash\n400 0.1 0.2\n410 0.2 0.3\n").expect("written");
     let records = read(&two, None, None).expect("two records");
     assert_eq!(records.iter().map(|r| &*r.name).collect::<Vec<_>>(), ["oak", "ash"]);
-    assert!(records.iter().all(|r| r.origin.source == "me." && r.kind() == Kind::Spectrum));
+    assert!(records.iter().all(|r| r.origin.source == "me." && r.kind() == RecordKind::Spectrum));
     assert!(read(&two, Some("both"), None).is_err());
     let metal = folder.path().join("brass.txt");
     std::fs::write(&metal, "nm n k\n400 1.4 1.7\n500 1.2 2.0\n").expect("written");
     let brass = read(&metal, None, None).expect("a metal").pop().expect("one");
-    assert!(matches!(brass.content, Content::Spectrum(Curves::Metal(Metal { .. }))) && brass.name == "brass");
+    assert!(matches!(brass.content, RecordContent::Spectrum(Curves::Metal(ComplexIndex { .. }))) && brass.name == "brass");
     let mesh = folder.path().join("square.ply");
     mesh::write_grouped(&square(), &mesh::destination(&mesh).expect("a destination")).expect("written");
     assert_eq!(read(&mesh, Some("tile"), None).expect("a mesh")[0].name, "tile");

@@ -31,4 +31,4 @@ use glam::DVec3;
 ///
 /// The unit is that of the quantity: a fraction 0..=1 for reflectances, W/sr for an intensity, W/m² for an
 /// irradiance, W/(m² sr) for radiance.
-pub type Bands = DVec3;
+pub type RgbPower = DVec3;

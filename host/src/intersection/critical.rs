@@ -2,8 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
-use super::newton::{Solver, beside};
-use super::point::Place;
+use super::newton::{NewtonSolver, beside};
+use super::point::SheetCoordinates;
 
 /// Steps at most.
 const MOST_STEPS: usize = 30;
@@ -16,9 +16,9 @@ const LEVEL: f64 = 1e-7;
 
 /// A point of the first surface from which the second is at an extreme distance, or a saddle of it.
 #[derive(Clone, Copy, Debug)]
-pub struct Critical {
+pub struct CriticalPoint {
     pub at: DVec3,
-    pub places: [Place; 2],
+    pub places: [SheetCoordinates; 2],
     pub normals: [DVec3; 2],
     /// The signed distance between the surfaces, along the normal of the second.
     pub gap: f64,
@@ -28,22 +28,22 @@ pub struct Critical {
     pub curvatures: [f64; 2],
 }
 
-impl Critical {
+impl CriticalPoint {
     /// Whether the surfaces stay as near along the second direction, as far as curvatures tell.
     pub fn is_flat(&self) -> bool {
         self.curvatures[1].abs() <= FLAT * self.curvatures[0].abs()
     }
 }
 
-impl Solver<'_> {
+impl NewtonSolver<'_> {
     /// The critical point near `start`; none if there is none within `reach`.
-    pub fn critical(&self, mut places: [Place; 2], start: DVec3, reach: f64) -> Option<Critical> {
+    pub fn critical(&self, mut places: [SheetCoordinates; 2], start: DVec3, reach: f64) -> Option<CriticalPoint> {
         let mut at = start;
         let mut smallest = f64::INFINITY;
         let mut found = None;
         for _ in 0..MOST_STEPS {
             let look = self.look(&mut places, at, reach)?;
-            let Critical { directions, curvatures, .. } = look.critical;
+            let CriticalPoint { directions, curvatures, .. } = look.critical;
             let height = |k: usize| look.gradient.dot(directions[k]);
             let along = |k: usize| directions[k] * (-height(k) / curvatures[k]);
             let flat = look.critical.is_flat();
@@ -75,7 +75,7 @@ impl Solver<'_> {
     }
 
     /// The gradient of the distance on the first surface at the foot of a point, with what it would be to be critical.
-    fn look(&self, places: &mut [Place; 2], at: DVec3, reach: f64) -> Option<Look> {
+    fn look(&self, places: &mut [SheetCoordinates; 2], at: DVec3, reach: f64) -> Option<CriticalStep> {
         let (one, foot) = self.foot(0, places[0], at, reach);
         let (two, gradient, gap, other) = self.gradient(places[1], foot.point, foot.normal, reach)?;
         *places = [one, two];
@@ -95,12 +95,12 @@ impl Solver<'_> {
         let (vectors, curvatures) = principal(second[0].x, 0.5 * (second[0].y + second[1].x), second[1].y);
         let directions = vectors.map(|v| frame[0] * v.x + frame[1] * v.y);
         let normals = [normal, other];
-        let critical = Critical { at: foot.point, places: *places, normals, gap, directions, curvatures };
-        Some(Look { critical, gradient })
+        let critical = CriticalPoint { at: foot.point, places: *places, normals, gap, directions, curvatures };
+        Some(CriticalStep { critical, gradient })
     }
 
     /// Along the first surface: the place on the second, the gradient of the distance, the distance, the normal there.
-    fn gradient(&self, place: Place, at: DVec3, normal: DVec3, reach: f64) -> Option<(Place, DVec3, f64, DVec3)> {
+    fn gradient(&self, place: SheetCoordinates, at: DVec3, normal: DVec3, reach: f64) -> Option<(SheetCoordinates, DVec3, f64, DVec3)> {
         let (place, foot) = self.foot(1, place, at, reach);
         // Where the second surface ends, its distance is another function.
         let is_on_both = beside(&foot, at) <= 1e-6 * reach && normal != DVec3::ZERO && foot.normal != DVec3::ZERO;
@@ -110,8 +110,8 @@ impl Solver<'_> {
 }
 
 /// A point on the way to a critical one.
-struct Look {
-    critical: Critical,
+struct CriticalStep {
+    critical: CriticalPoint,
     gradient: DVec3,
 }
 

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::critical::Critical;
-use super::newton::{Met, Solver};
+use super::critical::CriticalPoint;
+use super::newton::{NewtonPoint, NewtonSolver};
 
 /// Steps at most.
 const MOST_STEPS: usize = 20_000;
@@ -31,12 +31,12 @@ pub enum End {
 /// - `goes_on`: whether to go on from a point.
 /// - Returns the points behind the first, and how it ended.
 pub fn follow(
-    solver: &Solver<'_>,
-    start: &Met,
+    solver: &NewtonSolver<'_>,
+    start: &NewtonPoint,
     direction: DVec3,
     longest: impl Fn(DVec3) -> f64,
-    mut goes_on: impl FnMut(&Met) -> bool,
-) -> (Vec<Met>, End) {
+    mut goes_on: impl FnMut(&NewtonPoint) -> bool,
+) -> (Vec<NewtonPoint>, End) {
     let mut points = Vec::new();
     let (mut last, mut heading, mut step) = (*start, direction, 0.25 * longest(start.at));
     while points.len() < MOST_STEPS {
@@ -72,7 +72,7 @@ pub fn follow(
 ///
 /// - `step`: from point to point, model units.
 /// - Returns the points in order, and whether the last is joined to the first.
-pub fn along_valley(solver: &Solver<'_>, start: &Critical, step: f64) -> (Vec<Critical>, bool) {
+pub fn along_valley(solver: &NewtonSolver<'_>, start: &CriticalPoint, step: f64) -> (Vec<CriticalPoint>, bool) {
     let ahead = one_way(solver, start, start.directions[1], step);
     if let (points, true) = ahead {
         return (points, true);
@@ -83,7 +83,7 @@ pub fn along_valley(solver: &Solver<'_>, start: &Critical, step: f64) -> (Vec<Cr
     (points, false)
 }
 
-fn one_way(solver: &Solver<'_>, start: &Critical, direction: DVec3, step: f64) -> (Vec<Critical>, bool) {
+fn one_way(solver: &NewtonSolver<'_>, start: &CriticalPoint, direction: DVec3, step: f64) -> (Vec<CriticalPoint>, bool) {
     let (mut points, mut heading) = (vec![*start], direction);
     while points.len() < MOST_STEPS {
         let last = points[points.len() - 1];

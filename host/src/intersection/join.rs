@@ -5,13 +5,13 @@ use std::collections::HashMap;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::critical::Critical;
+use super::critical::CriticalPoint;
 use super::follow::{End, follow};
-use super::newton::{Met, Solver};
-use super::point::{Branch, CurvePoint, Intersection, Mark, Work};
-use super::polyline::{Chain, Raw};
+use super::newton::{NewtonPoint, NewtonSolver};
+use super::point::{Branch, CurvePoint, Intersection, Mark, IntersectionCounts};
+use super::polyline::{TrianglePolyline, TrianglePolylines};
 use super::refine::between;
-use super::zone::{Kind, Valley, Zone, Zones};
+use super::zone::{ZoneKind, Valley, Zone, Zones};
 
 /// A curve that comes into a branching point leaves along one of its directions within this cosine.
 const ALIKE: f64 = 0.5;
@@ -34,7 +34,7 @@ struct Arc {
 type Tip = (usize, usize);
 
 /// Makes the curves.
-pub fn branches(solver: &Solver<'_>, raw: &Raw, zones: &Zones) -> Intersection {
+pub fn branches(solver: &NewtonSolver<'_>, raw: &TrianglePolylines, zones: &Zones) -> Intersection {
     let mut joiner = Joiner { solver, arcs: Vec::new(), goes_on: HashMap::new() };
     for chain in &raw.chains {
         joiner.cut(chain, zones);
@@ -49,21 +49,21 @@ pub fn branches(solver: &Solver<'_>, raw: &Raw, zones: &Zones) -> Intersection {
     let mut touching = Vec::new();
     for (zone, tips) in zones.all.iter().zip(tips) {
         match zone.kind {
-            Kind::Touching => touching.push(zone.center.point(Mark::Tangent, DVec3::ZERO, solver.tolerance)),
-            Kind::Branching => joiner.branch(zone, &tips),
-            Kind::Around => joiner.around(&zone.center),
-            Kind::Passing => joiner.pass(zone, &tips),
-            Kind::Valley => {}
+            ZoneKind::Touching => touching.push(zone.center.point(Mark::Tangent, DVec3::ZERO, solver.tolerance)),
+            ZoneKind::Branching => joiner.branch(zone, &tips),
+            ZoneKind::Around => joiner.around(&zone.center),
+            ZoneKind::Passing => joiner.pass(zone, &tips),
+            ZoneKind::Valley => {}
         }
     }
     zones.valleys.iter().for_each(|valley| joiner.valley(valley));
     let raw_points = joiner.arcs[..cut].iter().map(|arc| arc.points.len()).sum();
-    let work = Work { pairs: raw.pairs, coincident: raw.coincident, raw: raw_points, ..Work::default() };
+    let work = IntersectionCounts { pairs: raw.pairs, coincident: raw.coincident, raw: raw_points, ..IntersectionCounts::default() };
     Intersection { branches: joiner.joined(), touching, work }
 }
 
 struct Joiner<'a> {
-    solver: &'a Solver<'a>,
+    solver: &'a NewtonSolver<'a>,
     arcs: Vec<Arc>,
     /// Which end follows which.
     goes_on: HashMap<Tip, Tip>,
@@ -71,7 +71,7 @@ struct Joiner<'a> {
 
 impl Joiner<'_> {
     /// Cuts the zones out of a polyline, and makes the rest accurate.
-    fn cut(&mut self, chain: &Chain, zones: &Zones) {
+    fn cut(&mut self, chain: &TrianglePolyline, zones: &Zones) {
         let count = chain.points.len();
         let within: Vec<Option<usize>> = chain.points.par_iter().map(|point| zones.holding(*point)).collect();
         let solver = self.solver;
@@ -149,13 +149,13 @@ impl Joiner<'_> {
     }
 
     /// The small curve around a point where the surfaces nearly touch.
-    fn around(&mut self, center: &Critical) {
+    fn around(&mut self, center: &CriticalPoint) {
         let Some(distance) = center.crossing() else { return };
         self.closed_curve(center, center.directions[0] * distance, 0.5 * distance, usize::MAX);
     }
 
     /// A curve that passes a critical point at some offset.
-    fn closed_curve(&mut self, center: &Critical, offset: DVec3, step: f64, most: usize) {
+    fn closed_curve(&mut self, center: &CriticalPoint, offset: DVec3, step: f64, most: usize) {
         let along = center.directions[1];
         let start = self.solver.meet(center.places, center.at + offset, Some(along), offset.length());
         let mut points = vec![start.point(Mark::Regular)];
@@ -164,7 +164,7 @@ impl Joiner<'_> {
             let tangent = start.tangent();
             let direction = if tangent.dot(along) < 0.0 { -tangent } else { tangent };
             let mut count = 0;
-            let mut goes_on = |_: &Met| {
+            let mut goes_on = |_: &NewtonPoint| {
                 count += 1;
                 count < most
             };
@@ -230,7 +230,7 @@ impl Joiner<'_> {
             }
             return;
         }
-        let point = |critical: &Critical| critical.point(Mark::Tangent, critical.directions[1], self.solver.tolerance);
+        let point = |critical: &CriticalPoint| critical.point(Mark::Tangent, critical.directions[1], self.solver.tolerance);
         let arc = Arc { points: points.iter().map(point).collect(), is_closed: *is_closed, ..Arc::default() };
         self.arcs.push(arc);
     }
@@ -273,7 +273,7 @@ impl Joiner<'_> {
 }
 
 /// The accurate point for a point of a polyline: twice where it goes over a border.
-fn accurate(solver: &Solver<'_>, chain: &Chain, index: usize) -> Vec<CurvePoint> {
+fn accurate(solver: &NewtonSolver<'_>, chain: &TrianglePolyline, index: usize) -> Vec<CurvePoint> {
     let at = chain.points[index];
     let lines = chain.lines.len();
     let before = if index > 0 { Some(index - 1) } else { chain.is_closed.then(|| lines - 1) };

@@ -35,18 +35,18 @@ mod sheet;
 mod zone;
 
 pub use file::{csv, obj};
-pub use point::{Branch, CurvePoint, Failure, Intersection, Mark, Place, Precision, Work};
-pub use sheet::Sheet;
+pub use point::{Branch, CurvePoint, Inaccuracy, Intersection, Mark, SheetCoordinates, CurvePrecision, IntersectionCounts};
+pub use sheet::ExactSheet;
 
-use newton::Solver;
-use sheet::Ground;
+use newton::NewtonSolver;
+use sheet::PreparedSheet;
 
 /// Finds the curves in which two sheets meet.
 ///
 /// The result has one sequence of bytes for any number of threads.
-pub fn intersect(one: Sheet<'_>, two: Sheet<'_>, precision: &Precision) -> Intersection {
-    let grounds = [Ground::new(one), Ground::new(two)];
-    let solver = Solver::new(&grounds, precision);
+pub fn intersect(one: ExactSheet<'_>, two: ExactSheet<'_>, precision: &CurvePrecision) -> Intersection {
+    let grounds = [PreparedSheet::new(one), PreparedSheet::new(two)];
+    let solver = NewtonSolver::new(&grounds, precision);
     let raw = polyline::find(&grounds);
     let zones = zone::find(&solver, &raw);
     let mut result = join::branches(&solver, &raw, &zones);

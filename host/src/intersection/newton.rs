@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::point::{CurvePoint, Failure, Mark, Place, Precision};
-use super::sheet::{Foot, Ground};
+use super::point::{CurvePoint, Inaccuracy, Mark, SheetCoordinates, CurvePrecision};
+use super::sheet::{Foot, PreparedSheet};
 
 /// Steps at most; five are usual.
 const MOST_STEPS: usize = 40;
@@ -21,23 +21,23 @@ const ROUNDINGS: f64 = 16.0;
 const BESIDE: f64 = 1e-9;
 
 /// Finds points on the surfaces of two sheets.
-pub struct Solver<'a> {
-    pub grounds: &'a [Ground<'a>; 2],
+pub struct NewtonSolver<'a> {
+    pub grounds: &'a [PreparedSheet<'a>; 2],
     /// The residual at which a point counts as found, model units.
     pub tolerance: f64,
 }
 
 /// A point that was found, or at which an iteration ended.
 #[derive(Clone, Copy, Debug)]
-pub struct Met {
+pub struct NewtonPoint {
     pub at: DVec3,
-    pub places: [Place; 2],
+    pub places: [SheetCoordinates; 2],
     pub normals: [DVec3; 2],
     pub residual: f64,
-    pub failure: Option<Failure>,
+    pub failure: Option<Inaccuracy>,
 }
 
-impl Met {
+impl NewtonPoint {
     /// Along the curve; zero where the surfaces touch.
     pub fn tangent(&self) -> DVec3 {
         self.normals[0].cross(self.normals[1]).normalize_or_zero()
@@ -58,18 +58,18 @@ impl Met {
     }
 }
 
-impl<'a> Solver<'a> {
+impl<'a> NewtonSolver<'a> {
     /// Prepares for the sheets of `grounds`.
-    pub fn new(grounds: &'a [Ground<'a>; 2], precision: &Precision) -> Solver<'a> {
+    pub fn new(grounds: &'a [PreparedSheet<'a>; 2], precision: &CurvePrecision) -> NewtonSolver<'a> {
         let bounds = grounds.each_ref().map(|ground| ground.sheet.mesh.bounds());
         let size = bounds.iter().flatten().map(|bounds| bounds.diagonal()).fold(0.0, f64::max);
         let farthest = bounds.iter().flatten().map(|b| b.min.abs().max(b.max.abs()).max_element()).fold(0.0, f64::max);
         let newton = if precision.newton > 0.0 { precision.newton } else { 0.0 };
-        Solver { grounds, tolerance: (newton * size).max(ROUNDINGS * f64::EPSILON * farthest) }
+        NewtonSolver { grounds, tolerance: (newton * size).max(ROUNDINGS * f64::EPSILON * farthest) }
     }
 
     /// The foot of a point on a sheet, and its place there: beyond the border of the surface if a neighbour is nearer.
-    pub fn foot(&self, side: usize, place: Place, at: DVec3, reach: f64) -> (Place, Foot) {
+    pub fn foot(&self, side: usize, place: SheetCoordinates, at: DVec3, reach: f64) -> (SheetCoordinates, Foot) {
         let ground = &self.grounds[side];
         let foot = ground.foot(&place, at);
         if beside(&foot, at) > BESIDE * reach
@@ -78,19 +78,19 @@ impl<'a> Solver<'a> {
             let other = ground.foot(&next, at);
             // On the neighbour, it need not only be nearer, but lie within.
             if other.point.distance(at) < foot.point.distance(at) && beside(&other, at) < 0.5 * beside(&foot, at) {
-                return (Place { uv: other.uv, ..next }, other);
+                return (SheetCoordinates { uv: other.uv, ..next }, other);
             }
         }
-        (Place { uv: foot.uv, ..place }, foot)
+        (SheetCoordinates { uv: foot.uv, ..place }, foot)
     }
 
     /// The point near `start` on both surfaces.
     ///
     /// - `across`: a direction in which the point stays level; without one, each step is the shortest.
     /// - `reach`: how far the point may be, model units.
-    pub fn meet(&self, places: [Place; 2], start: DVec3, across: Option<DVec3>, reach: f64) -> Met {
+    pub fn meet(&self, places: [SheetCoordinates; 2], start: DVec3, across: Option<DVec3>, reach: f64) -> NewtonPoint {
         let met = self.iterate(places, start, across, reach);
-        if met.failure != Some(Failure::Beyond) {
+        if met.failure != Some(Inaccuracy::Beyond) {
             return met;
         }
         // The other surface may meet what lies behind the border, even if that bends away.
@@ -107,9 +107,9 @@ impl<'a> Solver<'a> {
         best
     }
 
-    fn iterate(&self, mut places: [Place; 2], start: DVec3, across: Option<DVec3>, reach: f64) -> Met {
+    fn iterate(&self, mut places: [SheetCoordinates; 2], start: DVec3, across: Option<DVec3>, reach: f64) -> NewtonPoint {
         let mut at = start;
-        let mut best: Option<Met> = None;
+        let mut best: Option<NewtonPoint> = None;
         let (mut stale, mut is_beside) = (0, false);
         for _ in 0..MOST_STEPS {
             let feet = [0, 1].map(|side| self.foot(side, places[side], at, reach));
@@ -120,7 +120,7 @@ impl<'a> Solver<'a> {
             if residual < last {
                 is_beside = feet.iter().any(|(_, foot)| beside(foot, at) > self.tolerance);
                 let middle = one.point.midpoint(two.point);
-                best = Some(Met { at: middle, places, normals: [one.normal, two.normal], residual, failure: None });
+                best = Some(NewtonPoint { at: middle, places, normals: [one.normal, two.normal], residual, failure: None });
             }
             stale = if residual < 0.5 * last { 0 } else { stale + 1 };
             if residual <= ENOUGH * self.tolerance || stale > 0 && last <= self.tolerance || stale >= MOST_STALE {
@@ -140,18 +140,18 @@ impl<'a> Solver<'a> {
     }
 
     /// Says what is wrong with a point, if anything is.
-    fn judged(&self, best: Option<Met>, places: [Place; 2], start: DVec3, reach: f64, is_beside: bool) -> Met {
-        let nowhere = Met { at: start, places, normals: [DVec3::ZERO; 2], residual: f64::MAX, failure: None };
+    fn judged(&self, best: Option<NewtonPoint>, places: [SheetCoordinates; 2], start: DVec3, reach: f64, is_beside: bool) -> NewtonPoint {
+        let nowhere = NewtonPoint { at: start, places, normals: [DVec3::ZERO; 2], residual: f64::MAX, failure: None };
         let mut met = best.filter(|met| met.residual.is_finite()).unwrap_or(nowhere);
         met.failure = if met.residual > self.tolerance {
             let sine = met.normals[0].cross(met.normals[1]).length();
             Some(match () {
-                () if is_beside => Failure::Beyond,
-                () if sine < NEARLY_PARALLEL => Failure::Parallel,
-                () => Failure::Slow,
+                () if is_beside => Inaccuracy::Beyond,
+                () if sine < NEARLY_PARALLEL => Inaccuracy::Parallel,
+                () => Inaccuracy::Slow,
             })
         } else if met.at.distance(start) > reach {
-            Some(Failure::Astray)
+            Some(Inaccuracy::Astray)
         } else {
             None
         };
@@ -163,7 +163,7 @@ impl<'a> Solver<'a> {
     ///
     /// - `places`: on the first sheet before and behind the border, on the second before and behind.
     /// - Returns what was found before and behind.
-    pub fn corner(&self, places: [[Place; 2]; 2], start: DVec3, reach: f64) -> Option<[Met; 2]> {
+    pub fn corner(&self, places: [[SheetCoordinates; 2]; 2], start: DVec3, reach: f64) -> Option<[NewtonPoint; 2]> {
         let [before, behind] = [0, 1].map(|k| [places[0][k], places[1][k]]);
         let side = usize::from(before[0].is_beside(&behind[0]));
         let mut three = [(side, before[side]), (side, behind[side]), (1 - side, before[1 - side])];
@@ -192,7 +192,7 @@ impl<'a> Solver<'a> {
     }
 
     /// The point near `start` at which a surface ends on the other surface; none if neither ends there.
-    pub fn border(&self, mut places: [Place; 2], start: DVec3, reach: f64) -> Option<Met> {
+    pub fn border(&self, mut places: [SheetCoordinates; 2], start: DVec3, reach: f64) -> Option<NewtonPoint> {
         let mut at = start;
         let mut outwards = None;
         let mut smallest = f64::INFINITY;
@@ -222,13 +222,13 @@ impl<'a> Solver<'a> {
     }
 
     /// The point as it stands: how far its feet are apart.
-    fn standing(&self, places: [Place; 2], at: DVec3) -> Met {
+    fn standing(&self, places: [SheetCoordinates; 2], at: DVec3) -> NewtonPoint {
         let feet = [0, 1].map(|side| self.grounds[side].foot(&places[side], at));
         let [one, two] = feet;
-        let places = [Place { uv: one.uv, ..places[0] }, Place { uv: two.uv, ..places[1] }];
+        let places = [SheetCoordinates { uv: one.uv, ..places[0] }, SheetCoordinates { uv: two.uv, ..places[1] }];
         let residual = one.point.distance(two.point).max(one.point.distance(at)).max(two.point.distance(at));
-        let failure = (residual > self.tolerance).then_some(Failure::Slow);
-        Met { at, places, normals: [one.normal, two.normal], residual, failure }
+        let failure = (residual > self.tolerance).then_some(Inaccuracy::Slow);
+        NewtonPoint { at, places, normals: [one.normal, two.normal], residual, failure }
     }
 
     /// How far a point near two triangles may be from where the triangles meet.

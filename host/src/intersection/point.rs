@@ -5,23 +5,23 @@ use glam::{DVec2, DVec3};
 
 /// How accurate a curve is to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Precision {
+pub struct CurvePrecision {
     /// The residual at which a point counts as found, as a part of the size of the bodies.
     pub newton: f64,
     /// Points are added until the curve is so near to the lines between them, model units; none are without a number.
     pub chord: Option<f64>,
 }
 
-impl Default for Precision {
+impl Default for CurvePrecision {
     /// 10^-12 of the size, and no points added.
-    fn default() -> Precision {
-        Precision { newton: 1e-12, chord: None }
+    fn default() -> CurvePrecision {
+        CurvePrecision { newton: 1e-12, chord: None }
     }
 }
 
 /// Where on a sheet a point is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct SheetCoordinates {
     /// A triangle that is near.
     pub triangle: u32,
     /// The surface that the triangle names; none where only the triangle is known.
@@ -30,9 +30,9 @@ pub struct Place {
     pub uv: DVec2,
 }
 
-impl Place {
+impl SheetCoordinates {
     /// Whether two places are on one surface.
-    pub fn is_beside(&self, other: &Place) -> bool {
+    pub fn is_beside(&self, other: &SheetCoordinates) -> bool {
         self.surface == other.surface && (self.surface.is_some() || self.triangle == other.triangle)
     }
 }
@@ -67,7 +67,7 @@ impl Mark {
 
 /// Why a point is not accurate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Failure {
+pub enum Inaccuracy {
     /// The planes that touch the surfaces are nearly one.
     #[error("the surfaces have nearly one tangent plane here")]
     Parallel,
@@ -88,7 +88,7 @@ pub struct CurvePoint {
     /// Where it is, model units: the middle between the points of both surfaces.
     pub position: DVec3,
     /// The parameters on both.
-    pub places: [Place; 2],
+    pub places: [SheetCoordinates; 2],
     /// The distance between the points of both surfaces, model units.
     pub residual: f64,
     /// The direction in which the branch goes on, unit length.
@@ -98,7 +98,7 @@ pub struct CurvePoint {
     /// What is special about it.
     pub mark: Mark,
     /// Why it is not accurate, if it is not.
-    pub failure: Option<Failure>,
+    pub failure: Option<Inaccuracy>,
 }
 
 /// A connected curve.
@@ -125,7 +125,7 @@ impl Branch {
 
 /// Work done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Work {
+pub struct IntersectionCounts {
     /// Pairs of triangles whose boxes touch, or nearly do.
     pub pairs: usize,
     /// Pairs of triangles that overlap in one plane; curves are found only where such regions end.
@@ -146,7 +146,7 @@ pub struct Intersection {
     /// Points in which the surfaces touch and have no others in common nearby.
     pub touching: Vec<CurvePoint>,
     /// Work done.
-    pub work: Work,
+    pub work: IntersectionCounts,
 }
 
 impl Intersection {

@@ -4,15 +4,15 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-use super::sheet::Ground;
+use super::sheet::PreparedSheet;
 use crate::mesh::{Mesh, bits};
 use crate::numeric::bounds::Bounds;
-use crate::octree::Sorted;
-use crate::solid::boolean::{Contact, Face, Key};
+use crate::octree::TriangleBvh;
+use crate::solid::boolean::{Contact, ConvexFace, PointKey};
 
 /// A run of points, and the triangles of both sheets between each and the next.
 #[derive(Clone, Debug, Default)]
-pub struct Chain {
+pub struct TrianglePolyline {
     /// The points.
     pub points: Vec<DVec3>,
     /// The triangles, one pair for each line.
@@ -23,9 +23,9 @@ pub struct Chain {
 
 /// What the triangles tell.
 #[derive(Clone, Debug, Default)]
-pub struct Raw {
+pub struct TrianglePolylines {
     /// The polylines.
-    pub chains: Vec<Chain>,
+    pub chains: Vec<TrianglePolyline>,
     /// Pairs of triangles whose surfaces may touch, one for each triangle and surface of the other sheet.
     pub near: Vec<[u32; 2]>,
     /// Pairs looked at.
@@ -41,20 +41,20 @@ struct Line {
 }
 
 /// Finds them.
-pub fn find(grounds: &[Ground<'_>; 2]) -> Raw {
+pub fn find(grounds: &[PreparedSheet<'_>; 2]) -> TrianglePolylines {
     let pairs = near_pairs(grounds);
-    let mut raw = Raw { pairs: pairs.len(), ..Raw::default() };
+    let mut raw = TrianglePolylines { pairs: pairs.len(), ..TrianglePolylines::default() };
     let names = Names::new([grounds[0].sheet.mesh, grounds[1].sheet.mesh]);
     let contact = |pair: &[u32; 2]| {
         let faces = [0, 1].map(|k| names.face(k, pair[k]));
         let [Some(one), Some(two)] = faces else { return None };
         let contact = Contact::of(&one, &two);
-        let keys: Vec<Key> = contact.points.iter().map(|point| point.key).collect();
+        let keys: Vec<PointKey> = contact.points.iter().map(|point| point.key).collect();
         (keys.len() > 1).then_some((*pair, keys, contact.coplanar))
     };
     let contacts: Vec<_> = pairs.par_iter().with_min_len(256).filter_map(contact).collect();
     let mut points: Vec<DVec3> = Vec::new();
-    let mut of_key: HashMap<Key, u32> = HashMap::new();
+    let mut of_key: HashMap<PointKey, u32> = HashMap::new();
     let mut known: HashMap<[u32; 2], ()> = HashMap::new();
     let mut lines: Vec<Line> = Vec::new();
     for (triangles, keys, coplanar) in contacts {
@@ -79,7 +79,7 @@ pub fn find(grounds: &[Ground<'_>; 2]) -> Raw {
 }
 
 /// Pairs of triangles whose boxes touch when each is wider by what its surface may be away.
-fn near_pairs(grounds: &[Ground<'_>; 2]) -> Vec<[u32; 2]> {
+fn near_pairs(grounds: &[PreparedSheet<'_>; 2]) -> Vec<[u32; 2]> {
     let boxes = grounds.each_ref().map(|ground| {
         let mesh = ground.sheet.mesh;
         let widened = |triangle: usize| {
@@ -91,13 +91,13 @@ fn near_pairs(grounds: &[Ground<'_>; 2]) -> Vec<[u32; 2]> {
     });
     let [one, two] = boxes.each_ref().map(|boxes| {
         let triangles: Vec<[u32; 3]> = (0..boxes.len() as u32).map(|k| [2 * k, 2 * k + 1, 2 * k + 1]).collect();
-        Sorted::new(boxes.as_flattened(), &triangles)
+        TriangleBvh::new(boxes.as_flattened(), &triangles)
     });
     one.pairs(&two)
 }
 
 /// Pairs of triangles whose surfaces may have a common tangent plane and be as near as their triangles are to them.
-fn touching(grounds: &[Ground<'_>; 2], pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
+fn touching(grounds: &[PreparedSheet<'_>; 2], pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
     let may_touch = |pair: &&[u32; 2]| {
         let sagittas = [0, 1].map(|k| grounds[k].sagitta(pair[k]));
         let reach = sagittas[0] + sagittas[1];
@@ -150,19 +150,19 @@ impl<'a> Names<'a> {
     }
 
     /// A triangle as contacts know it; none if it has no area.
-    fn face(&self, side: usize, triangle: u32) -> Option<Face> {
+    fn face(&self, side: usize, triangle: u32) -> Option<ConvexFace> {
         let corners = self.meshes[side].corners(triangle as usize);
         let vertices = self.meshes[side].triangles[triangle as usize].map(|v| self.names[side][v as usize]);
         let id = if side == 0 { triangle } else { self.meshes[0].triangles.len() as u32 + triangle };
-        Face::new(id, vertices, corners)
+        ConvexFace::new(id, vertices, corners)
     }
 
     /// About where a point is that two triangles have in common.
-    fn position(&self, key: Key, triangles: [u32; 2]) -> DVec3 {
+    fn position(&self, key: PointKey, triangles: [u32; 2]) -> DVec3 {
         let at = |vertex: u32| self.places[vertex as usize];
         match key {
-            Key::Vertex(vertex) => at(vertex),
-            Key::Pierced([a, b], face) => {
+            PointKey::Vertex(vertex) => at(vertex),
+            PointKey::Pierced([a, b], face) => {
                 let first = self.meshes[0].triangles.len() as u32;
                 let side = usize::from(face >= first);
                 let [p, q, r] = self.meshes[side].corners((face - if side == 0 { 0 } else { first }) as usize);
@@ -170,14 +170,14 @@ impl<'a> Names<'a> {
                 let (low, high) = ((at(a) - p).dot(normal), (at(b) - p).dot(normal));
                 at(a).lerp(at(b), part(low, low - high))
             }
-            Key::Edges([a, b], [c, d]) => {
+            PointKey::Edges([a, b], [c, d]) => {
                 // Where the first is nearest to the second.
                 let (along, other, offset) = (at(b) - at(a), at(d) - at(c), at(c) - at(a));
                 let normal = along.cross(other);
                 at(a).lerp(at(b), part(offset.cross(other).dot(normal), normal.length_squared()))
             }
             // Contacts of two triangles have no such points.
-            Key::Faces(_) => self.meshes[0].corners(triangles[0] as usize)[0],
+            PointKey::Faces(_) => self.meshes[0].corners(triangles[0] as usize)[0],
         }
     }
 }
@@ -188,7 +188,7 @@ fn part(over: f64, under: f64) -> f64 {
 }
 
 /// Lines as runs that end where other than two of them meet.
-fn chains(points: &[DVec3], lines: &[Line]) -> Vec<Chain> {
+fn chains(points: &[DVec3], lines: &[Line]) -> Vec<TrianglePolyline> {
     let mut at: Vec<Vec<u32>> = vec![Vec::new(); points.len()];
     for (line, index) in lines.iter().zip(0..) {
         line.ends.iter().for_each(|&end| at[end as usize].push(index));
@@ -196,7 +196,7 @@ fn chains(points: &[DVec3], lines: &[Line]) -> Vec<Chain> {
     let mut is_used = vec![false; lines.len()];
     let mut chains = Vec::new();
     let mut walk = |first: u32, line: u32| {
-        let mut chain = Chain { points: vec![points[first as usize]], ..Chain::default() };
+        let mut chain = TrianglePolyline { points: vec![points[first as usize]], ..TrianglePolyline::default() };
         let (mut here, mut line) = (first, line);
         while !std::mem::replace(&mut is_used[line as usize], true) {
             let Line { ends, triangles } = &lines[line as usize];

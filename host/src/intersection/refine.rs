@@ -3,8 +3,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::newton::Solver;
-use super::point::{Branch, CurvePoint, Failure, Intersection, Mark, Precision};
+use super::newton::NewtonSolver;
+use super::point::{Branch, CurvePoint, Inaccuracy, Intersection, Mark, CurvePrecision};
 
 /// How often a gap is halved at most.
 const MOST_HALVINGS: u32 = 16;
@@ -12,7 +12,7 @@ const MOST_HALVINGS: u32 = 16;
 const SAGITTA: f64 = 1.5 / 8.0;
 
 /// Takes out points that lie behind their followers, turns tangents along the branches, and adds points.
-pub fn refine(solver: &Solver<'_>, precision: &Precision, intersection: &mut Intersection) {
+pub fn refine(solver: &NewtonSolver<'_>, precision: &CurvePrecision, intersection: &mut Intersection) {
     let branches = std::mem::take(&mut intersection.branches);
     let filled = |branch: Branch| {
         let branch = directed(settled(branch));
@@ -37,7 +37,7 @@ fn settled(branch: Branch) -> Branch {
         let behind = (next.position - point.position).dot(point.tangent);
         // Behind a corner the surface has ended: what is looked for there stands before the corner.
         let is_superseded =
-            point.failure == Some(Failure::Beyond) && [last, next].iter().any(|other| other.mark == Mark::Corner);
+            point.failure == Some(Inaccuracy::Beyond) && [last, next].iter().any(|other| other.mark == Mark::Corner);
         let is_kept = point.mark != Mark::Regular || point.failure.is_some() && !is_superseded;
         is_kept || before * behind > 0.0
     };
@@ -90,7 +90,7 @@ fn directed(mut branch: Branch) -> Branch {
 }
 
 /// Adds points until lines are near to the curve; how many, and how many gaps got none.
-fn fill(solver: &Solver<'_>, chord: f64, branch: Branch) -> (Branch, [usize; 2]) {
+fn fill(solver: &NewtonSolver<'_>, chord: f64, branch: Branch) -> (Branch, [usize; 2]) {
     let Branch { points, is_closed } = branch;
     let gaps = if is_closed { points.len() } else { points.len().saturating_sub(1) };
     let inner = |index: usize| {
@@ -113,7 +113,7 @@ fn fill(solver: &Solver<'_>, chord: f64, branch: Branch) -> (Branch, [usize; 2])
 }
 
 /// The points between two of which the tangents may point either way.
-pub fn between(solver: &Solver<'_>, chord: f64, ends: [&CurvePoint; 2]) -> Vec<CurvePoint> {
+pub fn between(solver: &NewtonSolver<'_>, chord: f64, ends: [&CurvePoint; 2]) -> Vec<CurvePoint> {
     let way = ends[1].position - ends[0].position;
     let [from, to] = ends.map(|point| {
         let tangent = if point.tangent.dot(way) < 0.0 { -point.tangent } else { point.tangent };
@@ -126,7 +126,7 @@ pub fn between(solver: &Solver<'_>, chord: f64, ends: [&CurvePoint; 2]) -> Vec<C
 
 /// Adds the points between two; how many gaps got none.
 fn divide(
-    solver: &Solver<'_>,
+    solver: &NewtonSolver<'_>,
     chord: f64,
     [from, to]: [&CurvePoint; 2],
     halvings: u32,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use super::Place;
+use super::SheetCoordinates;
 use crate::mesh::Mesh;
 use crate::mesh::edges::{EdgeTable, EdgeUse};
 use crate::numeric::triangle::weights;
@@ -20,21 +20,21 @@ const SAGITTA_MARGIN: f64 = 1.5;
 /// A triangle knows it if it names a surface that is there, and the parameters of its corners on it. Every other triangle
 /// is taken for a part of its plane.
 #[derive(Clone, Copy)]
-pub struct Sheet<'a> {
+pub struct ExactSheet<'a> {
     pub(super) mesh: &'a Mesh,
     surfaces: &'a [Option<Arc<dyn Surface>>],
 }
 
-impl<'a> Sheet<'a> {
+impl<'a> ExactSheet<'a> {
     /// The triangles of a mesh, and the surfaces that they name.
-    pub fn new(mesh: &'a Mesh, surfaces: &'a [Option<Arc<dyn Surface>>]) -> Sheet<'a> {
-        Sheet { mesh, surfaces }
+    pub fn new(mesh: &'a Mesh, surfaces: &'a [Option<Arc<dyn Surface>>]) -> ExactSheet<'a> {
+        ExactSheet { mesh, surfaces }
     }
 }
 
-impl<'a> From<&'a ExactSolid> for Sheet<'a> {
-    fn from(solid: &'a ExactSolid) -> Sheet<'a> {
-        Sheet::new(solid.solid().mesh(), solid.surfaces())
+impl<'a> From<&'a ExactSolid> for ExactSheet<'a> {
+    fn from(solid: &'a ExactSolid) -> ExactSheet<'a> {
+        ExactSheet::new(solid.solid().mesh(), solid.surfaces())
     }
 }
 
@@ -53,16 +53,16 @@ struct Crossing {
 }
 
 /// A sheet that is prepared for many questions.
-pub(super) struct Ground<'a> {
-    pub sheet: Sheet<'a>,
+pub(super) struct PreparedSheet<'a> {
+    pub sheet: ExactSheet<'a>,
     /// For each surface the ways to others, and to its own other end.
     crossings: HashMap<u32, Vec<Crossing>>,
 }
 
-impl<'a> Ground<'a> {
-    pub fn new(sheet: Sheet<'a>) -> Ground<'a> {
+impl<'a> PreparedSheet<'a> {
+    pub fn new(sheet: ExactSheet<'a>) -> PreparedSheet<'a> {
         let mesh = sheet.mesh;
-        let mut ground = Ground { sheet, crossings: HashMap::new() };
+        let mut ground = PreparedSheet { sheet, crossings: HashMap::new() };
         if mesh.surfaces.is_empty() || mesh.corner_parameters.is_empty() {
             return ground;
         }
@@ -96,19 +96,19 @@ impl<'a> Ground<'a> {
     }
 
     /// Where a point near a triangle is taken to be on its surface.
-    pub fn place(&self, triangle: u32, at: DVec3) -> Place {
+    pub fn place(&self, triangle: u32, at: DVec3) -> SheetCoordinates {
         let [a, b, c] = weights(self.sheet.mesh.corners(triangle as usize), at);
         match self.surface(triangle) {
             Some((surface, _)) => {
                 let [p, q, r] = self.sheet.mesh.corner_parameters[triangle as usize];
-                Place { triangle, surface: Some(surface), uv: p * a + q * b + r * c }
+                SheetCoordinates { triangle, surface: Some(surface), uv: p * a + q * b + r * c }
             }
-            None => Place { triangle, surface: None, uv: DVec2::new(b, c) },
+            None => SheetCoordinates { triangle, surface: None, uv: DVec2::new(b, c) },
         }
     }
 
     /// The nearest point on the surface of a place.
-    pub fn foot(&self, place: &Place, at: DVec3) -> Foot {
+    pub fn foot(&self, place: &SheetCoordinates, at: DVec3) -> Foot {
         if let Some((_, surface)) = self.surface(place.triangle) {
             let uv = surface.nearest(at, place.uv);
             return Foot { point: surface.point(uv), normal: surface.normal(uv), uv };
@@ -121,7 +121,7 @@ impl<'a> Ground<'a> {
     }
 
     /// The place on a neighbour of the surface that is nearest to a point beyond its border; none if it has no neighbour.
-    pub fn beyond(&self, place: &Place, at: DVec3) -> Option<Place> {
+    pub fn beyond(&self, place: &SheetCoordinates, at: DVec3) -> Option<SheetCoordinates> {
         let ways = self.crossings.get(&place.surface?)?;
         let distance = |way: &Crossing| way.middle.distance_squared(at);
         let way = ways.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;

@@ -38,8 +38,8 @@ impl Open {
         Open::new(&[Parallelogram::new(at - u - v, u * 2.0, v * 2.0)], 1.0)
     }
 
-    fn sheet(&self) -> Sheet<'_> {
-        Sheet::new(&self.mesh, &self.surfaces)
+    fn sheet(&self) -> ExactSheet<'_> {
+        ExactSheet::new(&self.mesh, &self.surfaces)
     }
 }
 
@@ -47,8 +47,8 @@ fn level(y: f64, half: f64) -> Open {
     Open::square(DVec3::Y * y, DVec3::Z, DVec3::X, half)
 }
 
-fn curves<'a>(one: impl Into<Sheet<'a>>, two: impl Into<Sheet<'a>>) -> Intersection {
-    intersect(one.into(), two.into(), &Precision::default())
+fn curves<'a>(one: impl Into<ExactSheet<'a>>, two: impl Into<ExactSheet<'a>>) -> Intersection {
+    intersect(one.into(), two.into(), &CurvePrecision::default())
 }
 
 /// Checks that every point is accurate and on some implicit surfaces, and gives the branches as lengths of cycles.
@@ -102,7 +102,7 @@ fn points_are_added_until_the_lines_are_near_to_the_curve() {
         solid(sphere(0.8).unwrap(), 0.02, moved(0.9, 0.4, 0.2)),
     );
     for chord in [1e-2, 1e-4, 1e-6] {
-        let precision = Precision { chord: Some(chord), ..Precision::default() };
+        let precision = CurvePrecision { chord: Some(chord), ..CurvePrecision::default() };
         let found = intersect((&one).into(), (&two).into(), &precision);
         assert!(found.branches.len() == 1 && found.work.unfilled == 0);
         let center = DVec3::new(0.9, 0.4, 0.2);
@@ -232,7 +232,7 @@ fn the_tangent_plane_through_the_middle_of_a_torus_cuts_villarceaus_circles() {
 fn a_sphere_that_rests_on_a_plane_touches_it_in_one_point() {
     let at = DVec3::new(0.3, 1.0, -0.2);
     let ball = solid(sphere(1.0).unwrap(), 0.01, DAffine3::from_translation(at) * DAffine3::from_rotation_z(0.7));
-    for (one, two) in [(Sheet::from(&ball), level(0.0, 50.0)), (Sheet::from(&ball), level(0.0, 1.5))] {
+    for (one, two) in [(ExactSheet::from(&ball), level(0.0, 50.0)), (ExactSheet::from(&ball), level(0.0, 1.5))] {
         for found in [curves(one, two.sheet()), curves(two.sheet(), one)] {
             assert!(found.branches.is_empty(), "{:?}", found.branches.len());
             assert_eq!(found.touching.len(), 1);
@@ -337,7 +337,7 @@ fn results_and_bare_meshes_are_sides_too() {
     let (mesh, _) = ring.into_parts();
     let bare = Mesh { vertices: mesh.vertices, triangles: mesh.triangles, ..Mesh::default() };
     let cut = level(0.1, 2.0);
-    let found = curves(Sheet::new(&bare, &[]), cut.sheet());
+    let found = curves(ExactSheet::new(&bare, &[]), cut.sheet());
     assert_eq!(found.branches.len(), 2);
     check(&found, &[&|p| p.y - 0.1], 1e-14, 1e-14);
 }

@@ -3,11 +3,11 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::critical::Critical;
+use super::critical::CriticalPoint;
 use super::follow::along_valley;
-use super::newton::{Met, Solver};
-use super::point::{CurvePoint, Failure, Mark};
-use super::polyline::Raw;
+use super::newton::{NewtonPoint, NewtonSolver};
+use super::point::{CurvePoint, Inaccuracy, Mark};
+use super::polyline::TrianglePolylines;
 
 /// Triangles are trusted from where the surfaces part by so many times what the triangles are away from them.
 const TRUST: f64 = 16.0;
@@ -18,7 +18,7 @@ const SAME: f64 = 1e-3;
 
 /// What a critical point of the distance is for the curves around it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum ZoneKind {
     /// The surfaces touch, and part all around.
     Touching,
     /// The surfaces touch, and two curves cross.
@@ -34,8 +34,8 @@ pub enum Kind {
 /// A critical point, and how far around it triangles are not trusted.
 #[derive(Clone, Debug)]
 pub struct Zone {
-    pub center: Critical,
-    pub kind: Kind,
+    pub center: CriticalPoint,
+    pub kind: ZoneKind,
     /// Where the surfaces are farther apart than half of this, model units, triangles are trusted.
     level: f64,
     /// What the triangles are away from the surfaces, or the surfaces from each other.
@@ -49,7 +49,7 @@ pub struct Zone {
 /// A curve along which the distance does not change.
 #[derive(Clone, Debug)]
 pub struct Valley {
-    pub points: Vec<Critical>,
+    pub points: Vec<CriticalPoint>,
     pub is_closed: bool,
     pub reach: f64,
 }
@@ -62,7 +62,7 @@ pub struct Zones {
 }
 
 impl Zone {
-    fn new(found: &Found, kind: Kind, tolerance: f64) -> Zone {
+    fn new(found: &ZoneCandidate, kind: ZoneKind, tolerance: f64) -> Zone {
         let error = found.error.max(found.critical.gap.abs()).max(100.0 * tolerance);
         let (level, extent) = (TRUST * error, 4.0 * found.reach);
         Zone { center: found.critical, kind, level, error, extent, reach: found.reach }
@@ -93,17 +93,17 @@ impl Zone {
     }
 }
 
-impl Critical {
+impl CriticalPoint {
     /// The point of a curve.
     pub fn point(&self, mark: Mark, tangent: DVec3, tolerance: f64) -> CurvePoint {
         let residual = self.gap.abs();
-        let failure = (residual > tolerance).then_some(Failure::Parallel);
-        CurvePoint { tangent, ..Met { failure, residual, ..self.met() }.point(mark) }
+        let failure = (residual > tolerance).then_some(Inaccuracy::Parallel);
+        CurvePoint { tangent, ..NewtonPoint { failure, residual, ..self.met() }.point(mark) }
     }
 
     /// As a beginning of other points.
-    pub fn met(&self) -> Met {
-        Met { at: self.at, places: self.places, normals: self.normals, residual: self.gap.abs(), failure: None }
+    pub fn met(&self) -> NewtonPoint {
+        NewtonPoint { at: self.at, places: self.places, normals: self.normals, residual: self.gap.abs(), failure: None }
     }
 
     /// The distances from it along the direction of the greater curvature at which the surfaces cross; none if they do not.
@@ -114,15 +114,15 @@ impl Critical {
 }
 
 /// A critical point, with what its triangles are.
-struct Found {
-    critical: Critical,
+struct ZoneCandidate {
+    critical: CriticalPoint,
     /// What the triangles are away from the surfaces.
     error: f64,
     reach: f64,
 }
 
 /// Finds them from pairs of triangles.
-pub fn find(solver: &Solver<'_>, raw: &Raw) -> Zones {
+pub fn find(solver: &NewtonSolver<'_>, raw: &TrianglePolylines) -> Zones {
     let search = |pair: &[u32; 2]| {
         let [one, two] = [0, 1].map(|k| solver.grounds[k].reach(pair[k]));
         let small = usize::from(one > two);
@@ -134,9 +134,9 @@ pub fn find(solver: &Solver<'_>, raw: &Raw) -> Zones {
         let critical = solver.critical(places, start, reach)?;
         let is_near = critical.gap.abs() <= 2.0 * error + solver.tolerance;
         let is_bent = critical.curvatures[0].abs() * reach > COINCIDENT;
-        (is_near && is_bent).then_some(Found { critical, error, reach })
+        (is_near && is_bent).then_some(ZoneCandidate { critical, error, reach })
     };
-    let found: Vec<Found> = raw.near.par_iter().filter_map(search).collect();
+    let found: Vec<ZoneCandidate> = raw.near.par_iter().filter_map(search).collect();
     let mut zones = Zones::default();
     for found in &found {
         zones.add(solver, found);
@@ -146,18 +146,18 @@ pub fn find(solver: &Solver<'_>, raw: &Raw) -> Zones {
 }
 
 impl Zones {
-    fn add(&mut self, solver: &Solver<'_>, found: &Found) {
-        let Found { critical, reach, .. } = found;
+    fn add(&mut self, solver: &NewtonSolver<'_>, found: &ZoneCandidate) {
+        let ZoneCandidate { critical, reach, .. } = found;
         let near = |at: DVec3, part: f64| at.distance(critical.at) <= part * reach;
         let is_known =
-            self.all.iter().any(|zone| near(zone.center.at, if zone.kind == Kind::Valley { 0.3 } else { SAME }));
+            self.all.iter().any(|zone| near(zone.center.at, if zone.kind == ZoneKind::Valley { 0.3 } else { SAME }));
         if is_known {
             return;
         }
         if critical.is_flat() {
             let (points, is_closed) = along_valley(solver, critical, reach / 6.0);
-            let zone = |critical: &Critical| {
-                Zone::new(&Found { critical: *critical, ..*found }, Kind::Valley, solver.tolerance)
+            let zone = |critical: &CriticalPoint| {
+                Zone::new(&ZoneCandidate { critical: *critical, ..*found }, ZoneKind::Valley, solver.tolerance)
             };
             self.all.extend(points.iter().map(zone));
             self.valleys.push(Valley { points, is_closed, reach: *reach });
@@ -165,10 +165,10 @@ impl Zones {
         }
         let touches = critical.gap.abs() <= solver.tolerance;
         let kind = match (critical.curvatures[0] * critical.curvatures[1] > 0.0, touches) {
-            (true, true) => Kind::Touching,
-            (true, false) => Kind::Around,
-            (false, true) => Kind::Branching,
-            (false, false) => Kind::Passing,
+            (true, true) => ZoneKind::Touching,
+            (true, false) => ZoneKind::Around,
+            (false, true) => ZoneKind::Branching,
+            (false, false) => ZoneKind::Passing,
         };
         self.all.push(Zone::new(found, kind, solver.tolerance));
     }
@@ -176,8 +176,8 @@ impl Zones {
     /// Keeps zones apart.
     fn part(&mut self) {
         let centers: Vec<(DVec3, bool)> =
-            self.all.iter().map(|zone| (zone.center.at, zone.kind == Kind::Valley)).collect();
-        for (index, zone) in self.all.iter_mut().enumerate().filter(|(_, zone)| zone.kind != Kind::Valley) {
+            self.all.iter().map(|zone| (zone.center.at, zone.kind == ZoneKind::Valley)).collect();
+        for (index, zone) in self.all.iter_mut().enumerate().filter(|(_, zone)| zone.kind != ZoneKind::Valley) {
             let others = centers.iter().enumerate().filter(|(other, (_, in_valley))| *other != index && !in_valley);
             let nearest = others.map(|(_, (at, _))| at.distance(zone.center.at)).fold(f64::INFINITY, f64::min);
             zone.extent = zone.extent.min(0.45 * nearest);

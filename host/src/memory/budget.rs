@@ -15,7 +15,7 @@ static LIMIT: AtomicU64 = AtomicU64::new(u64::MAX);
     "{what} would take {} of memory, and {} of {} are left (--memory SIZE sets how much there is)",
     readable(*bytes), readable(*left), readable(*limit)
 )]
-pub struct Excess {
+pub struct MemoryExceeded {
     /// What was to be done.
     pub what: String,
     /// Bytes that it would take.
@@ -55,12 +55,12 @@ pub fn left() -> u64 {
 ///
 /// # Errors
 /// [`Excess`] where fewer are left.
-pub fn ask(bytes: u64, what: impl FnOnce() -> String) -> Result<(), Excess> {
+pub fn ask(bytes: u64, what: impl FnOnce() -> String) -> Result<(), MemoryExceeded> {
     let left = left();
     if bytes <= left {
         return Ok(());
     }
-    Err(Excess { what: what(), bytes, left, limit: limit().unwrap_or(left) })
+    Err(MemoryExceeded { what: what(), bytes, left, limit: limit().unwrap_or(left) })
 }
 
 /// Most bytes that the process held at once, as the system saw it: code and stacks are in it. On systems that do not tell,
@@ -124,7 +124,7 @@ mod tests {
 
     #[test]
     fn a_refusal_says_what_would_be_needed() {
-        let excess = Excess { what: "a.png".into(), bytes: 5 << 30, left: 200 << 20, limit: 256 << 20 };
+        let excess = MemoryExceeded { what: "a.png".into(), bytes: 5 << 30, left: 200 << 20, limit: 256 << 20 };
         let text = "a.png would take 5.00 GiB of memory, and 200 MiB of 256 MiB are left (--memory SIZE sets how much there is)";
         assert_eq!(excess.to_string(), text);
     }

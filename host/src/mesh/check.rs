@@ -2,7 +2,7 @@
 
 use super::edges::EdgeTable;
 use super::triangles::MAX_COUNT;
-use super::{Fault, Mesh, Place, Problem};
+use super::{Fault, Mesh, FaultLocation, MeshProblem};
 
 /// What the edges say of a mesh. Vertices at the same position (same bits) count as one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -45,18 +45,18 @@ impl Mesh {
     pub fn validate(&self) -> Result<(), Fault> {
         for (what, count) in [("vertices", self.vertices.len()), ("triangles", self.triangles.len())] {
             if count > MAX_COUNT {
-                let problem = Problem::TooMany { what, count: count as u64, limit: MAX_COUNT as u64 };
-                return Err(Place::Mesh.fault(problem));
+                let problem = MeshProblem::TooMany { what, count: count as u64, limit: MAX_COUNT as u64 };
+                return Err(FaultLocation::Mesh.fault(problem));
             }
         }
         if let Some(vertex) = self.vertices.iter().position(|position| !position.is_finite()) {
-            return Err(Place::Vertex(vertex).fault(Problem::NotFinite));
+            return Err(FaultLocation::Vertex(vertex).fault(MeshProblem::NotFinite));
         }
         let count = self.vertices.len();
         for (triangle, corners) in self.triangles.iter().enumerate() {
             if let Some(&index) = corners.iter().find(|&&index| index as usize >= count) {
-                let problem = Problem::Index { index: index.into(), count, table: "vertices" };
-                return Err(Place::Triangle(triangle).fault(problem));
+                let problem = MeshProblem::Index { index: index.into(), count, table: "vertices" };
+                return Err(FaultLocation::Triangle(triangle).fault(problem));
             }
         }
         let triangles = self.triangles.len();
@@ -66,7 +66,7 @@ impl Mesh {
             ("surfaces", self.surfaces.len()),
         ];
         match lengths.into_iter().find(|&(_, length)| length != 0 && length != triangles) {
-            Some((table, length)) => Err(Place::Mesh.fault(Problem::Length { table, length, triangles })),
+            Some((table, length)) => Err(FaultLocation::Mesh.fault(MeshProblem::Length { table, length, triangles })),
             None => Ok(()),
         }
     }
@@ -179,12 +179,12 @@ mod tests {
     fn bad_meshes_are_refused_with_their_place() {
         let mut mesh = tetrahedron();
         mesh.vertices[2].y = f64::NAN;
-        assert_eq!(mesh.validate().unwrap_err().place, Place::Vertex(2));
+        assert_eq!(mesh.validate().unwrap_err().place, FaultLocation::Vertex(2));
         let mut mesh = tetrahedron();
         mesh.triangles[1][2] = 4;
         assert_eq!(mesh.validate().unwrap_err().to_string(), "triangle 1: index 4 is outside the 4 vertices");
         let mut mesh = tetrahedron();
         mesh.surfaces = vec![0; 3];
-        assert!(matches!(mesh.validate().unwrap_err().problem, Problem::Length { table: "surfaces", .. }));
+        assert!(matches!(mesh.validate().unwrap_err().problem, MeshProblem::Length { table: "surfaces", .. }));
     }
 }

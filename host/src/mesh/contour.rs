@@ -1,13 +1,13 @@
 //! The outline of a smooth surface, smooth itself: where the normals, not the triangles, turn away from the eye.
 
 use super::Mesh;
-use super::edges::{EdgeTable, Eye, Selection};
+use super::edges::{EdgeTable, Viewer, EdgeSelection};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
 /// Lines through triangles, whose ends are points of their own.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Contour {
+pub(super) struct SmoothOutline {
     /// The points; all lie on edges of the mesh.
     pub(super) points: Vec<DVec3>,
     /// Pairs of points, and the triangle that each line goes through.
@@ -16,8 +16,8 @@ pub(super) struct Contour {
 
 impl EdgeTable {
     /// Outlines within smooth parts.
-    pub(super) fn contour(&self, mesh: &Mesh, selection: &Selection) -> Contour {
-        selection.outline.map_or_else(Contour::default, |eye| contour(self, mesh, eye))
+    pub(super) fn contour(&self, mesh: &Mesh, selection: &EdgeSelection) -> SmoothOutline {
+        selection.outline.map_or_else(SmoothOutline::default, |eye| contour(self, mesh, eye))
     }
 }
 
@@ -27,8 +27,8 @@ impl EdgeTable {
 ///
 /// # Source
 /// Hertzmann and Zorin 2000, illustrating smooth surfaces.
-fn contour(table: &EdgeTable, mesh: &Mesh, eye: Eye) -> Contour {
-    let mut contour = Contour::default();
+fn contour(table: &EdgeTable, mesh: &Mesh, eye: Viewer) -> SmoothOutline {
+    let mut contour = SmoothOutline::default();
     let mut known: FxHashMap<[u32; 2], u32> = FxHashMap::default();
     for (triangle, normals) in mesh.corner_normals.iter().enumerate() {
         if table.is_collapsed(mesh, triangle) {
@@ -39,8 +39,8 @@ fn contour(table: &EdgeTable, mesh: &Mesh, eye: Eye) -> Contour {
         let facing: [f64; 3] = std::array::from_fn(|k| {
             let normal = if normals[k] == DVec3::ZERO { face } else { normals[k] };
             normal.dot(match eye {
-                Eye::Point(eye) => eye - corners[k],
-                Eye::Direction(eye) => eye,
+                Viewer::Point(eye) => eye - corners[k],
+                Viewer::Direction(eye) => eye,
             })
         });
         let ids = mesh.triangles[triangle].map(|vertex| table.same[vertex as usize]);
@@ -79,8 +79,8 @@ mod tests {
         let mut mesh = samples::ball(64, 32);
         mesh.corner_normals = (0..mesh.triangles.len()).map(|t| mesh.corners(t).map(DVec3::normalize)).collect();
         let towards = DVec3::new(0.3, 0.5, 0.8).normalize();
-        for (eye, height) in [(Eye::Direction(towards), 0.0), (Eye::Point(towards * 4.0), 0.25)] {
-            let selection = Selection { outline: Some(eye), ..Selection::creases(180.0) };
+        for (eye, height) in [(Viewer::Direction(towards), 0.0), (Viewer::Point(towards * 4.0), 0.25)] {
+            let selection = EdgeSelection { outline: Some(eye), ..EdgeSelection::creases(180.0) };
             let runs = polylines(&mesh, &selection);
             assert_eq!(runs.starts.len(), 1);
             assert_eq!(runs.points.first(), runs.points.last());
@@ -117,15 +117,15 @@ mod tests {
 
     #[test]
     fn the_outline_of_a_cylinder_goes_along_its_side_and_its_sharp_edges() {
-        let selection = |eye| Selection { outline: Some(eye), boundary: false, ..Selection::creases(180.0) };
+        let selection = |eye| EdgeSelection { outline: Some(eye), boundary: false, ..EdgeSelection::creases(180.0) };
         let length = |eye| {
             let runs = polylines(&cylinder(200), &selection(eye));
             runs.runs().flat_map(|run| run.windows(2)).map(|pair| pair[0].distance(pair[1])).sum::<f64>()
         };
         // From above the upper rim; from aside two lines of 2 and a half of each rim.
-        let above = length(Eye::Point(DVec3::Y * 9.0));
+        let above = length(Viewer::Point(DVec3::Y * 9.0));
         assert!((above - std::f64::consts::TAU).abs() < 0.01, "{above}");
-        let aside = length(Eye::Direction(DVec3::new(0.3, 0.0, 0.9)));
+        let aside = length(Viewer::Direction(DVec3::new(0.3, 0.0, 0.9)));
         assert!((aside - 4.0 - std::f64::consts::TAU).abs() < 0.05, "{aside}");
     }
 }

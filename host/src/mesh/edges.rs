@@ -43,7 +43,7 @@ pub struct EdgeUse {
 
 /// Where the viewer is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Eye {
+pub enum Viewer {
     /// At a point.
     Point(DVec3),
     /// Infinitely far in this direction (from the mesh towards the viewer).
@@ -52,7 +52,7 @@ pub enum Eye {
 
 /// The edges inside smooth parts that are wanted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Interior {
+pub enum SmoothEdges {
     /// None.
     #[default]
     None,
@@ -65,7 +65,7 @@ pub enum Interior {
 
 /// The edges of a mesh that become vectors.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Selection {
+pub struct EdgeSelection {
     /// Edges of one triangle. (Edges of more than two are always creases.)
     pub boundary: bool,
     /// Edges where the two surfaces meet at more than this angle, degrees, 0..=180; `None` for no creases. The planes of
@@ -74,37 +74,37 @@ pub struct Selection {
     /// Edges between triangles of different surfaces, whatever their angle.
     pub seams: bool,
     /// Edges that are none of the above.
-    pub interior: Interior,
+    pub interior: SmoothEdges,
     /// The outline that this eye sees. Where the mesh has normals that are the same on both sides of its edges, it is made of
     /// lines through triangles, along which these normals turn away; else of edges between a triangle that faces the eye and
     /// one that does not.
-    pub outline: Option<Eye>,
+    pub outline: Option<Viewer>,
 }
 
-impl Selection {
+impl EdgeSelection {
     /// Every edge.
-    pub const ALL: Selection =
-        Selection { boundary: true, crease_degrees: Some(0.0), seams: true, interior: Interior::All, outline: None };
+    pub const ALL: EdgeSelection =
+        EdgeSelection { boundary: true, crease_degrees: Some(0.0), seams: true, interior: SmoothEdges::All, outline: None };
 
     /// Boundaries, and creases sharper than `degrees`.
-    pub fn creases(degrees: f64) -> Selection {
-        Selection {
+    pub fn creases(degrees: f64) -> EdgeSelection {
+        EdgeSelection {
             boundary: true,
             crease_degrees: Some(degrees),
             seams: false,
-            interior: Interior::None,
+            interior: SmoothEdges::None,
             outline: None,
         }
     }
 
     /// Boundaries, creases sharper than `degrees`, and the outline that `eye` sees.
-    pub fn drawing(degrees: f64, eye: Eye) -> Selection {
-        Selection { outline: Some(eye), ..Selection::creases(degrees) }
+    pub fn drawing(degrees: f64, eye: Viewer) -> EdgeSelection {
+        EdgeSelection { outline: Some(eye), ..EdgeSelection::creases(degrees) }
     }
 
     /// Boundaries, creases sharper than `degrees`, and the parameter lines of tessellated surfaces.
-    pub fn grid(degrees: f64) -> Selection {
-        Selection { seams: true, interior: Interior::Isoparametric, ..Selection::creases(degrees) }
+    pub fn grid(degrees: f64) -> EdgeSelection {
+        EdgeSelection { seams: true, interior: SmoothEdges::Isoparametric, ..EdgeSelection::creases(degrees) }
     }
 }
 
@@ -145,7 +145,7 @@ impl EdgeTable {
     /// The edges of `mesh` that `selection` asks for; `mesh` must be the one that this table was made of.
     ///
     /// Outlines within smooth parts are no edges and do not come.
-    pub fn select<'a>(&'a self, mesh: &'a Mesh, selection: &'a Selection) -> impl Iterator<Item = &'a Edge> + 'a {
+    pub fn select<'a>(&'a self, mesh: &'a Mesh, selection: &'a EdgeSelection) -> impl Iterator<Item = &'a Edge> + 'a {
         let facing = selection.outline.map(|eye| facing(mesh, eye));
         self.edges.iter().filter(move |edge| self.is_wanted(mesh, selection, facing.as_deref(), edge))
     }
@@ -155,7 +155,7 @@ impl EdgeTable {
         a == b || b == c || c == a
     }
 
-    fn is_wanted(&self, mesh: &Mesh, selection: &Selection, facing: Option<&[bool]>, edge: &Edge) -> bool {
+    fn is_wanted(&self, mesh: &Mesh, selection: &EdgeSelection, facing: Option<&[bool]>, edge: &Edge) -> bool {
         let (a, b) = match self.uses(edge) {
             [_] => return selection.boundary,
             [a, b] => (a, b),
@@ -178,10 +178,10 @@ impl EdgeTable {
             return true;
         }
         match selection.interior {
-            Interior::None => false,
-            Interior::Isoparametric if self.is_within_plane(mesh, edge, a, b) => false,
-            Interior::Isoparametric => is_isoparametric(mesh, a) || is_isoparametric(mesh, b),
-            Interior::All => true,
+            SmoothEdges::None => false,
+            SmoothEdges::Isoparametric if self.is_within_plane(mesh, edge, a, b) => false,
+            SmoothEdges::Isoparametric => is_isoparametric(mesh, a) || is_isoparametric(mesh, b),
+            SmoothEdges::All => true,
         }
     }
 
@@ -207,13 +207,13 @@ impl EdgeTable {
 }
 
 /// For each triangle whether `eye` sees its outside; edge-on counts as not. Exact for an eye at a point.
-fn facing(mesh: &Mesh, eye: Eye) -> Vec<bool> {
+fn facing(mesh: &Mesh, eye: Viewer) -> Vec<bool> {
     let coord = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
     let faces = |triangle| {
         let [a, b, c] = mesh.corners(triangle);
         match eye {
-            Eye::Point(eye) => orient3d(coord(a), coord(b), coord(c), coord(eye)) < 0.0,
-            Eye::Direction(eye) => unit_normal(a, b, c).is_some_and(|normal| normal.dot(eye) > 0.0),
+            Viewer::Point(eye) => orient3d(coord(a), coord(b), coord(c), coord(eye)) < 0.0,
+            Viewer::Direction(eye) => unit_normal(a, b, c).is_some_and(|normal| normal.dot(eye) > 0.0),
         }
     };
     (0..mesh.triangles.len()).map(faces).collect()
@@ -281,21 +281,21 @@ mod tests {
 
     #[test]
     fn a_cube_has_twelve_creases_and_no_diagonals() {
-        let wires = wire(&cube(), &Selection::creases(20.0));
+        let wires = wire(&cube(), &EdgeSelection::creases(20.0));
         assert_eq!(wires.len(), 12);
         assert!(wires.iter().all(|[a, b]| ((*a - *b).length() - 1.0).abs() < 1e-15));
-        assert_eq!(wire(&cube(), &Selection::ALL).len(), 18);
+        assert_eq!(wire(&cube(), &EdgeSelection::ALL).len(), 18);
     }
 
     #[test]
     fn a_smooth_sphere_has_no_creases() {
-        assert!(wire(&ball(), &Selection::creases(20.0)).is_empty());
+        assert!(wire(&ball(), &EdgeSelection::creases(20.0)).is_empty());
     }
 
     #[test]
     fn every_edge_of_a_closed_mesh_comes_once() {
         let mesh = ball();
-        let wires = wire(&mesh, &Selection::ALL);
+        let wires = wire(&mesh, &EdgeSelection::ALL);
         assert_eq!(wires.len(), mesh.triangles.len() * 3 / 2);
         let keys: HashSet<_> = wires.iter().map(|[a, b]| (bits(*a).min(bits(*b)), bits(*a).max(bits(*b)))).collect();
         assert_eq!(keys.len(), wires.len());
@@ -303,8 +303,8 @@ mod tests {
 
     #[test]
     fn the_grid_of_a_sphere_is_its_edges_without_one_diagonal_a_quad() {
-        let all = wire(&ball(), &Selection::ALL).len();
-        let grid = wire(&ball(), &Selection::grid(20.0)).len();
+        let all = wire(&ball(), &EdgeSelection::ALL).len();
+        let grid = wire(&ball(), &EdgeSelection::grid(20.0)).len();
         // Triangles at the two poles, quads between.
         assert_eq!(all - grid, (SLICES * (STACKS - 2)) as usize);
         assert_eq!(grid, (SLICES * (STACKS - 1) + SLICES * STACKS) as usize);
@@ -312,38 +312,38 @@ mod tests {
 
     #[test]
     fn a_cube_seen_along_its_diagonal_has_an_outline_of_six_edges() {
-        let outline = |eye| Selection { boundary: false, crease_degrees: None, ..Selection::drawing(0.0, eye) };
-        assert_eq!(wire(&cube(), &outline(Eye::Direction(DVec3::ONE))).len(), 6);
-        assert_eq!(wire(&cube(), &outline(Eye::Point(DVec3::splat(5.0)))).len(), 6);
-        assert_eq!(wire(&cube(), &outline(Eye::Point(DVec3::new(0.4, 0.3, 5.0)))).len(), 4);
-        assert_eq!(wire(&cube(), &outline(Eye::Point(DVec3::splat(0.4)))).len(), 0);
+        let outline = |eye| EdgeSelection { boundary: false, crease_degrees: None, ..EdgeSelection::drawing(0.0, eye) };
+        assert_eq!(wire(&cube(), &outline(Viewer::Direction(DVec3::ONE))).len(), 6);
+        assert_eq!(wire(&cube(), &outline(Viewer::Point(DVec3::splat(5.0)))).len(), 6);
+        assert_eq!(wire(&cube(), &outline(Viewer::Point(DVec3::new(0.4, 0.3, 5.0)))).len(), 4);
+        assert_eq!(wire(&cube(), &outline(Viewer::Point(DVec3::splat(0.4)))).len(), 0);
     }
 
     #[test]
     fn coarse_triangles_of_a_smooth_surface_are_no_creases() {
         let mut mesh = Mesh { corner_normals: Vec::new(), ..samples::ball(6, 3) };
-        assert!(!wire(&mesh, &Selection::creases(20.0)).is_empty());
+        assert!(!wire(&mesh, &EdgeSelection::creases(20.0)).is_empty());
         mesh.corner_normals = (0..mesh.triangles.len()).map(|t| mesh.corners(t).map(DVec3::normalize)).collect();
-        assert!(wire(&mesh, &Selection::creases(20.0)).is_empty());
+        assert!(wire(&mesh, &EdgeSelection::creases(20.0)).is_empty());
         let mut flat = cube();
         flat.corner_normals = (0..flat.triangles.len()).map(|t| [flat.face_normal(t).unwrap(); 3]).collect();
-        assert_eq!(wire(&flat, &Selection::creases(20.0)).len(), 12);
+        assert_eq!(wire(&flat, &EdgeSelection::creases(20.0)).len(), 12);
     }
 
     #[test]
     fn the_grid_has_no_lines_within_a_plane() {
         let mut mesh = cube();
-        assert_eq!(wire(&mesh, &Selection::grid(20.0)).len(), 12);
+        assert_eq!(wire(&mesh, &EdgeSelection::grid(20.0)).len(), 12);
         mesh.corner_normals = (0..mesh.triangles.len()).map(|t| [mesh.face_normal(t).unwrap(); 3]).collect();
-        assert_eq!(wire(&mesh, &Selection::grid(20.0)).len(), 12);
+        assert_eq!(wire(&mesh, &EdgeSelection::grid(20.0)).len(), 12);
     }
 
     #[test]
     fn the_outline_of_a_sphere_is_closed_and_nearly_a_great_circle() {
-        let selection = Selection {
+        let selection = EdgeSelection {
             boundary: false,
             crease_degrees: None,
-            ..Selection::drawing(0.0, Eye::Direction(DVec3::new(0.3, 0.5, 0.8)))
+            ..EdgeSelection::drawing(0.0, Viewer::Direction(DVec3::new(0.3, 0.5, 0.8)))
         };
         let outline = wire(&ball(), &selection);
         let mut degree = std::collections::HashMap::new();
@@ -358,7 +358,7 @@ mod tests {
         let mut mesh = tetrahedron();
         mesh.vertices.push(DVec3::splat(-1.0));
         mesh.triangles.push([0, 1, 4]);
-        let wires = wire(&mesh, &Selection { boundary: false, ..Selection::creases(179.0) });
+        let wires = wire(&mesh, &EdgeSelection { boundary: false, ..EdgeSelection::creases(179.0) });
         assert_eq!(wires, [[DVec3::ZERO, DVec3::X]]);
     }
 }

@@ -39,14 +39,14 @@ pub enum MeshError {
 #[error("{place}: {problem}")]
 pub struct Fault {
     /// Where.
-    pub place: Place,
+    pub place: FaultLocation,
     /// What.
-    pub problem: Problem,
+    pub problem: MeshProblem,
 }
 
 /// A place in a file or in a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum FaultLocation {
     /// A line of a text, from 1.
     Line(usize),
     /// A byte of a binary file, from 0.
@@ -61,29 +61,29 @@ pub enum Place {
     Mesh,
 }
 
-impl Place {
+impl FaultLocation {
     /// The fault `problem` at this place.
-    pub(super) fn fault(self, problem: Problem) -> Fault {
+    pub(super) fn fault(self, problem: MeshProblem) -> Fault {
         Fault { place: self, problem }
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for FaultLocation {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Place::Line(line) => write!(formatter, "line {line}"),
-            Place::Byte(byte) => write!(formatter, "byte {byte}"),
-            Place::Vertex(vertex) => write!(formatter, "vertex {vertex}"),
-            Place::Triangle(triangle) => write!(formatter, "triangle {triangle}"),
-            Place::Json(path) => write!(formatter, "{path}"),
-            Place::Mesh => write!(formatter, "mesh"),
+            FaultLocation::Line(line) => write!(formatter, "line {line}"),
+            FaultLocation::Byte(byte) => write!(formatter, "byte {byte}"),
+            FaultLocation::Vertex(vertex) => write!(formatter, "vertex {vertex}"),
+            FaultLocation::Triangle(triangle) => write!(formatter, "triangle {triangle}"),
+            FaultLocation::Json(path) => write!(formatter, "{path}"),
+            FaultLocation::Mesh => write!(formatter, "mesh"),
         }
     }
 }
 
 /// A thing that is wrong.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Problem {
+pub enum MeshProblem {
     /// The data ends too early.
     #[error("ends where {0} is expected")]
     Ends(&'static str),

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use files::Destination;
 
-use super::{Fault, Grouped, Mesh, MeshError, Place, Problem, compact, gltf, obj, ply, stl};
+use super::{Fault, Grouped, Mesh, MeshError, FaultLocation, MeshProblem, compact, gltf, obj, ply, stl};
 
 /// The longest file that is read, bytes.
 pub(super) const MAX_BYTES: u64 = 4 << 30;
@@ -73,7 +73,7 @@ pub fn read_grouped(path: impl AsRef<Path>) -> Result<Grouped, MeshError> {
     let grouped = parse_beside(&bytes, format, &neighbour).map_err(in_content)?;
     // Bytes of any kind can pass for an OBJ file without a face.
     let is_empty = grouped.mesh.triangles.is_empty();
-    if is_empty { Err(in_content(Place::Mesh.fault(Problem::NoTriangles))) } else { Ok(grouped) }
+    if is_empty { Err(in_content(FaultLocation::Mesh.fault(MeshProblem::NoTriangles))) } else { Ok(grouped) }
 }
 
 /// Where a mesh will be written, tested before a long computation.

@@ -13,12 +13,12 @@ pub struct Grouped {
     /// What the surfaces are called, by their numbers. There may be fewer names than surfaces.
     pub names: Vec<String>,
     /// What the surfaces look like, by their numbers; none where that is not known. There may be fewer than surfaces.
-    pub looks: Vec<Option<Look>>,
+    pub looks: Vec<Option<MetallicRoughness>>,
 }
 
 /// What a surface looks like, in the terms of glTF.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Look {
+pub struct MetallicRoughness {
     /// Reflected fraction of red, green and blue, linear, each 0..=1.
     pub base: DVec3,
     /// How far it is a metal, 0..=1.
@@ -51,14 +51,14 @@ pub(super) fn name_of(names: &[String], surface: u32) -> String {
 #[derive(Default)]
 pub(super) struct Groups {
     names: Vec<String>,
-    looks: Vec<Option<Look>>,
+    looks: Vec<Option<MetallicRoughness>>,
     number_of: std::collections::HashMap<String, u32>,
     of_triangles: Vec<u32>,
 }
 
 impl Groups {
     /// Notes that the triangles from the last noted one up to `count` are of the group `name`, which looks so if it is new.
-    pub fn extend(&mut self, name: &str, look: Option<Look>, count: usize) {
+    pub fn extend(&mut self, name: &str, look: Option<MetallicRoughness>, count: usize) {
         if count <= self.of_triangles.len() {
             return;
         }

@@ -32,12 +32,12 @@ mod holes;
 pub use boundary::BoundaryLoop;
 pub use bunny::{NoBunny, bunny};
 pub use check::EdgeReport;
-pub use edges::{Eye, Interior, Selection};
-pub use error::{Fault, MeshError, Place, Problem};
+pub use edges::{Viewer, SmoothEdges, EdgeSelection};
+pub use error::{Fault, MeshError, FaultLocation, MeshProblem};
 pub use file::{
     Format, destination, parse, parse_grouped, print, print_grouped, read, read_grouped, write, write_grouped,
 };
-pub use groups::{Grouped, Look};
+pub use groups::{Grouped, MetallicRoughness};
 pub use json_path::JsonPath;
 pub(crate) use measure::bits;
 pub(crate) use placement::normal_matrix;

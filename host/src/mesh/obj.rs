@@ -16,7 +16,7 @@ use super::error::shortened;
 use super::fan::fan;
 use super::groups::{Grouped, Groups, has_groups, name_of};
 use super::measure::bits;
-use super::{Fault, Mesh, Place, Problem};
+use super::{Fault, Mesh, FaultLocation, MeshProblem};
 
 /// A corner of a face: indices into positions, texture coordinates and normals.
 type Corner = (u32, Option<u32>, Option<u32>);
@@ -47,12 +47,12 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Grouped, Fault> {
             }
         }
         let text = text.split('#').next().unwrap_or_default();
-        statement(text, &mut content, &mut corners).map_err(|problem| Place::Line(index + 1).fault(problem))?;
+        statement(text, &mut content, &mut corners).map_err(|problem| FaultLocation::Line(index + 1).fault(problem))?;
     }
     Ok(content.into_grouped())
 }
 
-fn statement(text: &str, content: &mut Content, corners: &mut Vec<Corner>) -> Result<(), Problem> {
+fn statement(text: &str, content: &mut Content, corners: &mut Vec<Corner>) -> Result<(), MeshProblem> {
     let mut words = text.split_ascii_whitespace();
     match words.next() {
         Some("v") => content.positions.push(DVec3::from_array(numbers(&mut words)?)),
@@ -68,7 +68,7 @@ fn statement(text: &str, content: &mut Content, corners: &mut Vec<Corner>) -> Re
                 corners.push(corner(word, content)?);
             }
             if corners.len() < 3 {
-                return Err(Problem::FewCorners(corners.len()));
+                return Err(MeshProblem::FewCorners(corners.len()));
             }
             content.triangles.extend(fan(corners));
             let count = content.triangles.len();
@@ -89,22 +89,22 @@ fn unit(normal: DVec3) -> DVec3 {
     if is_unit { normal } else { normal.normalize_or_zero() }
 }
 
-fn numbers<'a, const N: usize>(words: &mut impl Iterator<Item = &'a str>) -> Result<[f64; N], Problem> {
+fn numbers<'a, const N: usize>(words: &mut impl Iterator<Item = &'a str>) -> Result<[f64; N], MeshProblem> {
     let mut result = [0.0; N];
     for value in &mut result {
-        let word = words.next().ok_or(Problem::Ends("a number"))?;
+        let word = words.next().ok_or(MeshProblem::Ends("a number"))?;
         *value = number(word)?;
     }
     Ok(result)
 }
 
 /// A finite number.
-pub(super) fn number(word: &str) -> Result<f64, Problem> {
-    let value: f64 = word.parse().map_err(|_| Problem::Expected { expected: "a number", found: shortened(word) })?;
-    if value.is_finite() { Ok(value) } else { Err(Problem::NotFinite) }
+pub(super) fn number(word: &str) -> Result<f64, MeshProblem> {
+    let value: f64 = word.parse().map_err(|_| MeshProblem::Expected { expected: "a number", found: shortened(word) })?;
+    if value.is_finite() { Ok(value) } else { Err(MeshProblem::NotFinite) }
 }
 
-fn corner(word: &str, content: &Content) -> Result<Corner, Problem> {
+fn corner(word: &str, content: &Content) -> Result<Corner, MeshProblem> {
     let mut parts = word.split('/');
     let position = index(parts.next().unwrap_or_default(), content.positions.len(), "vertices")?;
     let mut optional = |count, table| match parts.next() {
@@ -115,17 +115,17 @@ fn corner(word: &str, content: &Content) -> Result<Corner, Problem> {
     let normal = optional(content.normals.len(), "normals")?;
     match parts.next() {
         None => Ok((position, parameter, normal)),
-        Some(_) => Err(Problem::Expected { expected: "a corner v/vt/vn", found: shortened(word) }),
+        Some(_) => Err(MeshProblem::Expected { expected: "a corner v/vt/vn", found: shortened(word) }),
     }
 }
 
 /// An index from 1, or backwards from -1 (the last entry so far).
-fn index(word: &str, count: usize, table: &'static str) -> Result<u32, Problem> {
-    let index: i64 = word.parse().map_err(|_| Problem::Expected { expected: "an index", found: shortened(word) })?;
+fn index(word: &str, count: usize, table: &'static str) -> Result<u32, MeshProblem> {
+    let index: i64 = word.parse().map_err(|_| MeshProblem::Expected { expected: "an index", found: shortened(word) })?;
     let from_zero = if index > 0 { index - 1 } else { index.saturating_add(count as i64) };
     match u32::try_from(from_zero) {
         Ok(entry) if index != 0 && (entry as usize) < count => Ok(entry),
-        _ => Err(Problem::Index { index, count, table }),
+        _ => Err(MeshProblem::Index { index, count, table }),
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::edges::{EdgeTable, EdgeUse};
-use super::{Mesh, Selection};
+use super::{Mesh, EdgeSelection};
 
 /// Runs of points joined by lines.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -42,14 +42,14 @@ impl Polylines {
 ///
 /// # Source
 /// Hierholzer 1873: odd vertices are joined in pairs by edges that are not drawn, the closed trail is cut there.
-pub fn polylines(mesh: &Mesh, selection: &Selection) -> Polylines {
+pub fn polylines(mesh: &Mesh, selection: &EdgeSelection) -> Polylines {
     polylines_of_groups(mesh, selection, &[], 1).pop().unwrap_or_default()
 }
 
 /// The lines of each group of triangles, as few as can be. An edge between two groups is of the later one.
 ///
 /// - `group_of`: the group of each triangle, below `count`; empty if all are of the first.
-pub fn polylines_of_groups(mesh: &Mesh, selection: &Selection, group_of: &[u32], count: usize) -> Vec<Polylines> {
+pub fn polylines_of_groups(mesh: &Mesh, selection: &EdgeSelection, group_of: &[u32], count: usize) -> Vec<Polylines> {
     let table = EdgeTable::of(mesh);
     let mut edges: Vec<Vec<[u32; 2]>> = vec![Vec::new(); count];
     for edge in table.select(mesh, selection) {
@@ -219,7 +219,7 @@ mod tests {
 
     use super::super::measure::bits;
     use super::super::samples::{ball, cube};
-    use super::super::{Eye, wire};
+    use super::super::{Viewer, wire};
     use super::*;
 
     type Key = ([u64; 3], [u64; 3]);
@@ -229,7 +229,7 @@ mod tests {
     }
 
     /// Checks that runs and wires hold the same edges, each once, and that there are as few runs as can be.
-    fn check(mesh: &Mesh, selection: &Selection) -> Polylines {
+    fn check(mesh: &Mesh, selection: &EdgeSelection) -> Polylines {
         let runs = polylines(mesh, selection);
         let wires = wire(mesh, selection);
         let mut drawn: Vec<Key> =
@@ -265,7 +265,7 @@ mod tests {
 
     #[test]
     fn the_twelve_edges_of_a_cube_take_four_runs() {
-        let runs = check(&cube(), &Selection::creases(20.0));
+        let runs = check(&cube(), &EdgeSelection::creases(20.0));
         assert_eq!((runs.starts.len(), runs.points.len()), (4, 16));
     }
 
@@ -273,16 +273,16 @@ mod tests {
     #[cfg_attr(not(feature = "bunny"), ignore = "needs the feature `bunny`")]
     fn all_edges_of_bunny_and_sphere_come_once_in_the_fewest_runs() {
         for mesh in [super::super::bunny().expect("it ships"), ball(31, 17)] {
-            check(&mesh, &Selection::ALL);
-            check(&mesh, &Selection::grid(30.0));
-            check(&mesh, &Selection::drawing(30.0, Eye::Direction(DVec3::new(1.0, 2.0, 3.0))));
+            check(&mesh, &EdgeSelection::ALL);
+            check(&mesh, &EdgeSelection::grid(30.0));
+            check(&mesh, &EdgeSelection::drawing(30.0, Viewer::Direction(DVec3::new(1.0, 2.0, 3.0))));
         }
     }
 
     #[test]
     fn the_outline_of_a_sphere_is_one_run() {
         let ball = ball(64, 32);
-        let selection = Selection::drawing(180.0, Eye::Point(DVec3::new(3.0, 2.0, 4.0)));
+        let selection = EdgeSelection::drawing(180.0, Viewer::Point(DVec3::new(3.0, 2.0, 4.0)));
         let runs = check(&ball, &selection);
         assert_eq!(runs.starts.len(), 1);
         assert_eq!(runs.points.first(), runs.points.last());
@@ -290,6 +290,6 @@ mod tests {
 
     #[test]
     fn nothing_selected_gives_no_runs() {
-        assert_eq!(polylines(&Mesh::default(), &Selection::ALL), Polylines::default());
+        assert_eq!(polylines(&Mesh::default(), &EdgeSelection::ALL), Polylines::default());
     }
 }

@@ -9,7 +9,7 @@ use glam::{DVec3, Vec3};
 
 use super::error::shortened;
 use super::obj::number;
-use super::{Fault, Mesh, Place, Problem};
+use super::{Fault, Mesh, FaultLocation, MeshProblem};
 
 /// Bytes before the count of a binary file.
 const TITLE_BYTES: usize = 80;
@@ -32,10 +32,10 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
 }
 
 fn parse_binary(bytes: &[u8], announced: Option<u32>) -> Result<Mesh, Fault> {
-    let count = announced.ok_or_else(|| Place::Byte(bytes.len()).fault(Problem::Ends("the header")))? as usize;
+    let count = announced.ok_or_else(|| FaultLocation::Byte(bytes.len()).fault(MeshProblem::Ends("the header")))? as usize;
     let whole = bytes[HEADER_BYTES..].chunks_exact(TRIANGLE_BYTES);
     if whole.len() < count {
-        return Err(Place::Byte(bytes.len()).fault(Problem::Ends("a triangle")));
+        return Err(FaultLocation::Byte(bytes.len()).fault(MeshProblem::Ends("a triangle")));
     }
     let mut collector = Collector::default();
     for (index, record) in whole.take(count).enumerate() {
@@ -44,7 +44,7 @@ fn parse_binary(bytes: &[u8], announced: Option<u32>) -> Result<Mesh, Fault> {
             Vec3::new(field(0), field(1), field(2)).as_dvec3()
         });
         if !corners.iter().all(|corner| corner.is_finite()) {
-            return Err(Place::Byte(HEADER_BYTES + index * TRIANGLE_BYTES).fault(Problem::NotFinite));
+            return Err(FaultLocation::Byte(HEADER_BYTES + index * TRIANGLE_BYTES).fault(MeshProblem::NotFinite));
         }
         collector.add(corners);
     }
@@ -61,15 +61,15 @@ fn parse_text(bytes: &[u8]) -> Result<Mesh, Fault> {
         let mut words = text.split_ascii_whitespace();
         let Some(first) = words.next() else { continue };
         last_line = index + 1;
-        let unexpected = || Problem::Expected { expected, found: shortened(text.trim()) };
-        let step = || -> Result<&'static str, Problem> {
+        let unexpected = || MeshProblem::Expected { expected, found: shortened(text.trim()) };
+        let step = || -> Result<&'static str, MeshProblem> {
             match (expected, first.to_ascii_lowercase().as_str()) {
                 ("solid", "solid") => Ok("facet or endsolid"),
                 ("facet or endsolid", "endsolid") => Ok("solid"),
                 ("facet or endsolid", "facet") => Ok("outer loop"),
                 ("outer loop", "outer") => Ok("vertex"),
                 ("vertex", "vertex") => {
-                    let mut coordinate = || number(words.next().ok_or(Problem::Ends("a number"))?);
+                    let mut coordinate = || number(words.next().ok_or(MeshProblem::Ends("a number"))?);
                     corners.push(DVec3::new(coordinate()?, coordinate()?, coordinate()?));
                     Ok(if corners.len() == 3 { "endloop" } else { "vertex" })
                 }
@@ -82,11 +82,11 @@ fn parse_text(bytes: &[u8]) -> Result<Mesh, Fault> {
                 _ => Err(unexpected()),
             }
         };
-        expected = { step }().map_err(|problem| Place::Line(index + 1).fault(problem))?;
+        expected = { step }().map_err(|problem| FaultLocation::Line(index + 1).fault(problem))?;
     }
     match expected {
         "solid" => Ok(collector.mesh),
-        missing => Err(Place::Line(last_line).fault(Problem::Ends(missing))),
+        missing => Err(FaultLocation::Line(last_line).fault(MeshProblem::Ends(missing))),
     }
 }
 
@@ -122,7 +122,7 @@ pub(super) fn print(mesh: &Mesh) -> Result<Vec<u8>, Fault> {
     bytes.extend_from_slice(&(mesh.triangles.len() as u32).to_le_bytes());
     for (vertex, position) in mesh.vertices.iter().enumerate() {
         if let Some(&value) = position.to_array().iter().find(|value| !(**value as f32).is_finite()) {
-            return Err(Place::Vertex(vertex).fault(Problem::Range { value }));
+            return Err(FaultLocation::Vertex(vertex).fault(MeshProblem::Range { value }));
         }
     }
     for triangle in 0..mesh.triangles.len() {
@@ -180,6 +180,6 @@ mod tests {
     #[test]
     fn coordinates_beyond_single_precision_are_refused() {
         let far = tetrahedron().transformed(&glam::DAffine3::from_scale(DVec3::splat(1e300)));
-        assert!(matches!(print(&far).unwrap_err().problem, Problem::Range { .. }));
+        assert!(matches!(print(&far).unwrap_err().problem, MeshProblem::Range { .. }));
     }
 }

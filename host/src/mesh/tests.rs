@@ -119,10 +119,10 @@ fn the_compact_form_refuses_what_it_cannot_hold() {
     open.corner_normals.clear();
     open.corner_parameters.clear();
     open.surfaces.clear();
-    assert!(matches!(print(&open, Format::Compact).unwrap_err().problem, Problem::Unsuited(_)));
+    assert!(matches!(print(&open, Format::Compact).unwrap_err().problem, MeshProblem::Unsuited(_)));
     let torus = torus(12, 8);
     assert!(torus.is_closed() && torus.edge_report().euler_characteristic() == 0);
-    assert!(matches!(print(&torus, Format::Compact).unwrap_err().problem, Problem::Unsuited(_)));
+    assert!(matches!(print(&torus, Format::Compact).unwrap_err().problem, MeshProblem::Unsuited(_)));
     // Two pieces are no hindrance.
     let mut two = ball();
     two.append(&ball().transformed(&glam::DAffine3::from_translation(DVec3::X * 5.0)), 1);

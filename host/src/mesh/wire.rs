@@ -3,13 +3,13 @@
 use glam::DVec3;
 
 use super::Mesh;
-use super::contour::Contour;
-use super::edges::{EdgeTable, Selection};
+use super::contour::SmoothOutline;
+use super::edges::{EdgeTable, EdgeSelection};
 
 /// The selected lines of `mesh` as vectors, each once.
-pub fn wire(mesh: &Mesh, selection: &Selection) -> Vec<[DVec3; 2]> {
+pub fn wire(mesh: &Mesh, selection: &EdgeSelection) -> Vec<[DVec3; 2]> {
     let table = EdgeTable::of(mesh);
     let edges = table.select(mesh, selection).map(|edge| edge.ends.map(|vertex| mesh.vertices[vertex as usize]));
-    let Contour { points, lines } = table.contour(mesh, selection);
+    let SmoothOutline { points, lines } = table.contour(mesh, selection);
     edges.chain(lines.iter().map(|(ends, _)| ends.map(|point| points[point as usize]))).collect()
 }

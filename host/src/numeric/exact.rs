@@ -7,12 +7,12 @@ use dashu_int::{IBig, Sign, UBig, ops::BitTest};
 use std::ops::{Add, Mul, Sub};
 
 /// What a formula of sums, differences and products is evaluated with.
-pub trait Number:
+pub trait Arithmetic:
     Clone + From<f64> + Add<Output = Self> + Sub<Output = Self> + for<'a> Mul<&'a Self, Output = Self>
 {
 }
 
-impl<N> Number for N where N: Clone + From<f64> + Add<Output = N> + Sub<Output = N> + for<'a> Mul<&'a N, Output = N> {}
+impl<N> Arithmetic for N where N: Clone + From<f64> + Add<Output = N> + Sub<Output = N> + for<'a> Mul<&'a N, Output = N> {}
 
 /// Half the distance from 1 to the next number: the relative error of one operation.
 const UNIT: f64 = f64::EPSILON / 2.0;
@@ -21,14 +21,14 @@ const SLACK: f64 = 1.0 + 1e-12;
 
 /// A rounded number and a bound on its distance from the true one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rounded {
+pub struct RoundedNumber {
     /// The number as it came out.
     pub value: f64,
     /// The true number is at most so far away; infinite or NaN if nothing is known.
     pub error: f64,
 }
 
-impl Rounded {
+impl RoundedNumber {
     /// The sign, -1.0, 0.0 or 1.0, if the error leaves no doubt.
     pub fn sign(self) -> Option<f64> {
         if self.value.abs() > self.error * SLACK {
@@ -39,45 +39,45 @@ impl Rounded {
     }
 
     /// The quotient; its error is infinite if the divisor may be 0.
-    pub fn over(self, divisor: Rounded) -> Rounded {
+    pub fn over(self, divisor: RoundedNumber) -> RoundedNumber {
         let least = divisor.value.abs() - divisor.error * SLACK;
         if least <= 0.0 || least.is_nan() {
-            return Rounded { value: self.value / divisor.value, error: f64::INFINITY };
+            return RoundedNumber { value: self.value / divisor.value, error: f64::INFINITY };
         }
         let value = self.value / divisor.value;
         let error = (self.error + value.abs() * divisor.error) / least + UNIT * value.abs() + f64::MIN_POSITIVE;
-        Rounded { value, error }
+        RoundedNumber { value, error }
     }
 }
 
-impl From<f64> for Rounded {
-    fn from(value: f64) -> Rounded {
-        Rounded { value, error: 0.0 }
+impl From<f64> for RoundedNumber {
+    fn from(value: f64) -> RoundedNumber {
+        RoundedNumber { value, error: 0.0 }
     }
 }
 
-impl Add for Rounded {
-    type Output = Rounded;
+impl Add for RoundedNumber {
+    type Output = RoundedNumber;
     #[inline]
-    fn add(self, other: Rounded) -> Rounded {
+    fn add(self, other: RoundedNumber) -> RoundedNumber {
         let value = self.value + other.value;
-        Rounded { value, error: self.error + other.error + UNIT * value.abs() }
+        RoundedNumber { value, error: self.error + other.error + UNIT * value.abs() }
     }
 }
 
-impl Sub for Rounded {
-    type Output = Rounded;
+impl Sub for RoundedNumber {
+    type Output = RoundedNumber;
     #[inline]
-    fn sub(self, other: Rounded) -> Rounded {
+    fn sub(self, other: RoundedNumber) -> RoundedNumber {
         let value = self.value - other.value;
-        Rounded { value, error: self.error + other.error + UNIT * value.abs() }
+        RoundedNumber { value, error: self.error + other.error + UNIT * value.abs() }
     }
 }
 
-impl Mul<&Rounded> for Rounded {
-    type Output = Rounded;
+impl Mul<&RoundedNumber> for RoundedNumber {
+    type Output = RoundedNumber;
     #[inline]
-    fn mul(self, other: &Rounded) -> Rounded {
+    fn mul(self, other: &RoundedNumber) -> RoundedNumber {
         let value = self.value * other.value;
         // A product of nonzero numbers may fall below the smallest one; a product with a true 0 is 0.
         let lost = if value.abs() > f64::MIN_POSITIVE || self.value == 0.0 || other.value == 0.0 {
@@ -86,32 +86,32 @@ impl Mul<&Rounded> for Rounded {
             f64::MIN_POSITIVE
         };
         let error = self.value.abs() * other.error + other.value.abs() * self.error + self.error * other.error;
-        Rounded { value, error: error + UNIT * value.abs() + lost }
+        RoundedNumber { value, error: error + UNIT * value.abs() + lost }
     }
 }
 
 /// A number of twice the digits: a rounded one, and what it lacks.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Twofold {
+pub struct DoubleDouble {
     high: f64,
     low: f64,
 }
 
 /// A sum and what its rounding lost, |a| >= |b| (Dekker 1971).
-fn fast_sum(a: f64, b: f64) -> Twofold {
+fn fast_sum(a: f64, b: f64) -> DoubleDouble {
     let high = a + b;
-    Twofold { high, low: b - (high - a) }
+    DoubleDouble { high, low: b - (high - a) }
 }
 
 /// A sum and what its rounding lost (Knuth 1969).
-fn sum(a: f64, b: f64) -> Twofold {
+fn sum(a: f64, b: f64) -> DoubleDouble {
     let high = a + b;
     let part = high - a;
-    Twofold { high, low: (a - (high - part)) + (b - part) }
+    DoubleDouble { high, low: (a - (high - part)) + (b - part) }
 }
 
 /// A product and what its rounding lost (Veltkamp and Dekker 1971).
-fn product(a: f64, b: f64) -> Twofold {
+fn product(a: f64, b: f64) -> DoubleDouble {
     let halves = |x: f64| {
         let scaled = x * 134_217_729.0;
         let high = scaled - (scaled - x);
@@ -119,48 +119,48 @@ fn product(a: f64, b: f64) -> Twofold {
     };
     let ((a1, a2), (b1, b2)) = (halves(a), halves(b));
     let high = a * b;
-    Twofold { high, low: a2 * b2 - (((high - a1 * b1) - a2 * b1) - a1 * b2) }
+    DoubleDouble { high, low: a2 * b2 - (((high - a1 * b1) - a2 * b1) - a1 * b2) }
 }
 
-impl Twofold {
+impl DoubleDouble {
     /// The number nearest to it.
     pub fn value(self) -> f64 {
         self.high + self.low
     }
 
     /// The quotient.
-    pub fn over(self, divisor: Twofold) -> Twofold {
+    pub fn over(self, divisor: DoubleDouble) -> DoubleDouble {
         let quotient = self.high / divisor.high;
-        let rest = self - Twofold::from(quotient) * &divisor;
+        let rest = self - DoubleDouble::from(quotient) * &divisor;
         fast_sum(quotient, (rest.high + rest.low) / divisor.high)
     }
 }
 
-impl From<f64> for Twofold {
-    fn from(value: f64) -> Twofold {
-        Twofold { high: value, low: 0.0 }
+impl From<f64> for DoubleDouble {
+    fn from(value: f64) -> DoubleDouble {
+        DoubleDouble { high: value, low: 0.0 }
     }
 }
 
-impl Add for Twofold {
-    type Output = Twofold;
-    fn add(self, other: Twofold) -> Twofold {
+impl Add for DoubleDouble {
+    type Output = DoubleDouble;
+    fn add(self, other: DoubleDouble) -> DoubleDouble {
         let (high, low) = (sum(self.high, other.high), sum(self.low, other.low));
         let middle = fast_sum(high.high, high.low + low.high);
         fast_sum(middle.high, middle.low + low.low)
     }
 }
 
-impl Sub for Twofold {
-    type Output = Twofold;
-    fn sub(self, other: Twofold) -> Twofold {
-        Add::add(self, Twofold { high: -other.high, low: -other.low })
+impl Sub for DoubleDouble {
+    type Output = DoubleDouble;
+    fn sub(self, other: DoubleDouble) -> DoubleDouble {
+        Add::add(self, DoubleDouble { high: -other.high, low: -other.low })
     }
 }
 
-impl Mul<&Twofold> for Twofold {
-    type Output = Twofold;
-    fn mul(self, other: &Twofold) -> Twofold {
+impl Mul<&DoubleDouble> for DoubleDouble {
+    type Output = DoubleDouble;
+    fn mul(self, other: &DoubleDouble) -> DoubleDouble {
         let high = product(self.high, other.high);
         fast_sum(high.high, high.low + (self.high * other.low + self.low * other.high))
     }
@@ -168,13 +168,13 @@ impl Mul<&Twofold> for Twofold {
 
 /// A number without error: an integer of any length times a power of two.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Exact {
+pub struct ExactNumber {
     integer: IBig,
     /// Power of two.
     exponent: i32,
 }
 
-impl Exact {
+impl ExactNumber {
     /// The sign: -1.0, 0.0 or 1.0.
     pub fn sign(&self) -> f64 {
         if self.integer.is_zero() {
@@ -187,15 +187,15 @@ impl Exact {
     }
 
     /// This number with the other sign.
-    pub fn negated(self) -> Exact {
-        Exact { integer: -self.integer, exponent: self.exponent }
+    pub fn negated(self) -> ExactNumber {
+        ExactNumber { integer: -self.integer, exponent: self.exponent }
     }
 
     /// The quotient, rounded to the nearest `f64` but for a doubt in the last bit at a tie.
     ///
     /// # Panics
     /// If the divisor is 0.
-    pub fn over(&self, divisor: &Exact) -> f64 {
+    pub fn over(&self, divisor: &ExactNumber) -> f64 {
         let (sign, dividend) = self.integer.clone().into_parts();
         let (divisor_sign, denominator) = divisor.integer.clone().into_parts();
         // A quotient of at least 64 bits, the rest noted in its last bit.
@@ -210,9 +210,9 @@ impl Exact {
     }
 
     /// The integer at the lower of two exponents, and that exponent.
-    fn aligned(self, other: Exact) -> (IBig, IBig, i32) {
+    fn aligned(self, other: ExactNumber) -> (IBig, IBig, i32) {
         let exponent = self.exponent.min(other.exponent);
-        let shift = |number: Exact| match (number.exponent - exponent) as usize {
+        let shift = |number: ExactNumber| match (number.exponent - exponent) as usize {
             0 => number.integer,
             bits => number.integer << bits,
         };
@@ -245,13 +245,13 @@ fn scaled(integer: &UBig, exponent: i64) -> f64 {
     top as f64 * pow(half) * pow(power - half)
 }
 
-impl From<f64> for Exact {
+impl From<f64> for ExactNumber {
     /// # Panics
     /// If the number is not finite, which every door to the geometry refuses.
-    fn from(value: f64) -> Exact {
+    fn from(value: f64) -> ExactNumber {
         assert!(value.is_finite(), "{value} has no exact value");
         if value == 0.0 {
-            return Exact::default();
+            return ExactNumber::default();
         }
         let bits = value.to_bits();
         let biased = (bits >> 52 & 0x7ff) as i32;
@@ -259,13 +259,13 @@ impl From<f64> for Exact {
         let (mantissa, exponent) = if biased == 0 { (fraction, -1074) } else { (fraction | 1 << 52, biased - 1075) };
         let zeros = mantissa.trailing_zeros();
         let integer = IBig::from((mantissa >> zeros) as i64 * if value < 0.0 { -1 } else { 1 });
-        Exact { integer, exponent: exponent + zeros as i32 }
+        ExactNumber { integer, exponent: exponent + zeros as i32 }
     }
 }
 
-impl Add for Exact {
-    type Output = Exact;
-    fn add(self, other: Exact) -> Exact {
+impl Add for ExactNumber {
+    type Output = ExactNumber;
+    fn add(self, other: ExactNumber) -> ExactNumber {
         if self.integer.is_zero() {
             return other;
         }
@@ -273,40 +273,40 @@ impl Add for Exact {
             return self;
         }
         let (one, two, exponent) = self.aligned(other);
-        Exact { integer: one + two, exponent }
+        ExactNumber { integer: one + two, exponent }
     }
 }
 
-impl Sub for Exact {
-    type Output = Exact;
-    fn sub(self, other: Exact) -> Exact {
+impl Sub for ExactNumber {
+    type Output = ExactNumber;
+    fn sub(self, other: ExactNumber) -> ExactNumber {
         Add::add(self, other.negated())
     }
 }
 
-impl Mul<&Exact> for Exact {
-    type Output = Exact;
-    fn mul(self, other: &Exact) -> Exact {
+impl Mul<&ExactNumber> for ExactNumber {
+    type Output = ExactNumber;
+    fn mul(self, other: &ExactNumber) -> ExactNumber {
         if self.integer.is_zero() || other.integer.is_zero() {
-            return Exact::default();
+            return ExactNumber::default();
         }
-        Exact { integer: self.integer * &other.integer, exponent: self.exponent + other.exponent }
+        ExactNumber { integer: self.integer * &other.integer, exponent: self.exponent + other.exponent }
     }
 }
 
 /// Cross product of two vectors.
-pub fn cross<N: Number>(a: &[N; 3], b: &[N; 3]) -> [N; 3] {
+pub fn cross<N: Arithmetic>(a: &[N; 3], b: &[N; 3]) -> [N; 3] {
     let term = |i: usize, j: usize| a[i].clone() * &b[j] - a[j].clone() * &b[i];
     [term(1, 2), term(2, 0), term(0, 1)]
 }
 
 /// Scalar product of two vectors.
-pub fn dot<N: Number>(a: &[N; 3], b: &[N; 3]) -> N {
+pub fn dot<N: Arithmetic>(a: &[N; 3], b: &[N; 3]) -> N {
     a[0].clone() * &b[0] + a[1].clone() * &b[1] + a[2].clone() * &b[2]
 }
 
 /// Difference of two vectors.
-pub fn minus<N: Number>(a: &[N; 3], b: &[N; 3]) -> [N; 3] {
+pub fn minus<N: Arithmetic>(a: &[N; 3], b: &[N; 3]) -> [N; 3] {
     [0, 1, 2].map(|axis| a[axis].clone() - b[axis].clone())
 }
 
@@ -317,44 +317,44 @@ mod tests {
 
     #[test]
     fn exact_numbers_keep_what_floats_lose() {
-        let big = Exact::from(1e300);
-        let sum = big.clone() + Exact::from(1e-300) - big;
-        assert_eq!(sum, Exact::from(1e-300));
-        assert_eq!(sum.over(&Exact::from(1.0)), 1e-300);
-        assert_eq!(Exact::from(5e-324).over(&Exact::from(1.0)), 5e-324);
-        assert_eq!(Exact::from(1.0).over(&Exact::from(3.0)), 1.0 / 3.0);
-        assert_eq!(Exact::from(-1.0).over(&Exact::from(3.0)), -1.0 / 3.0);
-        assert_eq!(Exact::from(f64::MAX).over(&Exact::from(1.0)), f64::MAX);
-        assert_eq!((Exact::from(1e300) * &Exact::from(1e300)).over(&Exact::from(1e-300)), f64::INFINITY);
-        assert_eq!((Exact::from(3.0) - Exact::from(3.0)).sign(), 0.0);
+        let big = ExactNumber::from(1e300);
+        let sum = big.clone() + ExactNumber::from(1e-300) - big;
+        assert_eq!(sum, ExactNumber::from(1e-300));
+        assert_eq!(sum.over(&ExactNumber::from(1.0)), 1e-300);
+        assert_eq!(ExactNumber::from(5e-324).over(&ExactNumber::from(1.0)), 5e-324);
+        assert_eq!(ExactNumber::from(1.0).over(&ExactNumber::from(3.0)), 1.0 / 3.0);
+        assert_eq!(ExactNumber::from(-1.0).over(&ExactNumber::from(3.0)), -1.0 / 3.0);
+        assert_eq!(ExactNumber::from(f64::MAX).over(&ExactNumber::from(1.0)), f64::MAX);
+        assert_eq!((ExactNumber::from(1e300) * &ExactNumber::from(1e300)).over(&ExactNumber::from(1e-300)), f64::INFINITY);
+        assert_eq!((ExactNumber::from(3.0) - ExactNumber::from(3.0)).sign(), 0.0);
     }
 
     proptest! {
         #[test]
         fn errors_hold_and_signs_are_certain(a in -1e3..1e3, b in -1e3..1e3, c in -1e-3..1e-3, d in 1e-9..1.0) {
-            fn formula<N: Number>([a, b, c, d]: [f64; 4]) -> N {
+            fn formula<N: Arithmetic>([a, b, c, d]: [f64; 4]) -> N {
                 let [a, b, c, d] = [a, b, c, d].map(N::from);
                 (a.clone() - b.clone()) * &(a + c.clone()) - (b * &c) * &d
             }
-            let rounded: Rounded = formula([a, b, c, d]);
-            let exact: Exact = formula([a, b, c, d]);
-            let gap = (exact.clone() - Exact::from(rounded.value)).over(&Exact::from(1.0)).abs();
+            let rounded: RoundedNumber = formula([a, b, c, d]);
+            let exact: ExactNumber = formula([a, b, c, d]);
+            let gap = (exact.clone() - ExactNumber::from(rounded.value)).over(&ExactNumber::from(1.0)).abs();
             prop_assert!(gap <= rounded.error * SLACK);
             if let Some(sign) = rounded.sign() {
                 prop_assert_eq!(sign, exact.sign());
             }
-            let twofold: Twofold = formula([a, b, c, d]);
-            let close = |value: f64| (exact.clone() - Exact::from(value)).over(&Exact::from(1.0)).abs();
+            let twofold: DoubleDouble = formula([a, b, c, d]);
+            let close = |value: f64| (exact.clone() - ExactNumber::from(value)).over(&ExactNumber::from(1.0)).abs();
             prop_assert!(close(twofold.value()) <= UNIT * twofold.value().abs() * 1.000_001 + rounded.error * 1e-14);
-            let quotient = rounded.over(Rounded::from(d));
-            let gap = (exact - Exact::from(quotient.value) * &Exact::from(d)).over(&Exact::from(d)).abs();
+            let quotient = rounded.over(RoundedNumber::from(d));
+            let gap = (exact - ExactNumber::from(quotient.value) * &ExactNumber::from(d)).over(&ExactNumber::from(d)).abs();
             prop_assert!(gap <= quotient.error * SLACK);
         }
 
         #[test]
         fn quotients_are_rounded_right(a in any::<f64>(), b in any::<f64>()) {
             prop_assume!(a.is_finite() && b.is_finite() && b != 0.0 && (a / b).is_normal());
-            prop_assert_eq!(Exact::from(a).over(&Exact::from(b)), a / b);
+            prop_assert_eq!(ExactNumber::from(a).over(&ExactNumber::from(b)), a / b);
         }
     }
 }

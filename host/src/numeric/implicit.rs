@@ -8,7 +8,7 @@
 //! Attene 2020, "Indirect predicates for geometric constructions"; the numbers are ours.
 
 use super::bounds::Bounds;
-use super::exact::{Exact, Number, Rounded, Twofold, cross, dot, minus};
+use super::exact::{ExactNumber, Arithmetic, RoundedNumber, DoubleDouble, cross, dot, minus};
 use glam::DVec3;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 use std::cmp::Ordering;
@@ -16,7 +16,7 @@ use std::sync::OnceLock;
 
 /// What defines a point.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Definition {
+pub enum PointDefinition {
     /// Its coordinates.
     Given(DVec3),
     /// A line through two points, and a plane through three, which meet in one point.
@@ -24,12 +24,12 @@ pub enum Definition {
     /// Three planes, each through three points, which meet in one point.
     Planes([[DVec3; 3]; 3]),
     /// The middle of three points.
-    Middle(Box<[Definition; 3]>),
+    Middle(Box<[PointDefinition; 3]>),
 }
 
-impl Definition {
+impl PointDefinition {
     /// Where two lines of one plane cross; they must not be parallel.
-    pub fn crossing(one: [DVec3; 2], two: [DVec3; 2]) -> Definition {
+    pub fn crossing(one: [DVec3; 2], two: [DVec3; 2]) -> PointDefinition {
         // A plane through the second along an axis: one along which the lines are seen to cross, the more squarely the better.
         let [p, q] = two;
         let (d, e) = (one[1] - one[0], q - p);
@@ -37,20 +37,20 @@ impl Definition {
         let mut axis = (0..3).max_by(|&i, &j| normal[i].total_cmp(&normal[j])).unwrap_or(0);
         if normal[axis] < 1e-14 {
             // That may be all roundings.
-            let normal = cross(&step::<Exact>(one[1], one[0]), &step(q, p));
-            let slopes = normal.map(|slope| slope.over(&Exact::from(1.0)).abs());
+            let normal = cross(&step::<ExactNumber>(one[1], one[0]), &step(q, p));
+            let slopes = normal.map(|slope| slope.over(&ExactNumber::from(1.0)).abs());
             axis = (0..3).max_by(|&i, &j| slopes[i].total_cmp(&slopes[j])).unwrap_or(0);
         }
         let mut third = p;
         third[axis] += p.abs().max_element().max(e.abs().max_element());
-        Definition::LineAndPlane(one, [p, q, third])
+        PointDefinition::LineAndPlane(one, [p, q, third])
     }
 }
 
 /// A point with its rounded place.
 #[derive(Clone, Debug)]
-pub struct Point {
-    definition: Definition,
+pub struct ImplicitPoint {
+    definition: PointDefinition,
     near: DVec3,
     /// How far each coordinate of `near` is from the true one at most.
     errors: DVec3,
@@ -59,43 +59,43 @@ pub struct Point {
 }
 
 /// Homogeneous coordinates x, y, z, w with w > 0.
-pub type Homogeneous = [Exact; 4];
+pub type Homogeneous = [ExactNumber; 4];
 
-impl Point {
+impl ImplicitPoint {
     /// Makes a point; the line and the plane, or the three planes, must meet in one point.
-    pub fn new(definition: Definition) -> Point {
+    pub fn new(definition: PointDefinition) -> ImplicitPoint {
         let (near, errors) = match &definition {
-            &Definition::Given(at) => return Point::known(definition, at, DVec3::ZERO),
-            &Definition::LineAndPlane(line, plane) => {
-                place(on_line(line, plane, Rounded::over), on_line(line, plane, Twofold::over), [&line, &plane])
+            &PointDefinition::Given(at) => return ImplicitPoint::known(definition, at, DVec3::ZERO),
+            &PointDefinition::LineAndPlane(line, plane) => {
+                place(on_line(line, plane, RoundedNumber::over), on_line(line, plane, DoubleDouble::over), [&line, &plane])
             }
-            &Definition::Planes(planes) => {
+            &PointDefinition::Planes(planes) => {
                 let [a, b, c] = planes.each_ref();
-                place(on_planes(planes, Rounded::over), on_planes(planes, Twofold::over), [a, b, c])
+                place(on_planes(planes, RoundedNumber::over), on_planes(planes, DoubleDouble::over), [a, b, c])
             }
-            Definition::Middle(points) => {
-                let [a, b, c] = points.each_ref().map(|point| Point::new(point.clone()));
+            PointDefinition::Middle(points) => {
+                let [a, b, c] = points.each_ref().map(|point| ImplicitPoint::new(point.clone()));
                 let near = (a.near + b.near + c.near) / 3.0;
                 let size = a.near.abs().max(b.near.abs()).max(c.near.abs());
                 let errors = a.errors.max(b.errors).max(c.errors) + size * (4.0 * f64::EPSILON);
-                return Point::known(definition, near, errors);
+                return ImplicitPoint::known(definition, near, errors);
             }
         };
         if errors == DVec3::ZERO {
-            return Point::known(Definition::Given(near), near, errors);
+            return ImplicitPoint::known(PointDefinition::Given(near), near, errors);
         }
         // Where a line grazes a plane even twice the digits may not do.
         if errors.max_element() <= 4.0 * f64::EPSILON * near.abs().max_element() {
-            return Point::known(definition, near, errors);
+            return ImplicitPoint::known(definition, near, errors);
         }
         let exact = homogeneous(&definition);
         let near = DVec3::from([0, 1, 2].map(|axis| exact[axis].over(&exact[3])));
         let error = f64::EPSILON * near.abs().max_element() + f64::MIN_POSITIVE;
-        Point { exact: OnceLock::from(Box::new(exact)), ..Point::known(definition, near, DVec3::splat(error)) }
+        ImplicitPoint { exact: OnceLock::from(Box::new(exact)), ..ImplicitPoint::known(definition, near, DVec3::splat(error)) }
     }
 
-    fn known(definition: Definition, near: DVec3, errors: DVec3) -> Point {
-        Point { definition, near, errors, exact: OnceLock::new() }
+    fn known(definition: PointDefinition, near: DVec3, errors: DVec3) -> ImplicitPoint {
+        ImplicitPoint { definition, near, errors, exact: OnceLock::new() }
     }
 
     /// The nearest place with floating-point coordinates, within a few roundings.
@@ -109,13 +109,13 @@ impl Point {
     }
 
     /// What defines it.
-    pub fn definition(&self) -> &Definition {
+    pub fn definition(&self) -> &PointDefinition {
         &self.definition
     }
 
     /// The middle of three points.
-    pub fn middle(points: [&Point; 3]) -> Point {
-        Point::new(Definition::Middle(Box::new(points.map(|point| point.definition.clone()))))
+    pub fn middle(points: [&ImplicitPoint; 3]) -> ImplicitPoint {
+        ImplicitPoint::new(PointDefinition::Middle(Box::new(points.map(|point| point.definition.clone()))))
     }
 
     /// A box that holds it.
@@ -130,8 +130,8 @@ impl Point {
         self.exact.get_or_init(|| Box::new(homogeneous(&self.definition)))
     }
 
-    fn coordinate(&self, axis: usize) -> Rounded {
-        Rounded { value: self.near[axis], error: self.errors[axis] }
+    fn coordinate(&self, axis: usize) -> RoundedNumber {
+        RoundedNumber { value: self.near[axis], error: self.errors[axis] }
     }
 }
 
@@ -151,7 +151,7 @@ fn either(one: Level, two: Level) -> Level {
 /// - `rounded`: the place by a formula with its error.
 /// - `twofold`: the same with twice the digits, whose error is that of the other times 2^-51 or so.
 /// - `on`: points of lines and planes that it is on.
-fn place<const N: usize>(rounded: [Rounded; 3], twofold: [Twofold; 3], on: [&[DVec3]; N]) -> (DVec3, DVec3) {
+fn place<const N: usize>(rounded: [RoundedNumber; 3], twofold: [DoubleDouble; 3], on: [&[DVec3]; N]) -> (DVec3, DVec3) {
     let known = on.into_iter().fold(Level::default(), |known, points| either(known, level(points)));
     let value = |axis: usize| known[axis].unwrap_or(twofold[axis].value());
     let error = |axis: usize| match known[axis] {
@@ -163,26 +163,26 @@ fn place<const N: usize>(rounded: [Rounded; 3], twofold: [Twofold; 3], on: [&[DV
     (DVec3::from([0, 1, 2].map(value)), DVec3::from([0, 1, 2].map(error)))
 }
 
-fn vector<N: Number>(v: DVec3) -> [N; 3] {
+fn vector<N: Arithmetic>(v: DVec3) -> [N; 3] {
     v.to_array().map(N::from)
 }
 
 /// The difference of two given points.
-fn step<N: Number>(to: DVec3, from: DVec3) -> [N; 3] {
+fn step<N: Arithmetic>(to: DVec3, from: DVec3) -> [N; 3] {
     minus(&vector(to), &vector(from))
 }
 
-fn normal<N: Number>([a, b, c]: [DVec3; 3]) -> [N; 3] {
+fn normal<N: Arithmetic>([a, b, c]: [DVec3; 3]) -> [N; 3] {
     cross(&step(b, a), &step(c, a))
 }
 
 /// For the line p + t (q - p) and the plane n (x - r) = 0: t as a fraction, n (r - p) over n (q - p).
-fn fraction<N: Number>([p, q]: [DVec3; 2], plane: [DVec3; 3]) -> [N; 2] {
+fn fraction<N: Arithmetic>([p, q]: [DVec3; 2], plane: [DVec3; 3]) -> [N; 2] {
     let n = normal::<N>(plane);
     [dot(&n, &step(plane[0], p)), dot(&n, &step(q, p))]
 }
 
-fn on_line<N: Number + Copy>(line: [DVec3; 2], plane: [DVec3; 3], divide: fn(N, N) -> N) -> [N; 3] {
+fn on_line<N: Arithmetic + Copy>(line: [DVec3; 2], plane: [DVec3; 3], divide: fn(N, N) -> N) -> [N; 3] {
     let [over, under] = fraction::<N>(line, plane);
     let t = divide(over, under);
     let (start, along) = (vector::<N>(line[0]), step::<N>(line[1], line[0]));
@@ -190,7 +190,7 @@ fn on_line<N: Number + Copy>(line: [DVec3; 2], plane: [DVec3; 3], divide: fn(N, 
 }
 
 /// Offset of the meeting point of three planes from the first point of the first, times the second result.
-fn meeting<N: Number>(planes: [[DVec3; 3]; 3]) -> ([N; 3], N) {
+fn meeting<N: Arithmetic>(planes: [[DVec3; 3]; 3]) -> ([N; 3], N) {
     let n = planes.map(normal::<N>);
     let level = |index: usize| dot(&n[index], &step(planes[index][0], planes[0][0]));
     let [second, third] = [level(1), level(2)];
@@ -199,39 +199,39 @@ fn meeting<N: Number>(planes: [[DVec3; 3]; 3]) -> ([N; 3], N) {
     (offset, dot(&n[2], &b))
 }
 
-fn on_planes<N: Number + Copy>(planes: [[DVec3; 3]; 3], divide: fn(N, N) -> N) -> [N; 3] {
+fn on_planes<N: Arithmetic + Copy>(planes: [[DVec3; 3]; 3], divide: fn(N, N) -> N) -> [N; 3] {
     let (offset, under) = meeting::<N>(planes);
     let start = vector::<N>(planes[0][0]);
     [0, 1, 2].map(|axis| start[axis] + divide(offset[axis], under))
 }
 
-fn homogeneous(definition: &Definition) -> Homogeneous {
+fn homogeneous(definition: &PointDefinition) -> Homogeneous {
     let (start, offset, under) = match definition {
-        &Definition::Given(at) => {
+        &PointDefinition::Given(at) => {
             let [x, y, z] = vector(at);
-            return [x, y, z, Exact::from(1.0)];
+            return [x, y, z, ExactNumber::from(1.0)];
         }
-        &Definition::LineAndPlane(line, plane) => {
-            let [over, under] = fraction::<Exact>(line, plane);
-            (line[0], step::<Exact>(line[1], line[0]).map(|c| c * &over), under)
+        &PointDefinition::LineAndPlane(line, plane) => {
+            let [over, under] = fraction::<ExactNumber>(line, plane);
+            (line[0], step::<ExactNumber>(line[1], line[0]).map(|c| c * &over), under)
         }
-        &Definition::Planes(planes) => {
-            let (offset, under) = meeting::<Exact>(planes);
+        &PointDefinition::Planes(planes) => {
+            let (offset, under) = meeting::<ExactNumber>(planes);
             (planes[0][0], offset, under)
         }
-        Definition::Middle(points) => return middle(points.each_ref().map(homogeneous)),
+        PointDefinition::Middle(points) => return middle(points.each_ref().map(homogeneous)),
     };
-    let [x, y, z] = vector::<Exact>(start);
+    let [x, y, z] = vector::<ExactNumber>(start);
     let [dx, dy, dz] = offset;
     let coordinates = [x * &under + dx, y * &under + dy, z * &under + dz, under];
-    if coordinates[3].sign() < 0.0 { coordinates.map(Exact::negated) } else { coordinates }
+    if coordinates[3].sign() < 0.0 { coordinates.map(ExactNumber::negated) } else { coordinates }
 }
 
 fn middle([a, b, c]: [Homogeneous; 3]) -> Homogeneous {
     let weights = [b[3].clone() * &c[3], c[3].clone() * &a[3], a[3].clone() * &b[3]];
     let sum =
         |axis: usize| a[axis].clone() * &weights[0] + b[axis].clone() * &weights[1] + c[axis].clone() * &weights[2];
-    let under = weights[0].clone() * &a[3] * &Exact::from(3.0);
+    let under = weights[0].clone() * &a[3] * &ExactNumber::from(3.0);
     [sum(0), sum(1), sum(2), under]
 }
 
@@ -242,39 +242,39 @@ pub fn others(axis: usize) -> [usize; 2] {
 
 /// Which way a, b, c turn, seen along `axis` with the other two in cyclic order: 1.0 counter-clockwise, -1.0 clockwise,
 /// 0.0 on one line.
-pub fn turn(axis: usize, a: &Point, b: &Point, c: &Point) -> f64 {
+pub fn turn(axis: usize, a: &ImplicitPoint, b: &ImplicitPoint, c: &ImplicitPoint) -> f64 {
     let [x, y] = others(axis);
-    if let (Definition::Given(a), Definition::Given(b), Definition::Given(c)) =
+    if let (PointDefinition::Given(a), PointDefinition::Given(b), PointDefinition::Given(c)) =
         (&a.definition, &b.definition, &c.definition)
     {
         let coord = |p: &DVec3| Coord { x: p[x], y: p[y] };
         return sign_of(orient2d(coord(a), coord(b), coord(c)));
     }
-    let difference = |p: &Point, axis: usize| p.coordinate(axis) - c.coordinate(axis);
+    let difference = |p: &ImplicitPoint, axis: usize| p.coordinate(axis) - c.coordinate(axis);
     let rounded = difference(a, x) * &difference(b, y) - difference(a, y) * &difference(b, x);
     rounded.sign().unwrap_or_else(|| turn_exactly([x, y], [a, b, c]))
 }
 
 #[cold]
-fn turn_exactly([x, y]: [usize; 2], points: [&Point; 3]) -> f64 {
-    let [a, b, c] = points.map(Point::homogeneous);
+fn turn_exactly([x, y]: [usize; 2], points: [&ImplicitPoint; 3]) -> f64 {
+    let [a, b, c] = points.map(ImplicitPoint::homogeneous);
     // The determinant of (x, y, w), all w positive.
     let minor = |p: &Homogeneous, q: &Homogeneous| p[x].clone() * &q[y] - p[y].clone() * &q[x];
     (minor(a, b) * &c[3] + minor(b, c) * &a[3] + minor(c, a) * &b[3]).sign()
 }
 
 /// Order of two points along an axis.
-pub fn compare(axis: usize, a: &Point, b: &Point) -> Ordering {
+pub fn compare(axis: usize, a: &ImplicitPoint, b: &ImplicitPoint) -> Ordering {
     let rounded = a.coordinate(axis) - b.coordinate(axis);
     let sign = rounded.sign().unwrap_or_else(|| {
-        let [p, q] = [a, b].map(Point::homogeneous);
+        let [p, q] = [a, b].map(ImplicitPoint::homogeneous);
         (p[axis].clone() * &q[3] - q[axis].clone() * &p[3]).sign()
     });
     sign.total_cmp(&0.0)
 }
 
 /// Whether two points are the same.
-pub fn coincide(a: &Point, b: &Point) -> bool {
+pub fn coincide(a: &ImplicitPoint, b: &ImplicitPoint) -> bool {
     (0..3).all(|axis| compare(axis, a, b) == Ordering::Equal)
 }
 
@@ -286,17 +286,17 @@ pub fn side(a: DVec3, b: DVec3, c: DVec3, point: DVec3) -> f64 {
 
 /// On which side of a plane through three given points any point lies: 1.0 behind the plane, -1.0 in front of it, 0.0 on it;
 /// see [`side`].
-pub fn side_of(plane: [DVec3; 3], point: &Point) -> f64 {
-    if let &Definition::Given(point) = &point.definition {
+pub fn side_of(plane: [DVec3; 3], point: &ImplicitPoint) -> f64 {
+    if let &PointDefinition::Given(point) = &point.definition {
         return side(plane[0], plane[1], plane[2], point);
     }
-    let n = normal::<Rounded>(plane);
-    let offset = [0, 1, 2].map(|axis| point.coordinate(axis) - Rounded::from(plane[0][axis]));
+    let n = normal::<RoundedNumber>(plane);
+    let offset = [0, 1, 2].map(|axis| point.coordinate(axis) - RoundedNumber::from(plane[0][axis]));
     let rounded = dot(&n, &offset);
     -rounded.sign().unwrap_or_else(|| {
         let [x, y, z, w] = point.homogeneous();
-        let start = vector::<Exact>(plane[0]).map(|c| c * w);
-        dot(&normal::<Exact>(plane), &minus(&[x.clone(), y.clone(), z.clone()], &start)).sign()
+        let start = vector::<ExactNumber>(plane[0]).map(|c| c * w);
+        dot(&normal::<ExactNumber>(plane), &minus(&[x.clone(), y.clone(), z.clone()], &start)).sign()
     })
 }
 
@@ -341,7 +341,7 @@ mod tests {
     #[test]
     fn sides_are_those_of_the_counter_clockwise_face() {
         assert_eq!(side(DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z), -1.0);
-        let above = Point::new(Definition::LineAndPlane(
+        let above = ImplicitPoint::new(PointDefinition::LineAndPlane(
             [DVec3::ZERO, DVec3::ONE],
             [DVec3::Z, DVec3::X + DVec3::Z, DVec3::Y + DVec3::Z],
         ));
@@ -360,13 +360,13 @@ mod tests {
             DVec3::new(-1.0, -2.4651903288156627e-33, -9.992007221626408e-17),
             DVec3::new(-1.0, -1.2325951644078312e-32, -5.5511151231257815e-17),
         ];
-        let point = Point::new(Definition::crossing(one, two));
+        let point = ImplicitPoint::new(PointDefinition::crossing(one, two));
         assert!(point.near().is_finite() && point.near().x == -1.0 && point.homogeneous()[3].sign() > 0.0);
         for [a, b] in [one, two] {
-            let [a, b] = [a, b].map(|p| Point::new(Definition::Given(p)));
+            let [a, b] = [a, b].map(|p| ImplicitPoint::new(PointDefinition::Given(p)));
             assert_eq!([turn(0, &a, &b, &point), turn(1, &a, &b, &point)], [0.0; 2]);
         }
-        let far = Point::new(Definition::crossing([DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0)], [DVec3::X, DVec3::Y]));
+        let far = ImplicitPoint::new(PointDefinition::crossing([DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0)], [DVec3::X, DVec3::Y]));
         assert_eq!(far.near(), DVec3::new(0.5, 0.5, 0.0));
     }
 
@@ -375,9 +375,9 @@ mod tests {
         let e = 1e-12;
         let line = [DVec3::new(0.0, 0.0, -e), DVec3::new(1.0, 0.0, e * 3.0)];
         let plane = [DVec3::ZERO, DVec3::X, DVec3::Y];
-        let point = Point::new(Definition::LineAndPlane(line, plane));
+        let point = ImplicitPoint::new(PointDefinition::LineAndPlane(line, plane));
         let exact = {
-            let z = [Exact::from(-e), Exact::from(e * 3.0)];
+            let z = [ExactNumber::from(-e), ExactNumber::from(e * 3.0)];
             z[0].clone().negated().over(&(z[1].clone() - z[0].clone()))
         };
         assert_eq!(point.near(), DVec3::new(exact, 0.0, 0.0));
@@ -388,24 +388,24 @@ mod tests {
     fn a_line_that_grazes_a_plane_of_hardly_any_area_meets_it_somewhere() {
         let line = [DVec3::new(0.0, 0.0, 0.1), DVec3::new(0.0, 0.1, 0.0)];
         let plane = [DVec3::new(0.0, -0.4, 0.1), DVec3::new(0.30000000000000004, 0.2, 0.1), DVec3::new(0.1, -0.2, 0.1)];
-        let point = Point::new(Definition::LineAndPlane(line, plane));
+        let point = ImplicitPoint::new(PointDefinition::LineAndPlane(line, plane));
         assert_eq!(point.near(), line[0]);
         assert!(point.errors.is_finite());
-        assert!(coincide(&point, &Point::new(Definition::Given(line[0]))));
+        assert!(coincide(&point, &ImplicitPoint::new(PointDefinition::Given(line[0]))));
     }
 
     proptest! {
         #[test]
         fn implicit_points_lie_on_what_defines_them(p in point(), q in point(), a in point(), b in point(), c in point()) {
             prop_assume!(side(a, b, c, p) != side(a, b, c, q));
-            let point = Point::new(Definition::LineAndPlane([p, q], [a, b, c]));
+            let point = ImplicitPoint::new(PointDefinition::LineAndPlane([p, q], [a, b, c]));
             prop_assert_eq!(side_of([a, b, c], &point), 0.0);
             for axis in 0..3 {
-                prop_assert_eq!(turn(axis, &Point::new(Definition::Given(p)), &Point::new(Definition::Given(q)), &point), 0.0);
+                prop_assert_eq!(turn(axis, &ImplicitPoint::new(PointDefinition::Given(p)), &ImplicitPoint::new(PointDefinition::Given(q)), &point), 0.0);
             }
             let exact = point.homogeneous();
             for axis in 0..3 {
-                let gap = exact[axis].clone() - Exact::from(point.near[axis]) * &exact[3];
+                let gap = exact[axis].clone() - ExactNumber::from(point.near[axis]) * &exact[3];
                 prop_assert!(gap.over(&exact[3]).abs() <= point.errors[axis] * (1.0 + 1e-9));
             }
         }
@@ -414,10 +414,10 @@ mod tests {
         fn three_planes_meet_where_the_line_of_two_meets_the_third(n in [point(), point(), point()], r in point()) {
             // Three planes through r.
             let planes = n.map(|n| { let u = n.any_orthogonal_vector(); [r, r + u, r + n.cross(u)] });
-            let u = planes.map(|[a, b, c]| normal::<Exact>([a, b, c]));
+            let u = planes.map(|[a, b, c]| normal::<ExactNumber>([a, b, c]));
             prop_assume!(dot(&u[0], &cross(&u[1], &u[2])).sign() != 0.0);
-            let point = Point::new(Definition::Planes(planes));
-            prop_assert!(coincide(&point, &Point::new(Definition::Given(r))));
+            let point = ImplicitPoint::new(PointDefinition::Planes(planes));
+            prop_assert!(coincide(&point, &ImplicitPoint::new(PointDefinition::Given(r))));
             prop_assert!(planes.iter().all(|plane| side_of(*plane, &point) == 0.0));
         }
 
@@ -425,8 +425,8 @@ mod tests {
         fn turns_are_those_of_the_exact_formula(n in [point(), point(), point(), point(), point()], axis in 0..3usize) {
             let [p, q, a, b, c] = n;
             prop_assume!(side(a, b, c, p) != side(a, b, c, q));
-            let [x, y] = [p, a].map(|at| Point::new(Definition::Given(at)));
-            let point = Point::new(Definition::LineAndPlane([p, q], [a, b, c]));
+            let [x, y] = [p, a].map(|at| ImplicitPoint::new(PointDefinition::Given(at)));
+            let point = ImplicitPoint::new(PointDefinition::LineAndPlane([p, q], [a, b, c]));
             prop_assert_eq!(turn(axis, &x, &y, &point), turn_exactly(others(axis), [&x, &y, &point]));
             prop_assert_eq!(turn(axis, &x, &point, &y), -turn(axis, &x, &y, &point));
         }

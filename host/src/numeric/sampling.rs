@@ -10,9 +10,9 @@ use rand_pcg::Pcg64Mcg;
 ///
 /// Give each pixel its own: then the picture is the same for any number of threads and any order of the pixels.
 #[derive(Clone, Debug)]
-pub struct Stream(Pcg64Mcg);
+pub struct RandomStream(Pcg64Mcg);
 
-impl Stream {
+impl RandomStream {
     /// The stream for one purpose.
     ///
     /// - `seed`: of the whole picture or study.
@@ -54,7 +54,7 @@ fn mix(x: u64) -> u64 {
 /// Points of the unit square, one in each cell of a grid of about `count` cells, row by row.
 ///
 /// - Returns exactly `rows * columns` points with `rows * columns <= count`, `rows` the whole root of `count`.
-pub fn stratified(count: usize, stream: &mut Stream) -> Vec<[f64; 2]> {
+pub fn stratified(count: usize, stream: &mut RandomStream) -> Vec<[f64; 2]> {
     let rows = count.isqrt();
     let columns = count.checked_div(rows).unwrap_or(0);
     let cell = |i: usize, n: usize, jitter: f64| ((i as f64 + jitter) / n as f64).min(1.0_f64.next_down());
@@ -133,7 +133,7 @@ mod tests {
     #[test]
     fn streams_repeat_and_differ_by_seed_and_index() {
         let take = |seed, index| {
-            let mut stream = Stream::new(seed, index);
+            let mut stream = RandomStream::new(seed, index);
             [0; 4].map(|_: i32| stream.uniform().to_bits())
         };
         assert_eq!(take(1, 2), take(1, 2));
@@ -146,7 +146,7 @@ mod tests {
     #[test]
     fn neighbouring_streams_are_uncorrelated() {
         let n = 20_000;
-        let first = |i| Stream::new(9, i).uniform() - 0.5;
+        let first = |i| RandomStream::new(9, i).uniform() - 0.5;
         let covariance = (0..n).map(|i| first(i) * first(i + 1)).sum::<f64>() / n as f64;
         let variance = (0..n).map(|i| first(i).powi(2)).sum::<f64>() / n as f64;
         assert!((variance - 1.0 / 12.0).abs() < 0.003, "{variance}");
@@ -156,14 +156,14 @@ mod tests {
 
     #[test]
     fn each_cell_of_a_stratified_set_holds_one_point() {
-        let points = stratified(50, &mut Stream::new(3, 0));
+        let points = stratified(50, &mut RandomStream::new(3, 0));
         assert_eq!(points.len(), 49);
         let mut seen = [false; 49];
         for [x, y] in points {
             let cell = (y * 7.0) as usize * 7 + (x * 7.0) as usize;
             assert!(!std::mem::replace(&mut seen[cell], true));
         }
-        assert!(stratified(0, &mut Stream::new(3, 0)).is_empty());
+        assert!(stratified(0, &mut RandomStream::new(3, 0)).is_empty());
     }
 
     #[test]

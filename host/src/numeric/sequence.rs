@@ -12,14 +12,14 @@ const UNIT: f64 = 1.0 / 4_294_967_296.0;
 /// # Source
 /// Sobol 1967; Owen 1995; the hash in place of Owen's random tree: Laine and Karras 2011, constants of Burley 2020.
 #[derive(Clone, Copy, Debug)]
-pub struct Sequence {
+pub struct SobolSequence {
     seed: u32,
 }
 
-impl Sequence {
+impl SobolSequence {
     /// The sequence of a pixel, or of whatever is to have one of its own.
-    pub fn new(seed: u64, index: u64) -> Sequence {
-        Sequence { seed: fold(mix(mix(seed).wrapping_add(index))) }
+    pub fn new(seed: u64, index: u64) -> SobolSequence {
+        SobolSequence { seed: fold(mix(mix(seed).wrapping_add(index))) }
     }
 
     /// Point `index` for a purpose, in 0..1 both.
@@ -91,7 +91,7 @@ mod tests {
     #[test]
     fn every_elementary_box_holds_one_of_the_first_points() {
         for (seed, purpose) in [(0, 0), (1, 7), (99, 3)] {
-            let sequence = Sequence::new(seed, 5);
+            let sequence = SobolSequence::new(seed, 5);
             for k in 0..9 {
                 for i in 0..=k {
                     let (columns, rows) = (1_usize << i, 1_usize << (k - i));
@@ -112,7 +112,7 @@ mod tests {
         // The half-plane x + 2 y < 1 covers a quarter of the unit square.
         let inside = |&[x, y]: &[f64; 2]| x + 2.0 * y < 1.0;
         let hits: usize = (0..20_000)
-            .map(|pixel| (0..4).map(|index| Sequence::new(3, pixel).point(index, 1)).filter(inside).count())
+            .map(|pixel| (0..4).map(|index| SobolSequence::new(3, pixel).point(index, 1)).filter(inside).count())
             .sum();
         let share = hits as f64 / 80_000.0;
         assert!((share - 0.25).abs() < 5.0 * (0.25f64 * 0.75 / 80_000.0).sqrt(), "{share}");
@@ -120,7 +120,7 @@ mod tests {
 
     #[test]
     fn points_of_different_purposes_do_not_go_together() {
-        let sequence = Sequence::new(1, 1);
+        let sequence = SobolSequence::new(1, 1);
         let count = 4096;
         let product: f64 =
             (0..count).map(|index| (sequence.number(index, 1) - 0.5) * (sequence.number(index, 2) - 0.5)).sum::<f64>();

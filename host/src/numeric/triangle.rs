@@ -39,7 +39,7 @@ pub struct Shear {
 
 /// Where a sheared ray meets a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Crossing {
+pub struct TriangleIntersection {
     /// Parameter along the ray.
     pub t: f64,
     /// Barycentric weight of the second corner, 0..=1.
@@ -126,7 +126,7 @@ impl Shear {
     /// Corners and edges belong to the triangle. A triangle that the ray sees exactly edge-on, and one without
     /// area, is not met: in a closed surface its neighbours are.
     #[inline(always)]
-    pub fn crossing(&self, [a, b, c]: [DVec3; 3]) -> Option<Crossing> {
+    pub fn crossing(&self, [a, b, c]: [DVec3; 3]) -> Option<TriangleIntersection> {
         let (a, b, c) = (self.place(a), self.place(b), self.place(c));
         let first = cross_sign([c[0], c[1]], [b[0], b[1]]);
         let second = cross_sign([a[0], a[1]], [c[0], c[1]]);
@@ -143,7 +143,7 @@ impl Shear {
         // Adding zero turns -0 into 0.
         let (u, v) = (second / whole + 0.0, third / whole + 0.0);
         let z = (first * a[2] + second * b[2] + third * c[2]) / whole;
-        Some(Crossing { t: z * self.unscale / self.length_z, u, v })
+        Some(TriangleIntersection { t: z * self.unscale / self.length_z, u, v })
     }
 }
 
@@ -190,11 +190,11 @@ pub fn nearest(point: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::sampling::{Stream, sphere, triangle};
+    use crate::numeric::sampling::{RandomStream, sphere, triangle};
 
     #[test]
     fn a_hit_lies_where_its_weights_say() {
-        let mut stream = Stream::new(5, 0);
+        let mut stream = RandomStream::new(5, 0);
         for _ in 0..2000 {
             let corners = [0; 3].map(|_: i32| sphere(stream.point()));
             let [u, v] = triangle(stream.point());

@@ -198,11 +198,11 @@ fn hit(a: DVec3, b: DVec3, c: DVec3, ray: &Ray, triangle: u32) -> Option<Hit> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::sampling::{Stream, sphere};
+    use crate::numeric::sampling::{RandomStream, sphere};
 
     #[test]
     fn many_rays_hit_what_each_hits_alone() {
-        let mut stream = Stream::new(1, 0);
+        let mut stream = RandomStream::new(1, 0);
         let vertices: Vec<DVec3> = (0..900).map(|_| sphere(stream.point()) * stream.uniform()).collect();
         let triangles: Vec<[u32; 3]> = (0..300).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         let rays: Vec<Ray> = (0..500)

@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::clip::{Bounds, FAT, clipped_bounds};
+use super::clip::{LocalBounds, FAT, clipped_bounds};
 use super::code::{LocationalCode, MAX_DEPTH};
 use super::cube::Cube;
 
@@ -19,10 +19,10 @@ const CROWD: usize = 32;
 
 /// A triangle in a cell, with the bounds of its part there.
 #[derive(Clone, Copy)]
-pub struct Reference {
+pub struct TriangleReference {
     /// Index of the triangle.
     pub triangle: u32,
-    bounds: Bounds,
+    bounds: LocalBounds,
 }
 
 /// Terminal nodes in the order of their codes.
@@ -90,7 +90,7 @@ pub struct Nodes {
 
 /// What every cell needs to know.
 #[derive(Clone, Copy)]
-pub struct Division<'a> {
+pub struct OctreeBuilder<'a> {
     /// The modelling cube.
     pub cube: Cube,
     /// Vertices, world units.
@@ -105,20 +105,20 @@ pub struct Division<'a> {
     pub grain: usize,
 }
 
-impl Division<'_> {
+impl OctreeBuilder<'_> {
     /// Some triangles in the modelling cube, in order.
-    pub fn references(&self, triangles: Range<usize>) -> Vec<Reference> {
+    pub fn references(&self, triangles: Range<usize>) -> Vec<TriangleReference> {
         triangles.into_par_iter().with_min_len(self.grain).filter_map(|t| self.reference(t as u32)).collect()
     }
 
-    fn reference(&self, triangle: u32) -> Option<Reference> {
-        let bounds = || Bounds::of(&self.corners(triangle).map(|corner| corner.to_array()));
-        self.is_extended(triangle as usize).then(|| Reference { triangle, bounds: bounds() })
+    fn reference(&self, triangle: u32) -> Option<TriangleReference> {
+        let bounds = || LocalBounds::of(&self.corners(triangle).map(|corner| corner.to_array()));
+        self.is_extended(triangle as usize).then(|| TriangleReference { triangle, bounds: bounds() })
     }
 
     /// Some triangles, ascending, in a cell; those that do not touch it are left out.
-    pub fn references_in(&self, cell: LocationalCode, triangles: &[u32]) -> Vec<Reference> {
-        let mut references: Vec<Reference> = triangles.iter().filter_map(|&t| self.reference(t)).collect();
+    pub fn references_in(&self, cell: LocationalCode, triangles: &[u32]) -> Vec<TriangleReference> {
+        let mut references: Vec<TriangleReference> = triangles.iter().filter_map(|&t| self.reference(t)).collect();
         for level in 0..cell.level() {
             let eighths = self.distribute(cell.ancestor(level), &references);
             references =
@@ -185,7 +185,7 @@ impl Division<'_> {
     pub fn divide(
         &self,
         cell: LocationalCode,
-        references: Vec<Reference>,
+        references: Vec<TriangleReference>,
         homes: &[LocationalCode],
         leaves: &mut Leaves,
     ) {
@@ -216,8 +216,8 @@ impl Division<'_> {
     }
 
     /// Gives the triangles of a cell to its eighths, each to all that it touches.
-    pub fn distribute(&self, cell: LocationalCode, references: &[Reference]) -> [Vec<Reference>; 8] {
-        let mut eighths: [Vec<Reference>; 8] = Default::default();
+    pub fn distribute(&self, cell: LocationalCode, references: &[TriangleReference]) -> [Vec<TriangleReference>; 8] {
+        let mut eighths: [Vec<TriangleReference>; 8] = Default::default();
         let (low, half) = place(cell);
         let middle = low.map(|x| x + half);
         for reference in references {
@@ -239,7 +239,7 @@ impl Division<'_> {
                 }
                 let corner = [0, 1, 2].map(|axis| if digit >> axis & 1 == 1 { middle[axis] } else { low[axis] });
                 if let Some(bounds) = clipped_bounds(corners, corner, corner.map(|x| x + half)) {
-                    eighth.push(Reference { triangle: reference.triangle, bounds });
+                    eighth.push(TriangleReference { triangle: reference.triangle, bounds });
                 }
             }
         }
@@ -247,7 +247,7 @@ impl Division<'_> {
     }
 
     /// Bounds of the part of a triangle in a cell; `None` if it does not touch the cell.
-    pub fn part(&self, triangle: u32, cell: LocationalCode) -> Option<Bounds> {
+    pub fn part(&self, triangle: u32, cell: LocationalCode) -> Option<LocalBounds> {
         let (low, half) = place(cell);
         clipped_bounds(self.corners(triangle), low, low.map(|x| x + 2.0 * half))
     }

@@ -14,14 +14,14 @@ const MOST_CORNERS: usize = 9;
 
 /// A box in local coordinates, rounded outwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
+pub struct LocalBounds {
     /// Lowest corner.
     pub low: [f32; 3],
     /// Highest corner.
     pub high: [f32; 3],
 }
 
-impl Bounds {
+impl LocalBounds {
     /// The box of points, rounded outwards.
     pub fn of(points: &[[f64; 3]]) -> Self {
         let mut low = [f64::INFINITY; 3];
@@ -62,9 +62,9 @@ pub fn round_up(x: f64) -> f32 {
 ///
 /// # Source
 /// Sutherland and Hodgman 1974.
-pub fn clipped_bounds(corners: [DVec3; 3], low: [f64; 3], high: [f64; 3]) -> Option<Bounds> {
+pub fn clipped_bounds(corners: [DVec3; 3], low: [f64; 3], high: [f64; 3]) -> Option<LocalBounds> {
     let (polygon, count) = clipped(corners, low, high);
-    (count > 0).then(|| Bounds::of(&polygon[..count]))
+    (count > 0).then(|| LocalBounds::of(&polygon[..count]))
 }
 
 /// The part of a triangle that lies in a cell with [`FAT`] around it: a convex polygon, and its number of corners.

@@ -1,10 +1,10 @@
 //! Rays down the index, nearest child first.
 
-use super::frame::Line;
+use super::frame::PreparedRay;
 use super::index::Child;
 #[cfg(target_arch = "x86_64")]
-use super::lanes::Wide;
-use super::lanes::{LANES, Lanes, Plain, prefetch};
+use super::lanes::AvxLanes;
+use super::lanes::{LANES, Lanes, ScalarLanes, prefetch};
 use super::packet::Packet;
 use super::walk::Search;
 use super::{Hit, Octree, Ray, WalkCount};
@@ -81,14 +81,14 @@ pub fn nearest(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64, count: &mut W
     {
         #[target_feature(enable = "avx2,fma")]
         fn nearest_wide(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64, count: &mut WalkCount) -> Option<Hit> {
-            nearest_by::<Wide>(octree, ray, [t_min, t_max], count)
+            nearest_by::<AvxLanes>(octree, ray, [t_min, t_max], count)
         }
         if is_wide() {
             // SAFETY: the processor has AVX2 and FMA, all that this function asks for.
             return unsafe { nearest_wide(octree, ray, t_min, t_max, count) };
         }
     }
-    nearest_by::<Plain>(octree, ray, [t_min, t_max], count)
+    nearest_by::<ScalarLanes>(octree, ray, [t_min, t_max], count)
 }
 
 /// Says whether anything is hit with `t_min < t < t_max`.
@@ -98,20 +98,20 @@ pub fn is_any(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64) -> bool {
     {
         #[target_feature(enable = "avx2,fma")]
         fn is_any_wide(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64) -> bool {
-            is_any_by::<Wide>(octree, ray, [t_min, t_max])
+            is_any_by::<AvxLanes>(octree, ray, [t_min, t_max])
         }
         if is_wide() {
             // SAFETY: the processor has AVX2 and FMA, all that this function asks for.
             return unsafe { is_any_wide(octree, ray, t_min, t_max) };
         }
     }
-    is_any_by::<Plain>(octree, ray, [t_min, t_max])
+    is_any_by::<ScalarLanes>(octree, ray, [t_min, t_max])
 }
 
 /// The nearest triangle that a ray meets, as [`nearest`] finds it, with given instructions.
 #[inline(always)]
 pub fn nearest_by<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2], count: &mut WalkCount) -> Option<Hit> {
-    let line = Line::new(ray, &octree.cube, limits[0], limits[1])?;
+    let line = PreparedRay::new(ray, &octree.cube, limits[0], limits[1])?;
     let mut search = Search::new(octree, &line, limits[0], limits[1], false);
     search.descend::<L, false>();
     let (hit, work) = search.found();
@@ -122,7 +122,7 @@ pub fn nearest_by<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2], count:
 /// Whether a ray meets any triangle, as [`is_any`] tells, with given instructions.
 #[inline(always)]
 pub fn is_any_by<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2]) -> bool {
-    let line = Line::new(ray, &octree.cube, limits[0], limits[1]);
+    let line = PreparedRay::new(ray, &octree.cube, limits[0], limits[1]);
     line.is_some_and(|line| Search::new(octree, &line, limits[0], limits[1], true).descend::<L, true>())
 }
 
@@ -133,19 +133,19 @@ pub fn each(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64, enough: impl FnM
     {
         #[target_feature(enable = "avx2,fma")]
         fn each_wide(octree: &Octree, ray: &Ray, limits: [f64; 2], enough: impl FnMut(Hit) -> bool) -> bool {
-            each_by::<Wide>(octree, ray, limits, enough)
+            each_by::<AvxLanes>(octree, ray, limits, enough)
         }
         if is_wide() {
             // SAFETY: the processor has AVX2 and FMA, all that this function asks for.
             return unsafe { each_wide(octree, ray, [t_min, t_max], enough) };
         }
     }
-    each_by::<Plain>(octree, ray, [t_min, t_max], enough)
+    each_by::<ScalarLanes>(octree, ray, [t_min, t_max], enough)
 }
 
 #[inline(always)]
 fn each_by<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2], mut enough: impl FnMut(Hit) -> bool) -> bool {
-    let Some(line) = Line::new(ray, &octree.cube, limits[0], limits[1]) else { return false };
+    let Some(line) = PreparedRay::new(ray, &octree.cube, limits[0], limits[1]) else { return false };
     let mut search = Search::new(octree, &line, limits[0], limits[1], true);
     search.visit::<L>(|search, packet| search.any_of_packet::<L>(packet, &mut enough))
 }
@@ -169,14 +169,14 @@ pub fn each_in(
             limits: [f64; 2],
             enough: impl FnMut(Hit) -> bool,
         ) -> bool {
-            each_in_by::<Wide>(octree, packets, ray, limits, enough)
+            each_in_by::<AvxLanes>(octree, packets, ray, limits, enough)
         }
         if is_wide() {
             // SAFETY: the processor has AVX2 and FMA, all that this function asks for.
             return unsafe { each_in_wide(octree, packets, ray, [t_min, t_max], enough) };
         }
     }
-    each_in_by::<Plain>(octree, packets, ray, [t_min, t_max], enough)
+    each_in_by::<ScalarLanes>(octree, packets, ray, [t_min, t_max], enough)
 }
 
 /// As [`is_any`], among the triangles of some packets.
@@ -186,14 +186,14 @@ pub fn is_any_in(octree: &Octree, packets: &[Packet], ray: &Ray, t_min: f64, t_m
     {
         #[target_feature(enable = "avx2,fma")]
         fn is_any_in_wide(octree: &Octree, packets: &[Packet], ray: &Ray, limits: [f64; 2]) -> bool {
-            is_any_in_by::<Wide>(octree, packets, ray, limits)
+            is_any_in_by::<AvxLanes>(octree, packets, ray, limits)
         }
         if is_wide() {
             // SAFETY: the processor has AVX2 and FMA, all that this function asks for.
             return unsafe { is_any_in_wide(octree, packets, ray, [t_min, t_max]) };
         }
     }
-    is_any_in_by::<Plain>(octree, packets, ray, [t_min, t_max])
+    is_any_in_by::<ScalarLanes>(octree, packets, ray, [t_min, t_max])
 }
 
 #[inline(always)]
@@ -204,14 +204,14 @@ fn each_in_by<L: Lanes>(
     limits: [f64; 2],
     mut enough: impl FnMut(Hit) -> bool,
 ) -> bool {
-    let Some(line) = Line::new(ray, &octree.cube, limits[0], limits[1]) else { return false };
+    let Some(line) = PreparedRay::new(ray, &octree.cube, limits[0], limits[1]) else { return false };
     let search = Search::new(octree, &line, limits[0], limits[1], true);
     packets.iter().any(|packet| search.any_of_packet::<L>(packet, &mut enough))
 }
 
 #[inline(always)]
 fn is_any_in_by<L: Lanes>(octree: &Octree, packets: &[Packet], ray: &Ray, limits: [f64; 2]) -> bool {
-    let Some(line) = Line::new(ray, &octree.cube, limits[0], limits[1]) else { return false };
+    let Some(line) = PreparedRay::new(ray, &octree.cube, limits[0], limits[1]) else { return false };
     let mut search = Search::new(octree, &line, limits[0], limits[1], true);
     let within = line.frame.within(search.t_min, search.t_max);
     packets.iter().any(|packet| search.test::<L, true>(packet, within))

@@ -8,12 +8,12 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::build::{Division, Leaves, Nodes, Reference, eighths, within};
+use super::build::{OctreeBuilder, Leaves, Nodes, TriangleReference, eighths, within};
 use super::code::LocationalCode;
 use super::error::{MAX_TRIANGLES, OctreeError, check};
-use super::index::Index;
+use super::index::WideBvh;
 use super::settings::Walk;
-use super::tree::{Object, Octree};
+use super::tree::{ObjectCounts, Octree};
 
 impl Octree {
     /// Puts an object in, as the last one.
@@ -41,7 +41,7 @@ impl Octree {
         let added = self.triangles.len()..total;
         Arc::make_mut(&mut self.vertices).extend(vertices);
         Arc::make_mut(&mut self.triangles).extend(triangles.iter().map(|corners| corners.map(|corner| corner + first)));
-        self.objects.push(Object { vertices: vertices.len(), triangles: triangles.len() });
+        self.objects.push(ObjectCounts { vertices: vertices.len(), triangles: triangles.len() });
         let division = self.division();
         let homes = merged(&self.nodes().homes, &division.homes(added.clone()));
         let mut leaves = Leaves::default();
@@ -57,7 +57,7 @@ impl Octree {
     ///
     /// Cost: as for [`Octree::insert`].
     pub fn remove(&mut self, object: usize) -> bool {
-        let Some(&Object { vertices, triangles }) = self.objects.get(object) else { return false };
+        let Some(&ObjectCounts { vertices, triangles }) = self.objects.get(object) else { return false };
         self.divide();
         let before = &self.objects[..object];
         let first_vertex: usize = before.iter().map(|o| o.vertices).sum();
@@ -82,13 +82,13 @@ impl Octree {
     }
 
     fn drop_index(&mut self) {
-        (self.walk, self.index) = (Walk::LeadingDirection, Index::default());
+        (self.walk, self.index) = (Walk::LeadingDirection, WideBvh::default());
     }
 }
 
 /// A change of the octree from above.
 struct Edit<'a> {
-    division: Division<'a>,
+    division: OctreeBuilder<'a>,
     old: &'a Leaves,
     /// Triangles that go.
     removed: Range<usize>,
@@ -107,7 +107,7 @@ impl Edit<'_> {
         cell: LocationalCode,
         nodes: Range<usize>,
         homes: &[LocationalCode],
-        added: Vec<Reference>,
+        added: Vec<TriangleReference>,
         leaves: &mut Leaves,
     ) {
         let emptied = self.emptied.partition_point(|&node| node < nodes.start);
@@ -143,7 +143,7 @@ impl Edit<'_> {
         cell: LocationalCode,
         nodes: Range<usize>,
         homes: &[LocationalCode],
-        added: &[Reference],
+        added: &[TriangleReference],
         leaves: &mut Leaves,
     ) {
         for (eighth, added) in eighths(cell).zip(self.division.distribute(cell, added)) {

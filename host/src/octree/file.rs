@@ -12,12 +12,12 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::build::{Division, Leaves, Nodes, Reference, eighths};
+use super::build::{OctreeBuilder, Leaves, Nodes, TriangleReference, eighths};
 use super::code::{LocationalCode, MAX_DEPTH};
 use super::cube::Cube;
 use super::error::{OctreeError, check};
-use super::settings::{Settings, Walk};
-use super::tree::{Object, Octree};
+use super::settings::{OctreeSettings, Walk};
+use super::tree::{ObjectCounts, Octree};
 
 /// The first bytes of every file.
 const NAME: &[u8; 8] = b"PERISOCT";
@@ -151,11 +151,11 @@ fn demand(holds: bool, otherwise: &'static str) -> Result<(), FileError> {
 /// - `nodes`: those in the cell.
 /// - `references`: to the triangles that touch the cell.
 fn check_nodes(
-    division: &Division,
+    division: &OctreeBuilder,
     leaves: &Leaves,
     cell: LocationalCode,
     nodes: Range<usize>,
-    references: &[Reference],
+    references: &[TriangleReference],
 ) -> Result<(), FileError> {
     if leaves.codes.get(nodes.start).filter(|_| !nodes.is_empty()) == Some(&cell) {
         let named = leaves.of(nodes.start).iter();
@@ -183,7 +183,7 @@ impl Stored {
         let leaf_triangles = usize::try_from(self.leaf_triangles).unwrap_or(usize::MAX);
         let objects = self.objects(&vertices)?;
         let leaves = self.leaves()?;
-        let settings = Settings { depth: self.depth, leaf_triangles, ..Settings::default() };
+        let settings = OctreeSettings { depth: self.depth, leaf_triangles, ..OctreeSettings::default() };
         let mut octree = Octree { vertices: Arc::new(vertices), objects, ..Octree::of_cube(cube, &settings) };
         octree.triangles = Arc::new(self.triangles);
         let division = octree.division();
@@ -195,7 +195,7 @@ impl Stored {
     }
 
     /// The objects, which share out all vertices and triangles, each using its own vertices.
-    fn objects(&self, vertices: &[DVec3]) -> Result<Vec<Object>, FileError> {
+    fn objects(&self, vertices: &[DVec3]) -> Result<Vec<ObjectCounts>, FileError> {
         let mut objects = Vec::new();
         let (mut vertex, mut triangle) = (0, 0);
         for &[vertex_count, triangle_count] in &self.objects {
@@ -210,7 +210,7 @@ impl Stored {
                 corners.all(|&corner| (vertex..end_vertex).contains(&(corner as usize))),
                 "an object uses the vertices of another",
             )?;
-            objects.push(Object { vertices: end_vertex - vertex, triangles: end_triangle - triangle });
+            objects.push(ObjectCounts { vertices: end_vertex - vertex, triangles: end_triangle - triangle });
             (vertex, triangle) = (end_vertex, end_triangle);
         }
         demand((vertex, triangle) == (vertices.len(), self.triangles.len()), "the objects have less than there is")?;

@@ -28,22 +28,22 @@ const MARGIN: f64 = 4.0;
 
 /// A ray made ready for what is in a cube.
 #[derive(Clone, Debug)]
-pub struct Line {
+pub struct PreparedRay {
     /// What decides which triangles it meets.
     pub shear: Shear,
     /// The part that counts.
     pub chord: Chord,
     /// What tests in single precision need of the ray.
-    pub frame: Frame,
+    pub frame: SinglePrecisionRay,
 }
 
-impl Line {
+impl PreparedRay {
     /// `None` if the ray misses the cube between `t_min` and `t_max`, or is none.
     #[inline(always)]
     pub fn new(ray: &Ray, cube: &Cube, t_min: f64, t_max: f64) -> Option<Self> {
         let shear = Shear::new(ray, cube.unit())?;
         let chord = Chord::new(ray, &shear, cube, t_min, t_max)?;
-        let frame = Frame::new(&shear, &chord);
+        let frame = SinglePrecisionRay::new(&shear, &chord);
         Some(Self { shear, chord, frame })
     }
 }
@@ -128,7 +128,7 @@ impl Chord {
 ///
 /// Lengths in single precision are counted from a little before the entry, so that none that matters is negative.
 #[derive(Clone, Debug)]
-pub struct Frame {
+pub struct SinglePrecisionRay {
     /// The longest axis last, the others in cyclic order.
     pub axes: [usize; 3],
     /// Slopes over the longest axis as coordinates grow, by axis.
@@ -159,7 +159,7 @@ pub struct Frame {
     offset: f64,
 }
 
-impl Frame {
+impl SinglePrecisionRay {
     /// Prepares a part of a ray that was sheared before.
     #[inline(always)]
     pub fn new(shear: &Shear, chord: &Chord) -> Self {

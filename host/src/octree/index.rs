@@ -7,12 +7,12 @@ use rayon::current_num_threads;
 use rayon::prelude::*;
 use wide::f32x4;
 
-use super::build::Division;
-use super::frame::Frame;
+use super::build::OctreeBuilder;
+use super::frame::SinglePrecisionRay;
 use super::items::{self, Item};
 use super::lanes::{Eight, LANES, Lanes};
 use super::packet::Packet;
-use super::partition::{Part, divide};
+use super::partition::{ItemGroup, divide};
 use crate::memory::prefer_large_pages;
 use crate::numeric::bounds::Bounds;
 
@@ -60,14 +60,14 @@ impl Child {
 /// Up to eight boxes, each of a node or of packets.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
-pub struct Node {
+pub struct BvhNode {
     /// By axis, then low and high.
     bounds: [[Eight; 2]; 3],
     /// What is in each.
     pub children: [Child; LANES],
 }
 
-impl Node {
+impl BvhNode {
     const EMPTY: Self = Self {
         bounds: [[Eight([f32::INFINITY; LANES]), Eight([f32::NEG_INFINITY; LANES])]; 3],
         children: [Child(0); LANES],
@@ -94,7 +94,7 @@ impl Node {
 
     /// The children that the ray may meet up to a limit, one bit each, and where it enters them.
     #[inline(always)]
-    pub fn meets<L: Lanes>(&self, frame: &Frame, limit: f32) -> (u32, L) {
+    pub fn meets<L: Lanes>(&self, frame: &SinglePrecisionRay, limit: f32) -> (u32, L) {
         let [x, y, z] = &self.bounds;
         let near_z = near::<L>(z, 2, frame).most(L::splat(0.0));
         let enter = near::<L>(x, 0, frame).most(near(y, 1, frame)).most(near_z);
@@ -106,30 +106,30 @@ impl Node {
 
 /// Lengths to the near sides of boxes.
 #[inline(always)]
-fn near<L: Lanes>(sides: &[Eight; 2], axis: usize, frame: &Frame) -> L {
+fn near<L: Lanes>(sides: &[Eight; 2], axis: usize, frame: &SinglePrecisionRay) -> L {
     let side = L::load(&sides[usize::from(frame.down[axis])]);
     side.times_plus(L::splat(frame.inverse[axis]), L::splat(frame.near[axis]))
 }
 
 /// Lengths to the far sides of boxes.
 #[inline(always)]
-fn far<L: Lanes>(sides: &[Eight; 2], axis: usize, frame: &Frame) -> L {
+fn far<L: Lanes>(sides: &[Eight; 2], axis: usize, frame: &SinglePrecisionRay) -> L {
     let side = L::load(&sides[usize::from(!frame.down[axis])]);
     side.times_plus(L::splat(frame.inverse[axis]), L::splat(frame.far[axis]))
 }
 
 /// The index over items: nodes and packets.
 #[derive(Clone, Debug, Default)]
-pub struct Index {
+pub struct WideBvh {
     /// The first is the top. None for no items.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<BvhNode>,
     /// Triangles in the order of the leaves of the tree.
     pub packets: Vec<Packet>,
 }
 
-impl Index {
+impl WideBvh {
     /// Builds it; the result does not depend on the number of threads.
-    pub fn new(division: &Division<'_>) -> Self {
+    pub fn new(division: &OctreeBuilder<'_>) -> Self {
         let local = items::local(division);
         let (items, mut cells) = items::items(division, &local);
         let mut index = Self::default();
@@ -139,7 +139,7 @@ impl Index {
         let builder =
             Builder { vertices: division.vertices, triangles: division.triangles, local: &local, items: &items };
         let mut groups = Vec::new();
-        let part = Part::of(&cells);
+        let part = ItemGroup::of(&cells);
         index.of_cells(&mut cells, &part, &mut groups);
         let build = |cells: &[Item], index: &mut Self| builder.of_group(cells, index);
         if current_num_threads() == 1 {
@@ -168,14 +168,14 @@ impl Index {
     }
 
     /// Adds the nodes of many cells, and collects groups of few with the places that wait for their nodes.
-    fn of_cells<'a>(&mut self, cells: &'a mut [Item], part: &Part, groups: &mut Vec<Group<'a>>) -> Child {
-        let is_few = |part: &Part| part.items <= FEW_CELLS;
+    fn of_cells<'a>(&mut self, cells: &'a mut [Item], part: &ItemGroup, groups: &mut Vec<Group<'a>>) -> Child {
+        let is_few = |part: &ItemGroup| part.items <= FEW_CELLS;
         if is_few(part) {
             groups.push((cells, None));
             return Child(0);
         }
         let node = Child(self.nodes.len() as u32);
-        self.nodes.push(Node::EMPTY);
+        self.nodes.push(BvhNode::EMPTY);
         for (lane, (share, part)) in shares(cells, part).into_iter().enumerate() {
             let place = (node.0 as usize, lane);
             self.nodes[place.0].set(lane, &part.around, Child(0));
@@ -220,7 +220,7 @@ impl Index {
 type Group<'a> = (&'a mut [Item], Option<(usize, usize)>);
 
 /// Divides the largest part of some items again and again until a node is full.
-fn shares<'a>(mut items: &'a mut [Item], part: &Part) -> Vec<(&'a mut [Item], Part)> {
+fn shares<'a>(mut items: &'a mut [Item], part: &ItemGroup) -> Vec<(&'a mut [Item], ItemGroup)> {
     let mut parts = Vec::with_capacity(LANES);
     parts.push(*part);
     while parts.len() < LANES {
@@ -238,7 +238,7 @@ fn shares<'a>(mut items: &'a mut [Item], part: &Part) -> Vec<(&'a mut [Item], Pa
         parts[slot] = left;
         parts.insert(slot + 1, right);
     }
-    let share = |part: Part| {
+    let share = |part: ItemGroup| {
         let (share, rest) = std::mem::take(&mut items).split_at_mut(part.items);
         items = rest;
         (share, part)
@@ -256,19 +256,19 @@ struct Builder<'a> {
 
 impl Builder<'_> {
     /// Adds the nodes of the items of some cells.
-    fn of_group(&self, cells: &[Item], index: &mut Index) -> Child {
+    fn of_group(&self, cells: &[Item], index: &mut WideBvh) -> Child {
         let mut items = Vec::with_capacity(cells.iter().map(Item::weight).sum());
         for cell in cells {
             let first = cell.number() as usize;
             items.extend_from_slice(&self.items[first..first + cell.weight()]);
         }
-        let part = Part::of(&items);
+        let part = ItemGroup::of(&items);
         self.node(&mut items, &part, index)
     }
 
-    fn node(&self, items: &mut [Item], part: &Part, index: &mut Index) -> Child {
+    fn node(&self, items: &mut [Item], part: &ItemGroup, index: &mut WideBvh) -> Child {
         let node = index.nodes.len();
-        index.nodes.push(Node::EMPTY);
+        index.nodes.push(BvhNode::EMPTY);
         for (lane, (share, part)) in shares(items, part).into_iter().enumerate() {
             let child = if part.items > LEAF { self.node(share, &part, index) } else { self.packets(share, index) };
             index.nodes[node].set(lane, &part.around, child);
@@ -276,7 +276,7 @@ impl Builder<'_> {
         Child(node as u32)
     }
 
-    fn packets(&self, items: &[Item], index: &mut Index) -> Child {
+    fn packets(&self, items: &[Item], index: &mut WideBvh) -> Child {
         let place = |vertex: u32| {
             let [x, y, z, _] = self.local[vertex as usize].to_array();
             [x, y, z]

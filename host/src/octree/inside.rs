@@ -4,13 +4,13 @@ use glam::{DVec2, DVec3};
 use robust::{Coord3D, orient3d};
 
 use super::cube::Cube;
-use super::{Location, LocationalCode, MAX_DEPTH, Octree, Sorted};
+use super::{Location, LocationalCode, MAX_DEPTH, Octree, TriangleBvh};
 use crate::numeric::bounds::Bounds;
 use crate::numeric::predicates::turn;
 
 /// On which side of a closed surface a point lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
+pub enum Containment {
     /// The surface winds around it.
     Inside,
     /// The surface does not wind around it.
@@ -28,8 +28,8 @@ impl Octree {
     ///
     /// - Returns [`Side::Outside`] for a point that is not finite, and [`Side::Inside`] wherever the surface winds around
     ///   the point, however often and whichever way.
-    pub fn side(&self, point: DVec3) -> Side {
-        let Some(mut voxel) = self.cube.voxel(point) else { return Side::Outside };
+    pub fn side(&self, point: DVec3) -> Containment {
+        let Some(mut voxel) = self.cube.voxel(point) else { return Containment::Outside };
         let mut ahead = Vec::new();
         loop {
             let (cell, leaf) = match self.locate_leaf(LocationalCode::containing(voxel, MAX_DEPTH)) {
@@ -50,14 +50,14 @@ impl Octree {
     }
 }
 
-impl Sorted {
+impl TriangleBvh {
     /// Says on which side of the triangles a point lies, as [`Octree::side`] does.
     ///
     /// - `corners`: the corners of a triangle.
-    pub fn side(&self, point: DVec3, corners: impl Fn(u32) -> [DVec3; 3]) -> Side {
+    pub fn side(&self, point: DVec3, corners: impl Fn(u32) -> [DVec3; 3]) -> Containment {
         let bounds = self.bounds();
         if !bounds.touches(Bounds { min: point, max: point }) {
-            return Side::Outside;
+            return Containment::Outside;
         }
         let mut ahead = Vec::new();
         self.touching(Bounds { min: point, max: point.with_x(f64::INFINITY) }, |triangle| {
@@ -70,7 +70,7 @@ impl Sorted {
 /// On which side of a surface a point lies; `ahead` are all triangles, each once, that a ray along x may meet.
 ///
 /// - `scale`: a power of two that brings the surface to about size 1, so that no product leaves the range of numbers.
-fn side(point: DVec3, ahead: impl Iterator<Item = [DVec3; 3]>, scale: f64) -> Side {
+fn side(point: DVec3, ahead: impl Iterator<Item = [DVec3; 3]>, scale: f64) -> Containment {
     let point = point * scale;
     let mut winding = 0;
     for corners in ahead {
@@ -82,11 +82,11 @@ fn side(point: DVec3, ahead: impl Iterator<Item = [DVec3; 3]>, scale: f64) -> Si
         let [a, b, c, p] = [corners[0], corners[1], corners[2], point].map(|p| Coord3D { x: p.x, y: p.y, z: p.z });
         let height = orient3d(a, b, c, p);
         if height == 0.0 && is_in_plane_of(corners, point) {
-            return Side::Surface;
+            return Containment::Surface;
         }
         winding += passes(corners, point, height);
     }
-    if winding == 0 { Side::Outside } else { Side::Inside }
+    if winding == 0 { Containment::Outside } else { Containment::Inside }
 }
 
 /// A point seen along an axis, so that the other two turn from the next to the one after it.

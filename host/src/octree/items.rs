@@ -1,7 +1,7 @@
 //! What the index holds, in the order of locational codes: triangles, and pieces of large ones that are thin and slanted.
 
-use super::build::{Division, eighths, place};
-use super::clip::{Bounds, FAT};
+use super::build::{OctreeBuilder, eighths, place};
+use super::clip::{LocalBounds, FAT};
 use super::code::{LocationalCode, MAX_DEPTH};
 use super::sorted::{DIGITS, radix_sorted};
 use glam::DVec3;
@@ -82,7 +82,7 @@ impl Item {
 }
 
 /// Local coordinates of vertices, rounded to single precision.
-pub fn local(division: &Division<'_>) -> Vec<f32x4> {
+pub fn local(division: &OctreeBuilder<'_>) -> Vec<f32x4> {
     let place = |&vertex: &DVec3| {
         let [x, y, z] = division.cube.local(vertex).as_vec3().to_array();
         f32x4::new([x, y, z, 0.0])
@@ -92,7 +92,7 @@ pub fn local(division: &Division<'_>) -> Vec<f32x4> {
 
 /// The items of all triangles that a ray can hit, in the order of the codes of their middles; and the cells of about
 /// [`CELL_ITEMS`] that they lie in, each with its first item as its number.
-pub fn items(division: &Division<'_>, local: &[f32x4]) -> (Vec<Item>, Vec<Item>) {
+pub fn items(division: &OctreeBuilder<'_>, local: &[f32x4]) -> (Vec<Item>, Vec<Item>) {
     let whole = |triangle: usize| {
         let [a, b, c] = division.triangles[triangle].map(|i| local[i as usize]);
         let item = Item { low: a.fast_min(b).fast_min(c), high: a.fast_max(b).fast_max(c) };
@@ -134,7 +134,7 @@ fn key(item: &Item) -> u64 {
 }
 
 /// Replaces large triangles that are thin and slanted by their pieces in small cells, if that saves enough.
-fn cut(division: &Division<'_>, items: &mut Vec<Item>) {
+fn cut(division: &OctreeBuilder<'_>, items: &mut Vec<Item>) {
     let all = items.iter().fold(Item::EMPTY, |all, item| all.union(item)).half_area();
     let threshold = WORTHWHILE * all / items.len() as f32;
     let mut added = Vec::new();
@@ -149,7 +149,7 @@ fn cut(division: &Division<'_>, items: &mut Vec<Item>) {
         }
         let mut pieces = Vec::new();
         collect(division, number, LocationalCode::ROOT, home_level(&corners) + FINER, &mut pieces);
-        let area: f32 = pieces.iter().map(Bounds::half_area).sum();
+        let area: f32 = pieces.iter().map(LocalBounds::half_area).sum();
         if item.half_area() - area > threshold * pieces.len() as f32 {
             let point = |[x, y, z]: [f32; 3]| f32x4::new([x, y, z, 0.0]);
             let mut pieces =
@@ -168,7 +168,7 @@ fn home_level(&[a, b, c]: &[DVec3; 3]) -> u32 {
 }
 
 /// Adds the pieces of a triangle in the cells of a level within a cell.
-fn collect(division: &Division<'_>, triangle: u32, cell: LocationalCode, level: u32, pieces: &mut Vec<Bounds>) {
+fn collect(division: &OctreeBuilder<'_>, triangle: u32, cell: LocationalCode, level: u32, pieces: &mut Vec<LocalBounds>) {
     let Some(piece) = division.part(triangle, cell) else { return };
     if cell.level() >= level.min(MAX_DEPTH) {
         pieces.push(piece);

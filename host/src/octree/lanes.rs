@@ -59,16 +59,16 @@ pub fn prefetch<T>(thing: &T) {
 
 /// Whatever the processor.
 #[derive(Clone, Copy)]
-pub struct Plain([f32; LANES]);
+pub struct ScalarLanes([f32; LANES]);
 
-impl Plain {
+impl ScalarLanes {
     #[inline(always)]
     fn each(self, other: Self, of: impl Fn(f32, f32) -> f32) -> Self {
         Self(std::array::from_fn(|lane| of(self.0[lane], other.0[lane])))
     }
 }
 
-impl Lanes for Plain {
+impl Lanes for ScalarLanes {
     #[inline(always)]
     fn splat(x: f32) -> Self {
         Self([x; LANES])
@@ -124,7 +124,7 @@ impl Lanes for Plain {
 }
 
 #[cfg(target_arch = "x86_64")]
-pub use wide::Wide;
+pub use wide::AvxLanes;
 
 #[cfg(target_arch = "x86_64")]
 mod wide {
@@ -136,9 +136,9 @@ mod wide {
 
     /// For processors with AVX2 and fused multiply-adds.
     #[derive(Clone, Copy)]
-    pub struct Wide(__m256);
+    pub struct AvxLanes(__m256);
 
-    impl Lanes for Wide {
+    impl Lanes for AvxLanes {
         #[inline(always)]
         fn splat(x: f32) -> Self {
             Self(unsafe { _mm256_set1_ps(x) })

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::Sorted;
+use super::TriangleBvh;
 use crate::mesh::Mesh;
 use crate::numeric::{bounds::Bounds, triangle};
 
@@ -18,7 +18,7 @@ pub struct Nearest {
     pub distance: f64,
 }
 
-impl Sorted {
+impl TriangleBvh {
     /// The point of the triangles that is nearest to a point; `None` without triangles.
     ///
     /// - `corners`: the corners of a triangle.
@@ -48,7 +48,7 @@ impl Sorted {
 /// - `most`: of each at most so many points are measured, vertices and middles of triangles, evenly chosen.
 pub fn hausdorff(one: &Mesh, two: &Mesh, most: usize) -> f64 {
     let from = |of: &Mesh, other: &Mesh| {
-        let sorted = Sorted::new(&other.vertices, &other.triangles);
+        let sorted = TriangleBvh::new(&other.vertices, &other.triangles);
         let vertices = of.vertices.len();
         let point = |index: usize| match index.checked_sub(vertices) {
             Some(triangle) => of.corners(triangle).into_iter().sum::<DVec3>() / 3.0,
@@ -69,15 +69,15 @@ fn distance_to_box(point: DVec3, bounds: Bounds) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::sampling::{Stream, sphere};
+    use crate::numeric::sampling::{RandomStream, sphere};
 
     #[test]
     fn the_nearest_point_is_what_a_search_of_all_finds() {
-        let mut stream = Stream::new(91, 0);
+        let mut stream = RandomStream::new(91, 0);
         let vertices: Vec<DVec3> = (0..600).map(|_| sphere(stream.point()) * stream.uniform()).collect();
         let triangles: Vec<[u32; 3]> = (0..200).map(|i| [3 * i, 3 * i + 1, 3 * i + i % 3]).collect();
         let corners = |t: u32| triangles[t as usize].map(|v| vertices[v as usize]);
-        let sorted = Sorted::new(&vertices, &triangles);
+        let sorted = TriangleBvh::new(&vertices, &triangles);
         for _ in 0..300 {
             let point = sphere(stream.point()) * 3.0 * stream.uniform();
             let found = sorted.nearest(point, corners).expect("there are triangles");
@@ -92,7 +92,7 @@ mod tests {
                 assert!(other.distance(point) >= found.distance - 1e-12);
             }
         }
-        assert_eq!(Sorted::default().nearest(DVec3::ZERO, |_| [DVec3::ZERO; 3]), None);
+        assert_eq!(TriangleBvh::default().nearest(DVec3::ZERO, |_| [DVec3::ZERO; 3]), None);
     }
 
     /// A square in the plane z = height, as two triangles.

@@ -1,6 +1,6 @@
 //! Eight triangles at a time: which of them can a ray hit?
 
-use super::frame::Frame;
+use super::frame::SinglePrecisionRay;
 use super::lanes::{Eight, LANES, Lanes};
 use glam::DVec3;
 
@@ -91,7 +91,7 @@ impl Packet {
     /// are off it is off by 3 d s; their sum, which is at most 6 d more than the whole, is off by as much and their
     /// products by 2^-22 of it: together less than 8 d (s + e) + 2 e whole, after multiplication by the whole.
     #[inline(always)]
-    pub fn candidates<L: Lanes, const ANY: bool>(&self, frame: &Frame, limit: f32, within: [f32; 2]) -> (u32, u32) {
+    pub fn candidates<L: Lanes, const ANY: bool>(&self, frame: &SinglePrecisionRay, limit: f32, within: [f32; 2]) -> (u32, u32) {
         let [a, b, c] = &self.corners;
         let ((ax, ay), (bx, by), (cx, cy)) = (across::<L>(a, frame), across::<L>(b, frame), across::<L>(c, frame));
         let first = cx.times_minus(by, cy.times(bx));
@@ -126,7 +126,7 @@ impl Packet {
 
 /// Where corners lie beside the ray.
 #[inline(always)]
-fn across<L: Lanes>(corners: &[Eight; 3], frame: &Frame) -> (L, L) {
+fn across<L: Lanes>(corners: &[Eight; 3], frame: &SinglePrecisionRay) -> (L, L) {
     let [x, y, z] = frame.axes;
     let along = L::load(&corners[z]);
     let across = |axis: usize| {
@@ -138,6 +138,6 @@ fn across<L: Lanes>(corners: &[Eight; 3], frame: &Frame) -> (L, L) {
 
 /// Where corners lie along the ray.
 #[inline(always)]
-fn along<L: Lanes>(corners: &[Eight; 3], frame: &Frame) -> L {
+fn along<L: Lanes>(corners: &[Eight; 3], frame: &SinglePrecisionRay) -> L {
     L::load(&corners[frame.axes[2]]).times_minus(L::splat(frame.sign_z), L::splat(frame.base_z))
 }

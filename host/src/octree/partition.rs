@@ -13,7 +13,7 @@ const FEW_ITEMS: usize = 32;
 
 /// Successive items as one.
 #[derive(Clone, Copy)]
-pub struct Part {
+pub struct ItemGroup {
     /// Number of items.
     pub items: usize,
     /// Number of triangles that they stand for.
@@ -24,7 +24,7 @@ pub struct Part {
     centres: Item,
 }
 
-impl Part {
+impl ItemGroup {
     const NOTHING: Self = Self { items: 0, weight: 0, around: Item::EMPTY, centres: Item::EMPTY };
 
     /// All of some items.
@@ -51,7 +51,7 @@ impl Part {
 ///
 /// # Source
 /// Surface-area heuristic: Goldsmith and Salmon 1987; bins: Wald 2007. The price counts packets, not items.
-pub fn divide(items: &mut [Item], part: &Part) -> [Part; 2] {
+pub fn divide(items: &mut [Item], part: &ItemGroup) -> [ItemGroup; 2] {
     let divided = if items.len() <= FEW_ITEMS {
         Bins::<{ BINS / 2 }>::divide(items, part)
     } else {
@@ -60,7 +60,7 @@ pub fn divide(items: &mut [Item], part: &Part) -> [Part; 2] {
     divided.unwrap_or_else(|| {
         // All middles in one point: any half is as good.
         let (left, right) = items.split_at(items.len() / 2);
-        [Part::of(left), Part::of(right)]
+        [ItemGroup::of(left), ItemGroup::of(right)]
     })
 }
 
@@ -71,7 +71,7 @@ struct Bins<const N: usize> {
 }
 
 impl<const N: usize> Bins<N> {
-    fn divide(items: &mut [Item], part: &Part) -> Option<[Part; 2]> {
+    fn divide(items: &mut [Item], part: &ItemGroup) -> Option<[ItemGroup; 2]> {
         let low = part.centres.low;
         let extent = (part.centres.high - low).to_array();
         let scale = extent.map(|x| if x > 0.0 { N as f32 * (1.0 - 1e-6) / x } else { 0.0 });
@@ -129,8 +129,8 @@ impl<const N: usize> Bins<N> {
 }
 
 /// Moves what belongs to the first part there; the boxes around the parts are left to the caller.
-fn parted(items: &mut [Item], is_first: impl Fn(&Item) -> bool) -> [Part; 2] {
-    let mut parts = [Part::NOTHING; 2];
+fn parted(items: &mut [Item], is_first: impl Fn(&Item) -> bool) -> [ItemGroup; 2] {
+    let mut parts = [ItemGroup::NOTHING; 2];
     let mut first = 0;
     for i in 0..items.len() {
         // Without a branch that no processor could foresee: what is not of the first part changes places with its like.

@@ -15,7 +15,7 @@ const BEHIND: u32 = 64 - 3 * TABLE_LEVEL;
 ///
 /// Each cube of any size is one run of them, found by binary search. Building takes one sort.
 #[derive(Clone, Debug)]
-pub struct Points {
+pub struct SortedPoints {
     cube: Cube,
     /// Codes of the voxels, rising.
     codes: Vec<u64>,
@@ -27,7 +27,7 @@ pub struct Points {
 
 /// The points around a place.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Around {
+pub struct NearbyPoints {
     /// All points within this distance are among them, scene units.
     pub reach: f64,
     /// How many there are.
@@ -36,14 +36,14 @@ pub struct Around {
     pub runs: [Range<u32>; 8],
 }
 
-impl Points {
+impl SortedPoints {
     /// Points that are looked at together.
     const BLOCK: usize = 8;
 
     /// Sorts points; the number of each among those given comes beside, in the new order.
     ///
     /// Points beyond 2^32 − 1, and all that are not finite, are left out.
-    pub fn new(points: &[DVec3]) -> (Points, Vec<u32>) {
+    pub fn new(points: &[DVec3]) -> (SortedPoints, Vec<u32>) {
         let finite = || points.iter().filter(|point| point.is_finite());
         let low = finite().copied().reduce(DVec3::min).unwrap_or(DVec3::ZERO);
         let high = finite().copied().reduce(DVec3::max).unwrap_or(DVec3::ZERO);
@@ -57,7 +57,7 @@ impl Points {
         let local = |(_, number): &(u64, u32)| cube.local(points[*number as usize]).as_vec3().to_array();
         let positions = [0, 1, 2].map(|axis| {
             let mut along: Vec<f32> = keys.par_iter().map(|key| local(key)[axis]).collect();
-            along.extend([f32::NAN; Points::BLOCK]);
+            along.extend([f32::NAN; SortedPoints::BLOCK]);
             along
         });
         let codes: Vec<u64> = keys.iter().map(|(code, _)| *code).collect();
@@ -67,7 +67,7 @@ impl Points {
             k => codes.partition_point(|code| *code < k << BEHIND) as u32,
         });
         let table = table.collect();
-        (Points { cube, codes, positions, table }, keys.into_iter().map(|(_, number)| number).collect())
+        (SortedPoints { cube, codes, positions, table }, keys.into_iter().map(|(_, number)| number).collect())
     }
 
     /// How many there are.
@@ -95,14 +95,14 @@ impl Points {
     /// The points around a place: within a radius, or within a half, a quarter and so on of it, so that there are not many.
     ///
     /// - `most`: so many are not many.
-    pub fn around(&self, place: DVec3, radius: f64, most: usize) -> Around {
+    pub fn around(&self, place: DVec3, radius: f64, most: usize) -> NearbyPoints {
         let local = self.cube.local(place);
         // Of a cube twice as wide as the radius and its three nearest neighbours along each axis.
         let mut level = (0.5 * self.cube.side / radius).log2().floor().clamp(0.0, f64::from(MAX_DEPTH)) as u32;
         loop {
             let side = 0.5_f64.powi(level as i32);
             let mut around =
-                Around { reach: radius.min(0.5 * side * self.cube.side), count: 0, runs: Default::default() };
+                NearbyPoints { reach: radius.min(0.5 * side * self.cube.side), count: 0, runs: Default::default() };
             let corner = local.to_array().map(|x| (x / side - 0.5).floor());
             let mut runs = 0;
             for digit in 0..8 {
@@ -126,15 +126,15 @@ impl Points {
     ///
     /// - `normal`: of the disc, unit length. `squares`: of its radius, and of how far above and below a point may be, sides
     ///   of the cube.
-    pub fn within(&self, around: &Around, place: DVec3, normal: DVec3, squares: [f32; 2], give: impl FnMut(u32, f32)) {
+    pub fn within(&self, around: &NearbyPoints, place: DVec3, normal: DVec3, squares: [f32; 2], give: impl FnMut(u32, f32)) {
         let (local, normal) = (self.local(place), normal.as_vec3().to_array());
         #[cfg(target_arch = "x86_64")]
         {
             // Products are not rounded together with sums: the result is the same on every processor.
             #[target_feature(enable = "avx2")]
             fn within_wide(
-                points: &Points,
-                around: &Around,
+                points: &SortedPoints,
+                around: &NearbyPoints,
                 places: [[f32; 3]; 2],
                 squares: [f32; 2],
                 give: impl FnMut(u32, f32),
@@ -152,30 +152,30 @@ impl Points {
     #[inline(always)]
     fn within_by_blocks(
         &self,
-        around: &Around,
+        around: &NearbyPoints,
         [local, normal]: [[f32; 3]; 2],
         [flat, high]: [f32; 2],
         mut give: impl FnMut(u32, f32),
     ) {
         for run in &around.runs {
-            for first in run.clone().step_by(Points::BLOCK) {
-                let (mut squares, mut heights) = ([0.0_f32; Points::BLOCK], [0.0_f32; Points::BLOCK]);
+            for first in run.clone().step_by(SortedPoints::BLOCK) {
+                let (mut squares, mut heights) = ([0.0_f32; SortedPoints::BLOCK], [0.0_f32; SortedPoints::BLOCK]);
                 for axis in 0..3 {
-                    let along = &self.positions[axis][first as usize..first as usize + Points::BLOCK];
-                    for k in 0..Points::BLOCK {
+                    let along = &self.positions[axis][first as usize..first as usize + SortedPoints::BLOCK];
+                    for k in 0..SortedPoints::BLOCK {
                         let offset = along[k] - local[axis];
                         squares[k] += offset * offset;
                         heights[k] += offset * normal[axis];
                     }
                 }
                 let mut near = 0_u32;
-                for k in 0..Points::BLOCK {
+                for k in 0..SortedPoints::BLOCK {
                     heights[k] *= heights[k];
                     squares[k] -= heights[k];
                     near |= u32::from((squares[k] < flat) & (heights[k] <= high)) << k;
                 }
                 // What lies beyond the run is of another.
-                near &= u32::MAX >> (32 - (run.end - first).min(Points::BLOCK as u32));
+                near &= u32::MAX >> (32 - (run.end - first).min(SortedPoints::BLOCK as u32));
                 while near != 0 {
                     let k = near.trailing_zeros();
                     give(first + k, squares[k as usize]);
@@ -226,15 +226,15 @@ impl Points {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::sampling::Stream;
+    use crate::numeric::sampling::RandomStream;
 
     #[test]
     fn the_points_around_a_place_are_those_within_reach() {
-        let mut stream = Stream::new(4, 1);
+        let mut stream = RandomStream::new(4, 1);
         // Dense towards a corner, far from the origin.
         let mut coordinate = || 1e4 + stream.uniform().powi(3) * 7.0;
         let given: Vec<DVec3> = (0..20_000).map(|_| DVec3::new(coordinate(), coordinate(), 5.0)).collect();
-        let (points, order) = Points::new(&given);
+        let (points, order) = SortedPoints::new(&given);
         assert_eq!(points.len(), given.len());
         for (place, number) in order.iter().enumerate() {
             assert!(points.position(place).distance(given[*number as usize]) < 1e-5);
@@ -266,9 +266,9 @@ mod tests {
 
     #[test]
     fn points_at_one_place_and_no_points_are_no_trouble() {
-        let (points, _) = Points::new(&vec![DVec3::splat(2.0); 1000]);
+        let (points, _) = SortedPoints::new(&vec![DVec3::splat(2.0); 1000]);
         assert_eq!(points.around(DVec3::splat(2.0), 1.0, 10).count, 1000);
-        let (none, _) = Points::new(&[DVec3::NAN]);
+        let (none, _) = SortedPoints::new(&[DVec3::NAN]);
         assert!(none.is_empty() && none.around(DVec3::ZERO, 1.0, 10).count == 0);
     }
 }

@@ -2,7 +2,7 @@
 
 /// How an octree is built and walked.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Settings {
+pub struct OctreeSettings {
     /// Resolution N: the modelling cube has 2^N voxels a side. Counts as [`MAX_DEPTH`](super::MAX_DEPTH) above it.
     pub depth: u32,
     /// A cell is not divided if no more triangles than this are small enough for it and have their middle in it.
@@ -13,7 +13,7 @@ pub struct Settings {
     pub walk: Walk,
 }
 
-impl Default for Settings {
+impl Default for OctreeSettings {
     fn default() -> Self {
         Self { depth: 16, leaf_triangles: 8, leaf_side: 0.0, walk: Walk::Index }
     }

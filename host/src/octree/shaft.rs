@@ -38,7 +38,7 @@ impl Shaft {
 
 /// What lies between two boxes.
 #[derive(Clone, Debug)]
-pub enum Between {
+pub enum ShaftContents {
     /// A triangle that stands before all of one box for all of the other.
     Covered,
     /// These triangles.
@@ -52,9 +52,9 @@ impl Octree {
     ///
     /// - `covers`: whether a triangle counts as one that may stand before everything. `most`: triangles at the most.
     /// - Without an index there are always too many.
-    pub fn between(&self, from: Bounds, to: Bounds, covers: impl Fn(u32) -> bool, most: usize) -> Between {
+    pub fn between(&self, from: Bounds, to: Bounds, covers: impl Fn(u32) -> bool, most: usize) -> ShaftContents {
         if self.index.nodes.is_empty() && !self.triangles.is_empty() {
-            return Between::Many;
+            return ShaftContents::Many;
         }
         let hull = Hull::new([from, to].map(|bounds| self.local_box(bounds)));
         let mut found = Vec::new();
@@ -72,7 +72,7 @@ impl Octree {
                                     continue;
                                 }
                                 if covers(triangle) && hull.is_covered_by(&corners) {
-                                    return Between::Covered;
+                                    return ShaftContents::Covered;
                                 }
                                 found.push(triangle);
                             }
@@ -81,18 +81,18 @@ impl Octree {
                 }
             }
             if found.len() > 4 * most {
-                return Between::Many;
+                return ShaftContents::Many;
             }
         }
         found.sort_unstable();
         found.dedup();
         if found.len() > most {
-            return Between::Many;
+            return ShaftContents::Many;
         }
         let place = |vertex: u32| self.cube.local(self.vertices[vertex as usize]).as_vec3().to_array();
         let packet = |chunk: &[u32]| Packet::new(chunk.iter().copied(), (&self.vertices, &self.triangles), place);
         let packets = found.chunks(super::lanes::LANES).map(packet);
-        Between::Some(Shaft { packets: packets.collect(), triangles: found.len() })
+        ShaftContents::Some(Shaft { packets: packets.collect(), triangles: found.len() })
     }
 
     /// Whether rays from points of one box to points of another meet no triangle that counts.
@@ -261,7 +261,7 @@ impl Hull {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Settings;
+    use super::super::OctreeSettings;
     use super::*;
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg32;
@@ -275,7 +275,7 @@ mod tests {
             })
             .collect();
         let triangles: Vec<[u32; 3]> = (0..count as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-        Octree::build(&vertices, &triangles, &Settings::default()).expect("sound")
+        Octree::build(&vertices, &triangles, &OctreeSettings::default()).expect("sound")
     }
 
     #[test]
@@ -302,11 +302,11 @@ mod tests {
                 let ray = Ray { origin, direction: end - origin };
                 assert!(!(is_clear && octree.occluded(&ray, 0.0, 1.0)));
                 match &between {
-                    Between::Covered => {
+                    ShaftContents::Covered => {
                         covered += 1;
                         assert!(octree.occluded(&ray, 0.0, 1.0));
                     }
-                    Between::Some(shaft) => {
+                    ShaftContents::Some(shaft) => {
                         some += 1;
                         let (mut inside, mut all) = (Vec::new(), Vec::new());
                         octree.each_hit_in(shaft, &ray, 0.0, 1.0, |hit| (inside.push(hit), false).1);
@@ -319,7 +319,7 @@ mod tests {
                         assert_eq!(nearest, octree.closest(&ray, 0.0, 1.0));
                         assert_eq!(octree.occluded_in(shaft, &ray, 0.0, 1.0), octree.occluded(&ray, 0.0, 1.0));
                     }
-                    Between::Many => {}
+                    ShaftContents::Many => {}
                 }
             }
         }
@@ -351,13 +351,13 @@ mod tests {
         let mut random = Pcg32::seed_from_u64(6);
         let octree = soup(20_000, 0.02, &mut random);
         let small = |at: DVec3| Bounds { min: at, max: at + DVec3::splat(0.02) };
-        let Between::Some(shaft) = octree.between(small(DVec3::splat(-0.9)), small(DVec3::splat(0.9)), |_| true, 1000)
+        let ShaftContents::Some(shaft) = octree.between(small(DVec3::splat(-0.9)), small(DVec3::splat(0.9)), |_| true, 1000)
         else {
             panic!("not many are in the way")
         };
         // The shaft has 0.02^2 of the 4 square units of the cross section, so to say, and triangles are as wide.
         assert!(shaft.len() < 60, "{}", shaft.len());
         let nothing = octree.between(small(DVec3::splat(-5.0)), small(DVec3::new(-5.0, -5.0, 5.0)), |_| true, 10);
-        assert!(matches!(nothing, Between::Some(shaft) if shaft.is_empty()));
+        assert!(matches!(nothing, ShaftContents::Some(shaft) if shaft.is_empty()));
     }
 }

@@ -23,7 +23,7 @@ const TASKS: usize = 64;
 
 /// Triangles sorted by locational code.
 #[derive(Clone, Debug, Default)]
-pub struct Sorted {
+pub struct TriangleBvh {
     /// Triangles in order.
     order: Vec<u32>,
     /// Boxes by level, some at a time: those of triangles, in order, then those around each group of the level before.
@@ -32,13 +32,13 @@ pub struct Sorted {
 
 /// Some of the triangles that were sorted.
 #[derive(Clone, Debug)]
-pub struct Part<'a> {
-    sorted: &'a Sorted,
+pub struct BvhSubset<'a> {
+    sorted: &'a TriangleBvh,
     /// By level, of each group of boxes, the lanes that hold some of them, a bit for each; empty for all.
     lanes: Vec<Vec<u8>>,
 }
 
-impl Part<'_> {
+impl BvhSubset<'_> {
     /// The lanes under a box.
     #[inline]
     fn lanes(&self, place: Place) -> u8 {
@@ -109,13 +109,13 @@ impl Place {
 /// Two boxes.
 type Pair = (Place, Place);
 
-impl Sorted {
+impl TriangleBvh {
     /// Sorts triangles; their corners must be finite.
     ///
     /// Cost: linear.
-    pub fn new(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Sorted {
+    pub fn new(vertices: &[DVec3], triangles: &[[u32; 3]]) -> TriangleBvh {
         if triangles.is_empty() {
-            return Sorted::default();
+            return TriangleBvh::default();
         }
         let bounds = |&[a, b, c]: &[u32; 3]| {
             let [a, b, c] = [vertices[a as usize], vertices[b as usize], vertices[c as usize]];
@@ -135,21 +135,21 @@ impl Sorted {
             .collect();
         let order: Vec<u32> = radix_sorted(keys).into_iter().map(|key| key as u32).collect();
         let boxes = order.par_iter().with_min_len(4096).map(|&triangle| bounds[triangle as usize]).collect();
-        Sorted::filed(order, boxes)
+        TriangleBvh::filed(order, boxes)
     }
 
     /// Those of the triangles that `is_kept` accepts.
-    pub fn only(&self, is_kept: impl Fn(u32) -> bool) -> Sorted {
+    pub fn only(&self, is_kept: impl Fn(u32) -> bool) -> TriangleBvh {
         let kept = |place: &usize| is_kept(self.order[*place]);
         let places: Vec<usize> = (0..self.order.len()).filter(kept).collect();
         let boxes = places.iter().map(|&place| self.levels[0][place / FAN].at(place % FAN)).collect();
-        Sorted::filed(places.into_iter().map(|place| self.order[place]).collect(), boxes)
+        TriangleBvh::filed(places.into_iter().map(|place| self.order[place]).collect(), boxes)
     }
 
     /// Triangles in order with their boxes.
-    fn filed(order: Vec<u32>, boxes: Vec<Bounds>) -> Sorted {
+    fn filed(order: Vec<u32>, boxes: Vec<Bounds>) -> TriangleBvh {
         if order.is_empty() {
-            return Sorted::default();
+            return TriangleBvh::default();
         }
         let mut levels: Vec<Vec<Group>> = vec![boxes.par_chunks(FAN).with_min_len(1024).map(Group::of).collect()];
         while let Some(groups) = levels.last().filter(|groups| groups.len() > 1) {
@@ -160,7 +160,7 @@ impl Sorted {
             };
             levels.push(groups.par_chunks(FAN).with_min_len(1024).map(around).collect());
         }
-        Sorted { order, levels }
+        TriangleBvh { order, levels }
     }
 
     /// How many triangles there are.
@@ -174,12 +174,12 @@ impl Sorted {
     }
 
     /// All of them.
-    pub fn all(&self) -> Part<'_> {
-        Part { sorted: self, lanes: Vec::new() }
+    pub fn all(&self) -> BvhSubset<'_> {
+        BvhSubset { sorted: self, lanes: Vec::new() }
     }
 
     /// Those of the triangles that `is_in` accepts, to be found among all.
-    pub fn part(&self, is_in: impl Fn(u32) -> bool) -> Part<'_> {
+    pub fn part(&self, is_in: impl Fn(u32) -> bool) -> BvhSubset<'_> {
         let lanes = |all: &[bool]| all.iter().rev().fold(0, |lanes, is_in| lanes << 1 | u8::from(*is_in));
         let mut of_level: Vec<bool> = self.order.iter().map(|&triangle| is_in(triangle)).collect();
         let mut levels = Vec::new();
@@ -188,16 +188,16 @@ impl Sorted {
             of_level = level.iter().map(|lanes| *lanes != 0).collect();
             levels.push(level);
         }
-        Part { sorted: self, lanes: levels }
+        BvhSubset { sorted: self, lanes: levels }
     }
 
     /// Pairs of triangles, one of this set and one of another, whose boxes have a point in common, in a fixed order.
-    pub fn pairs(&self, other: &Sorted) -> Vec<[u32; 2]> {
+    pub fn pairs(&self, other: &TriangleBvh) -> Vec<[u32; 2]> {
         self.pairs_if(&other.all(), |_, _| true)
     }
 
     /// Such pairs with triangles of a part of another set that `keep` accepts.
-    pub fn pairs_if(&self, part: &Part, keep: impl Fn(u32, u32) -> bool + Sync) -> Vec<[u32; 2]> {
+    pub fn pairs_if(&self, part: &BvhSubset, keep: impl Fn(u32, u32) -> bool + Sync) -> Vec<[u32; 2]> {
         let (Some(one), Some(two)) = (self.top(), part.sorted.top()) else { return Vec::new() };
         let open = |pair: Pair, found: &mut Vec<_>| {
             self.open(part, pair, part.sorted.at(pair.1), |pair, _| found.push(pair));
@@ -317,7 +317,7 @@ impl Sorted {
     ///
     /// - `beside`: the second box.
     #[inline(always)]
-    fn open(&self, other: &Part, (one, two): Pair, beside: Bounds, mut visit: impl FnMut(Pair, Bounds)) {
+    fn open(&self, other: &BvhSubset, (one, two): Pair, beside: Bounds, mut visit: impl FnMut(Pair, Bounds)) {
         if one.level < two.level {
             let group = other.sorted.under(two);
             for b in group.touching(self.at(one), other.lanes(two)) {
@@ -350,7 +350,7 @@ impl Sorted {
     }
 
     /// Visits the pairs of triangles under a pair of boxes, of which the second is given.
-    fn descend(&self, other: &Part, pair: Pair, beside: Bounds, visit: &mut impl FnMut(Pair)) {
+    fn descend(&self, other: &BvhSubset, pair: Pair, beside: Bounds, visit: &mut impl FnMut(Pair)) {
         match is_open(&pair) {
             true => self.open(other, pair, beside, |pair, beside| self.descend(other, pair, beside, visit)),
             false => visit(pair),
@@ -448,7 +448,7 @@ mod tests {
         for (one, two, size) in [(1, 1, 3.0), (5, 300, 0.3), (700, 500, 0.05), (200, 0, 0.1), (90, 80, 0.0)] {
             let (a, b) = (soup(one, size, 1), soup(two, size, 2));
             let corners = |soup: &(Vec<DVec3>, Vec<[u32; 3]>), t: u32| soup.1[t as usize].map(|v| soup.0[v as usize]);
-            let (first, second) = (Sorted::new(&a.0, &a.1), Sorted::new(&b.0, &b.1));
+            let (first, second) = (TriangleBvh::new(&a.0, &a.1), TriangleBvh::new(&b.0, &b.1));
             let mut found = first.pairs(&second);
             found.sort_unstable();
             let touch = |i, j| Bounds::of(corners(&a, i)).touches(Bounds::of(corners(&b, j)));
@@ -462,7 +462,7 @@ mod tests {
         for (count, size) in [(1, 3.0), (7, 1.0), (300, 0.3), (900, 0.05), (200, 0.0)] {
             let set = soup(count, size, 5);
             let corners = |t: u32| set.1[t as usize].map(|v| set.0[v as usize]);
-            let mut found = Sorted::new(&set.0, &set.1).pairs_within(|a, b| (a + b) % 3 != 0);
+            let mut found = TriangleBvh::new(&set.0, &set.1).pairs_within(|a, b| (a + b) % 3 != 0);
             found.sort_unstable();
             let touch = |a, b| Bounds::of(corners(a)).touches(Bounds::of(corners(b))) && (a + b) % 3 != 0;
             let all = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b])).filter(|&[a, b]| touch(a, b));
@@ -473,7 +473,7 @@ mod tests {
     #[test]
     fn a_box_finds_all_that_touch_it() {
         let (vertices, triangles) = soup(1000, 0.1, 3);
-        let sorted = Sorted::new(&vertices, &triangles);
+        let sorted = TriangleBvh::new(&vertices, &triangles);
         let near = Bounds::of([DVec3::splat(-0.1), DVec3::new(0.2, 0.1, 0.3)]);
         let mut found = Vec::new();
         sorted.touching(near, |t| found.push(t));
@@ -481,7 +481,7 @@ mod tests {
         found.sort_unstable();
         assert_eq!(found, (0..1000).filter(touches).collect::<Vec<u32>>());
         assert!(found.len() > 5 && sorted.bounds() == Bounds::of(vertices));
-        let probe = Sorted::new(&[near.min, near.max], &[[0, 1, 1]]);
+        let probe = TriangleBvh::new(&[near.min, near.max], &[[0, 1, 1]]);
         let odd = sorted.part(|triangle| triangle % 7 == 1);
         let mut some = probe.pairs_if(&odd, |_, triangle| triangle % 2 == 0);
         some.sort_unstable();

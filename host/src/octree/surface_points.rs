@@ -5,13 +5,13 @@
 //! where voxels are small beside what matters. Voxels that hold more than one surface, or one that bends, keep their
 //! triangles. Where a surface ends within a voxel, its point stands for it up to the voxel's sides.
 
-use super::build::{Division, Leaves, Nodes, PARALLEL_TRIANGLES, Reference, eighths, place};
+use super::build::{OctreeBuilder, Leaves, Nodes, PARALLEL_TRIANGLES, TriangleReference, eighths, place};
 use super::clip::clipped;
-use super::frame::Line;
-use super::index::Index;
+use super::frame::PreparedRay;
+use super::index::WideBvh;
 use super::walk::Search;
 use super::{Hit, LocationalCode, Octree, Ray};
-use crate::numeric::sampling::{Stream, triangle};
+use crate::numeric::sampling::{RandomStream, triangle};
 use crate::numeric::triangle::weights;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -39,14 +39,14 @@ pub struct SurfacePoints {
     /// Its terminal nodes are voxels.
     octree: Octree,
     /// For each of these its point.
-    pub(super) points: Vec<Option<Kept>>,
+    pub(super) points: Vec<Option<VoxelPoint>>,
     /// Side of a voxel, sides of the modelling cube.
     side: f64,
 }
 
 /// A point on a triangle, by two barycentric coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Kept {
+pub(super) struct VoxelPoint {
     triangle: u32,
     u: f32,
     v: f32,
@@ -65,12 +65,12 @@ impl SurfacePoints {
         seed: u64,
     ) -> SurfacePoints {
         let depth = depth.min(MAX_POINT_DEPTH);
-        let division = Division { depth, grain: PARALLEL_TRIANGLES, ..octree.division() };
+        let division = OctreeBuilder { depth, grain: PARALLEL_TRIANGLES, ..octree.division() };
         let leaves = voxels(&division, LocationalCode::ROOT, division.references(0..octree.triangles.len()));
         let point = |leaf: usize| point(&division, leaves.codes[leaf], leaves.of(leaf), &surface, seed);
         let points = (0..leaves.codes.len()).into_par_iter().map(point).collect();
         let nodes = OnceLock::from(Nodes { homes: Vec::new(), leaves });
-        let octree = Octree { depth, nodes, index: Index::default(), ..octree.clone() };
+        let octree = Octree { depth, nodes, index: WideBvh::default(), ..octree.clone() };
         SurfacePoints { octree, points, side: 0.5_f64.powi(depth as i32) }
     }
 
@@ -93,7 +93,7 @@ impl SurfacePoints {
     /// stands for one. The hit of a point is where the point is on its triangle, off the ray by about a voxel; `t` is where
     /// the ray meets its plane.
     pub fn closest(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<Hit> {
-        let line = Line::new(ray, &self.octree.cube, t_min, t_max)?;
+        let line = PreparedRay::new(ray, &self.octree.cube, t_min, t_max)?;
         let mut search = Search::new(&self.octree, &line, t_min, t_max, false);
         search.walk_with(|search, leaf, [enter, exit]| match self.points[leaf] {
             Some(kept) if enter > CLEAR * self.side => {
@@ -114,7 +114,7 @@ impl SurfacePoints {
 }
 
 /// All voxels in a cell, with the triangles that touch them.
-fn voxels(division: &Division<'_>, cell: LocationalCode, references: Vec<Reference>) -> Leaves {
+fn voxels(division: &OctreeBuilder<'_>, cell: LocationalCode, references: Vec<TriangleReference>) -> Leaves {
     let mut leaves = Leaves::default();
     if references.is_empty() {
         return leaves;
@@ -136,12 +136,12 @@ fn voxels(division: &Division<'_>, cell: LocationalCode, references: Vec<Referen
 
 /// A point for a voxel, drawn evenly from the surface in it; none if that is not one, or bends.
 fn point<S: PartialEq>(
-    division: &Division<'_>,
+    division: &OctreeBuilder<'_>,
     voxel: LocationalCode,
     triangles: &[u32],
     surface: impl Fn(u32) -> Option<S>,
     seed: u64,
-) -> Option<Kept> {
+) -> Option<VoxelPoint> {
     let first = surface(*triangles.first()?)?;
     if triangles.iter().any(|triangle| surface(*triangle).as_ref() != Some(&first)) {
         return None;
@@ -160,7 +160,7 @@ fn point<S: PartialEq>(
     });
     let area = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).length();
     let whole: f64 = fans.clone().map(|(_, corners)| area(corners)).sum();
-    let mut stream = Stream::new(seed, voxel.bits());
+    let mut stream = RandomStream::new(seed, voxel.bits());
     let mut left = stream.uniform() * whole;
     let (triangle_of, [a, b, c]) =
         fans.filter(|(_, corners)| area(*corners) > 0.0).find_map(|(triangle, corners)| {
@@ -177,5 +177,5 @@ fn point<S: PartialEq>(
         return None;
     }
     let [_, u, v] = weights(division.corners(triangle_of), at);
-    Some(Kept { triangle: triangle_of, u: u as f32, v: v as f32 })
+    Some(VoxelPoint { triangle: triangle_of, u: u as f32, v: v as f32 })
 }

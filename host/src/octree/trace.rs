@@ -1,6 +1,6 @@
 //! What a ray hits, by the way that the octree is walked.
 
-use super::frame::Line;
+use super::frame::PreparedRay;
 use super::settings::Walk;
 use super::tree::{Octree, WalkCount};
 use super::walk::Search;
@@ -61,7 +61,7 @@ impl Octree {
     }
 
     fn walked(&self, ray: &Ray, t_min: f64, t_max: f64, any: bool) -> (Option<Hit>, WalkCount) {
-        let Some(line) = Line::new(ray, &self.cube, t_min, t_max) else { return Default::default() };
+        let Some(line) = PreparedRay::new(ray, &self.cube, t_min, t_max) else { return Default::default() };
         let mut search = Search::new(self, &line, t_min, t_max, any);
         search.walk();
         search.found()

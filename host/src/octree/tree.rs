@@ -4,12 +4,12 @@ use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 
-use super::build::{Division, Leaves, Nodes, PARALLEL_TRIANGLES};
+use super::build::{OctreeBuilder, Leaves, Nodes, PARALLEL_TRIANGLES};
 use super::code::{LocationalCode, MAX_DEPTH};
 use super::cube::Cube;
 use super::error::{OctreeError, check};
-use super::index::Index;
-use super::settings::{Settings, Walk};
+use super::index::WideBvh;
+use super::settings::{OctreeSettings, Walk};
 use crate::numeric::bounds::Bounds;
 
 /// Where a point lies.
@@ -41,7 +41,7 @@ pub struct WalkCount {
 
 /// Vertices and triangles that were put into an octree together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Object {
+pub(super) struct ObjectCounts {
     pub(super) vertices: usize,
     pub(super) triangles: usize,
 }
@@ -59,11 +59,11 @@ pub struct Octree {
     /// Shared with whoever put them in.
     pub(super) vertices: Arc<Vec<DVec3>>,
     pub(super) triangles: Arc<Vec<[u32; 3]>>,
-    pub(super) objects: Vec<Object>,
+    pub(super) objects: Vec<ObjectCounts>,
     /// Made when they are first asked for: rays down the index do without.
     pub(super) nodes: OnceLock<Nodes>,
     /// Empty unless rays are to go down the index.
-    pub(super) index: Index,
+    pub(super) index: WideBvh,
 }
 
 impl Octree {
@@ -75,7 +75,7 @@ impl Octree {
     /// # Errors
     /// A vertex that is not finite or too far out, an index out of range, more than
     /// [`MAX_TRIANGLES`](super::MAX_TRIANGLES). No triangles at all is fine.
-    pub fn build(vertices: &[DVec3], triangles: &[[u32; 3]], settings: &Settings) -> Result<Self, OctreeError> {
+    pub fn build(vertices: &[DVec3], triangles: &[[u32; 3]], settings: &OctreeSettings) -> Result<Self, OctreeError> {
         Self::sharing(Arc::new(vertices.to_vec()), Arc::new(triangles.to_vec()), settings)
     }
 
@@ -86,13 +86,13 @@ impl Octree {
     pub fn sharing(
         vertices: Arc<Vec<DVec3>>,
         triangles: Arc<Vec<[u32; 3]>>,
-        settings: &Settings,
+        settings: &OctreeSettings,
     ) -> Result<Self, OctreeError> {
         check(&vertices, &triangles)?;
         let mut octree = Self::of_cube(enclose(&vertices, &triangles), settings);
         (octree.vertices, octree.triangles) = (vertices, triangles);
         let [vertices, triangles] = [octree.vertices.len(), octree.triangles.len()];
-        octree.objects = vec![Object { vertices, triangles }];
+        octree.objects = vec![ObjectCounts { vertices, triangles }];
         Ok(octree.with_walk(settings.walk))
     }
 
@@ -102,12 +102,12 @@ impl Octree {
     ///
     /// # Errors
     /// A corner of the box, as vertex 0 or 1, that is not finite or too far out.
-    pub fn around(bounds: Bounds, settings: &Settings) -> Result<Self, OctreeError> {
+    pub fn around(bounds: Bounds, settings: &OctreeSettings) -> Result<Self, OctreeError> {
         check(&[bounds.min, bounds.max], &[])?;
         Ok(Self::of_cube(Cube::around(bounds.min.min(bounds.max), bounds.max.max(bounds.min)), settings))
     }
 
-    pub(super) fn of_cube(cube: Cube, settings: &Settings) -> Self {
+    pub(super) fn of_cube(cube: Cube, settings: &OctreeSettings) -> Self {
         // A level less for each time that the smallest cells would have to be doubled.
         let depth = (0..settings.depth.min(MAX_DEPTH)).take_while(|&level| {
             let half = cube.side * 0.5_f64.powi(level as i32 + 1);
@@ -122,7 +122,7 @@ impl Octree {
             triangles: Arc::default(),
             objects: Vec::new(),
             nodes: OnceLock::new(),
-            index: Index::default(),
+            index: WideBvh::default(),
         }
     }
 
@@ -136,15 +136,15 @@ impl Octree {
     /// The terminal nodes. Whoever asks first for them makes them on one thread: if it waited for others, they could be
     /// waiting for the same nodes.
     pub(super) fn nodes(&self) -> &Nodes {
-        self.nodes.get_or_init(|| Division { grain: usize::MAX, ..self.division() }.nodes())
+        self.nodes.get_or_init(|| OctreeBuilder { grain: usize::MAX, ..self.division() }.nodes())
     }
 
     pub(super) fn leaves(&self) -> &Leaves {
         &self.nodes().leaves
     }
 
-    pub(super) fn division(&self) -> Division<'_> {
-        Division {
+    pub(super) fn division(&self) -> OctreeBuilder<'_> {
+        OctreeBuilder {
             cube: self.cube,
             vertices: &self.vertices,
             triangles: &self.triangles,
@@ -164,10 +164,10 @@ impl Octree {
     /// nodes.
     pub fn with_walk(mut self, walk: Walk) -> Self {
         let index = match walk {
-            Walk::Index => Index::new(&self.division()),
+            Walk::Index => WideBvh::new(&self.division()),
             Walk::LeadingDirection => {
                 self.divide();
-                Index::default()
+                WideBvh::default()
             }
         };
         Self { walk, index, ..self }

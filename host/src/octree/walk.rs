@@ -3,7 +3,7 @@
 use super::build::eighths;
 use super::clip::FAT;
 use super::code::{LocationalCode, MAX_DEPTH};
-use super::frame::Line;
+use super::frame::PreparedRay;
 use super::{Hit, Location, Octree, WalkCount};
 use glam::DVec3;
 
@@ -14,7 +14,7 @@ const VOXELS: i64 = 1 << MAX_DEPTH;
 pub struct Search<'a> {
     pub(super) octree: &'a Octree,
     /// Apart, so that what changes can stay in the registers of the processor.
-    pub(super) line: &'a Line,
+    pub(super) line: &'a PreparedRay,
     pub(super) t_min: f64,
     pub(super) t_max: f64,
     /// Whether any hit will do.
@@ -28,7 +28,7 @@ pub struct Search<'a> {
 impl<'a> Search<'a> {
     /// Prepares a search for a hit with `t_min < t < t_max`, for which the line was made.
     #[inline(always)]
-    pub fn new(octree: &'a Octree, line: &'a Line, t_min: f64, t_max: f64, any: bool) -> Self {
+    pub fn new(octree: &'a Octree, line: &'a PreparedRay, t_min: f64, t_max: f64, any: bool) -> Self {
         let limit = line.frame.limit_of(line.chord.length());
         Self { octree, line, t_min, t_max, any, best: None, limit, count: WalkCount::default() }
     }

@@ -1,7 +1,7 @@
 //! Pictures with a depth for each pixel, as EXR files with a layer Z.
 
 use super::file::pixel_of;
-use super::source::{Source, Texel};
+use super::source::{PictureReader, Texel};
 use super::{Picture, PictureError, Pixel, Provenance, encoder};
 use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, WritableImage};
 use files::Destination;
@@ -38,7 +38,7 @@ impl Deep {
     /// other numbers, those of [`Picture::read`] for others.
     pub fn read(path: &Path) -> Result<Deep, PictureError> {
         let broken = |problem: String| PictureError::Broken { path: path.into(), problem };
-        let source = Source::open(path)?;
+        let source = PictureReader::open(path)?;
         if !source.has_depth() {
             return Err(broken("has no layer Z, as the files that peris render --layers writes".into()));
         }

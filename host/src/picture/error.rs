@@ -1,6 +1,6 @@
 //! What can go wrong with pictures.
 
-use crate::memory::Excess;
+use crate::memory::MemoryExceeded;
 use files::WriteError;
 use std::path::PathBuf;
 
@@ -46,7 +46,7 @@ pub enum PictureError {
     },
     /// Its pixels would take more memory than there is.
     #[error(transparent)]
-    Memory(#[from] Excess),
+    Memory(#[from] MemoryExceeded),
     /// The file cannot be opened.
     #[error("{}: {source}", path.display())]
     Open {

@@ -1,6 +1,6 @@
 //! Pictures as files: PNG with eight bits sRGB, OpenEXR with linear 32-bit floats.
 
-use super::source::{Source, Texel, format_of};
+use super::source::{PictureReader, Texel, format_of};
 use super::{Picture, PictureError, Pixel, Provenance, encoder};
 use crate::memory;
 use exr::prelude::{SpecificChannels, Vec2, WritableImage};
@@ -70,7 +70,7 @@ impl Picture {
     /// # Errors
     /// [`PictureError`] for a file that is missing, broken, of another format or too large.
     pub fn read(path: &Path) -> Result<Picture, PictureError> {
-        let source = Source::open(path)?;
+        let source = PictureReader::open(path)?;
         let mut picture = Picture::for_source(&source, path, size_of::<Pixel>())?;
         let width = picture.width as usize;
         source.each(|x, y, texel| picture.pixels[y as usize * width + x as usize] = pixel_of(texel))?;
@@ -80,7 +80,7 @@ impl Picture {
     /// A black picture of the size of a file, if there is memory for it.
     ///
     /// - `bytes`: for each pixel.
-    pub(super) fn for_source(source: &Source<'_>, path: &Path, bytes: usize) -> Result<Picture, PictureError> {
+    pub(super) fn for_source(source: &PictureReader<'_>, path: &Path, bytes: usize) -> Result<Picture, PictureError> {
         let [width, height] = source.size();
         let bytes = Picture::pixels_of(width, height)? as u64 * bytes as u64;
         memory::ask(bytes, || format!("{}: a picture of {width} x {height} pixels", path.display()))?;

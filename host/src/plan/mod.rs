@@ -19,7 +19,7 @@ pub struct Plan {
     /// Whether everything was forced.
     pub forced: bool,
     /// One line for each stage, object and light, in this order.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<PlanEntry>,
     #[serde(skip)]
     stages: [bool; Stage::ALL.len()],
     #[serde(skip)]
@@ -30,9 +30,9 @@ pub struct Plan {
 
 /// One line of a plan.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Entry {
+pub struct PlanEntry {
     /// What kind of thing it decides on.
-    pub kind: Kind,
+    pub kind: EntryKind,
     /// Its name.
     pub name: String,
     /// Whether it is kept.
@@ -44,7 +44,7 @@ pub struct Entry {
 /// What an entry decides on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Kind {
+pub enum EntryKind {
     /// A stage of rendering.
     Stage,
     /// An object of the scene.
@@ -53,13 +53,13 @@ pub enum Kind {
     Light,
 }
 
-impl Kind {
+impl EntryKind {
     /// The word in tables.
     pub fn word(self) -> &'static str {
         match self {
-            Kind::Stage => "stage",
-            Kind::Object => "object",
-            Kind::Light => "light",
+            EntryKind::Stage => "stage",
+            EntryKind::Object => "object",
+            EntryKind::Light => "light",
         }
     }
 }
@@ -92,25 +92,25 @@ impl Plan {
         let facts = facts.within(objects.iter().map(|d| d.needed).collect());
         for stage in Stage::ALL {
             plan.stages[stage as usize] =
-                plan.add(Kind::Stage, stage.word().to_owned(), stage.decide(&facts), stage.is_forcible());
+                plan.add(EntryKind::Stage, stage.word().to_owned(), stage.decide(&facts), stage.is_forcible());
         }
         for (object, decision) in prepared.objects.iter().zip(objects) {
-            let kept = plan.add(Kind::Object, object.name.clone(), decision, true);
+            let kept = plan.add(EntryKind::Object, object.name.clone(), decision, true);
             plan.objects.push(kept);
         }
         for (index, decision) in lights.into_iter().enumerate() {
-            let kept = plan.add(Kind::Light, format!("light {}", index + 1), decision, true);
+            let kept = plan.add(EntryKind::Light, format!("light {}", index + 1), decision, true);
             plan.lights.push(kept);
         }
         plan
     }
 
-    fn add(&mut self, kind: Kind, name: String, decision: Decision, forcible: bool) -> bool {
+    fn add(&mut self, kind: EntryKind, name: String, decision: Decision, forcible: bool) -> bool {
         let Decision { needed, reason } = decision;
         let forced = self.forced && forcible && !needed;
         let reason = if forced { format!("forced; {reason}") } else { reason };
         let needed = needed || forced;
-        self.entries.push(Entry { kind, name, needed, reason });
+        self.entries.push(PlanEntry { kind, name, needed, reason });
         needed
     }
 

@@ -2,7 +2,7 @@
 
 use super::decision::Decision;
 use super::stage::Facts;
-use crate::illumination::light::Origin;
+use crate::illumination::light::LightOrigin;
 use crate::numeric::bounds::Bounds;
 use crate::scene::{Prepared, View};
 use glam::DVec3;
@@ -42,9 +42,9 @@ pub(super) fn objects(prepared: &Prepared, views: &[View], facts: &Facts<'_>) ->
 /// Whether a box may stand between any bright light and a point of `seen`; errs towards yes.
 fn throws_shadow(prepared: &Prepared, facts: &Facts<'_>, object: &Bounds, seen: &Bounds) -> bool {
     prepared.lights.iter().enumerate().filter(|(i, _)| facts.is_bright(*i)).any(|(_, light)| match light.origin() {
-        Origin::Within(bounds) => is_between(bounds, object, seen),
-        Origin::Everywhere => true,
-        Origin::Towards(towards) => {
+        LightOrigin::Within(bounds) => is_between(bounds, object, seen),
+        LightOrigin::Everywhere => true,
+        LightOrigin::Towards(towards) => {
             let along = -towards;
             let (u, v) = along.any_orthonormal_pair();
             let overlaps = |axis: DVec3| {

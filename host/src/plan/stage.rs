@@ -3,8 +3,8 @@
 use super::decision::Decision;
 use crate::illumination::Material;
 use crate::illumination::distribution::TableError;
-use crate::illumination::light::Origin;
-use crate::illumination::material::{Body, Classic, Coated, Form, Shaped};
+use crate::illumination::light::LightOrigin;
+use crate::illumination::material::{MaterialKind, Classic, Coated, DistributionForm, Distributed};
 use crate::illumination::optics::Interreflection;
 use crate::scene::{Caustics, Prepared, PreparedObject};
 
@@ -117,17 +117,17 @@ impl<'a> Facts<'a> {
 /// Whether a material reflects light diffusely.
 fn has_diffuse(material: &Material) -> bool {
     match &material.body {
-        Body::Classic(Classic { diffuse, .. }) | Body::Coated(Coated { diffuse, .. }) => !diffuse.is_black(),
-        Body::Shaped(Shaped { reflectance, .. }) => !reflectance.is_black(),
-        Body::Principled(principled) => principled.is_diffuse(),
-        Body::Metal(_) | Body::Transparent(_) => false,
+        MaterialKind::Classic(Classic { diffuse, .. }) | MaterialKind::Coated(Coated { diffuse, .. }) => !diffuse.is_black(),
+        MaterialKind::Shaped(Distributed { reflectance, .. }) => !reflectance.is_black(),
+        MaterialKind::Principled(principled) => principled.is_diffuse(),
+        MaterialKind::Metal(_) | MaterialKind::Transparent(_) => false,
     }
 }
 
 /// Whether lights have highlights on it.
 fn has_highlight(material: &Material) -> bool {
     match &material.body {
-        Body::Classic(Classic { specular, .. }) => !specular.is_black(),
+        MaterialKind::Classic(Classic { specular, .. }) => !specular.is_black(),
         _ => true,
     }
 }
@@ -135,7 +135,7 @@ fn has_highlight(material: &Material) -> bool {
 /// Whether rays go on from it.
 fn carries_on(material: &Material) -> bool {
     match &material.body {
-        Body::Classic(Classic { mirror, transparency, .. }) => !mirror.is_black() || !transparency.is_black(),
+        MaterialKind::Classic(Classic { mirror, transparency, .. }) => !mirror.is_black() || !transparency.is_black(),
         _ => true,
     }
 }
@@ -226,7 +226,7 @@ fn light_buffer(facts: &Facts<'_>) -> Decision {
         return Decision::new(false, "the scene asks for all rays to lights");
     }
     let bright = facts.prepared.lights.iter().enumerate().filter(|(i, _)| facts.is_bright(*i));
-    let skies = bright.filter(|(_, light)| light.origin() == Origin::Everywhere).count();
+    let skies = bright.filter(|(_, light)| light.origin() == LightOrigin::Everywhere).count();
     if skies == facts.lights() {
         return Decision::new(false, "a sky is in all directions");
     }
@@ -346,7 +346,7 @@ fn highlights(facts: &Facts<'_>) -> Decision {
     let mut decision = direct(facts, "highlight", has_highlight);
     let mut told = Vec::new();
     for material in facts.kept().flat_map(|object| &object.materials) {
-        let Body::Shaped(Shaped { form: Form::Facets(table), .. }) = &material.body else { continue };
+        let MaterialKind::Shaped(Distributed { form: DistributionForm::Facets(table), .. }) = &material.body else { continue };
         let TableError { greatest, mean, values } = table.error();
         let words = format!(
             "; a user's distribution in {values} values: error {greatest:.1e} of a value at most, {mean:.1e} of the area"

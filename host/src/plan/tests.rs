@@ -3,8 +3,8 @@
 use super::*;
 use crate::color::Color;
 use crate::illumination::Paint;
-use crate::illumination::material::{Body, Classic};
-use crate::illumination::{Bands, Light, Material};
+use crate::illumination::material::{MaterialKind, Classic};
+use crate::illumination::{RgbPower, Light, Material};
 use crate::scene::{Camera, Object, Scene, Shape};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec3};
@@ -42,7 +42,7 @@ fn scene() -> Scene {
 
 fn material(scene: &mut Scene) -> &mut Classic {
     match &mut scene.objects[0].material {
-        Some(Material { body: Body::Classic(classic), .. }) => classic,
+        Some(Material { body: MaterialKind::Classic(classic), .. }) => classic,
         other => panic!("it was given a classic one, not {other:?}"),
     }
 }
@@ -69,7 +69,7 @@ fn each_property_brings_its_stage() {
     };
     assert!(with(|s| material(s).mirror = Paint::grey(0.1)).needs(Stage::Reflection));
     assert!(with(|s| material(s).specular = Paint::grey(0.1)).needs(Stage::Specular));
-    assert!(with(|s| s.ambient = Bands::splat(0.1)).needs(Stage::Ambient));
+    assert!(with(|s| s.ambient = RgbPower::splat(0.1)).needs(Stage::Ambient));
     assert!(with(|s| s.settings.image.samples = 2).needs(Stage::AntiAliasing));
     assert!(with(|s| s.objects[0].shape = Shape::from(Primitive::Sphere { radius: 1.0 })).needs(Stage::Normals));
     let dark = with(|s| s.lights.clear());

@@ -11,7 +11,7 @@ const NONE: u32 = u32::MAX;
 /// upper edge. On both sides of its rightmost corner it turns away from the interval, so that each new corner sees
 /// every corner that it cuts off.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Chain {
+pub(super) struct ReflexChain {
     /// The link at the lower edge.
     low: u32,
     /// The link at the upper edge.
@@ -22,7 +22,7 @@ pub(super) struct Chain {
 
 /// A corner of a chain.
 #[derive(Clone, Copy)]
-pub(super) struct Link {
+pub(super) struct ChainLink {
     point: DVec2,
     corner: u32,
     low: u32,
@@ -30,29 +30,29 @@ pub(super) struct Link {
 }
 
 /// All chains, and the triangles that were cut off them.
-pub(super) struct Chains {
-    links: Vec<Link>,
+pub(super) struct ReflexChains {
+    links: Vec<ChainLink>,
     pub triangles: Vec<[u32; 3]>,
 }
 
 /// A corner that the sweep has come to: its index and its position.
-pub(super) type Corner = (u32, DVec2);
+pub(super) type SweepCorner = (u32, DVec2);
 
-impl Chains {
+impl ReflexChains {
     /// Without chains, with room for the triangles of a polygon of so many corners.
-    pub fn with_capacity(corners: usize) -> Chains {
-        Chains { links: Vec::with_capacity(corners + corners / 2), triangles: Vec::with_capacity(corners) }
+    pub fn with_capacity(corners: usize) -> ReflexChains {
+        ReflexChains { links: Vec::with_capacity(corners + corners / 2), triangles: Vec::with_capacity(corners) }
     }
 
     /// A chain of one corner.
-    pub fn start(&mut self, corner: Corner) -> Chain {
+    pub fn start(&mut self, corner: SweepCorner) -> ReflexChain {
         let link = self.link(corner, NONE, NONE);
-        Chain { low: link, high: link, rightmost: link }
+        ReflexChain { low: link, high: link, rightmost: link }
     }
 
     /// A corner at the right end of the lower edge.
     #[inline]
-    pub fn extend_low(&mut self, chain: Chain, corner: Corner) -> Chain {
+    pub fn extend_low(&mut self, chain: ReflexChain, corner: SweepCorner) -> ReflexChain {
         let mut end = chain.low;
         while end != chain.high {
             let next = self[end].high;
@@ -64,12 +64,12 @@ impl Chains {
         }
         let link = self.link(corner, NONE, end);
         self[end].low = link;
-        Chain { low: link, high: chain.high, rightmost: link }
+        ReflexChain { low: link, high: chain.high, rightmost: link }
     }
 
     /// A corner at the right end of the upper edge.
     #[inline]
-    pub fn extend_high(&mut self, chain: Chain, corner: Corner) -> Chain {
+    pub fn extend_high(&mut self, chain: ReflexChain, corner: SweepCorner) -> ReflexChain {
         let mut end = chain.high;
         while end != chain.low {
             let next = self[end].low;
@@ -81,11 +81,11 @@ impl Chains {
         }
         let link = self.link(corner, end, NONE);
         self[end].high = link;
-        Chain { low: chain.low, high: link, rightmost: link }
+        ReflexChain { low: chain.low, high: link, rightmost: link }
     }
 
     /// A corner where both edges end: the chain is used up.
-    pub fn close(&mut self, chain: Chain, corner: Corner) {
+    pub fn close(&mut self, chain: ReflexChain, corner: SweepCorner) {
         let mut end = chain.low;
         while end != chain.high {
             let next = self[end].high;
@@ -95,26 +95,26 @@ impl Chains {
     }
 
     /// A corner between the edges: a lower and an upper chain, which end at it.
-    pub fn split(&mut self, chain: Chain, corner: Corner) -> (Chain, Chain) {
+    pub fn split(&mut self, chain: ReflexChain, corner: SweepCorner) -> (ReflexChain, ReflexChain) {
         let middle = chain.rightmost;
-        let Link { point, corner: name, high, .. } = self[middle];
+        let ChainLink { point, corner: name, high, .. } = self[middle];
         let upper = if middle == chain.high {
             self.start((name, point))
         } else {
             let copy = self.link((name, point), NONE, high);
             self[high].low = copy;
-            Chain { low: copy, high: chain.high, rightmost: copy }
+            ReflexChain { low: copy, high: chain.high, rightmost: copy }
         };
-        let lower = Chain { high: middle, ..chain };
+        let lower = ReflexChain { high: middle, ..chain };
         (self.extend_high(lower, corner), self.extend_low(upper, corner))
     }
 
     /// One chain of two that meet in their last corner.
-    pub fn join(&mut self, lower: Chain, upper: Chain) -> Chain {
+    pub fn join(&mut self, lower: ReflexChain, upper: ReflexChain) -> ReflexChain {
         let (meeting, next) = (lower.high, self[upper.low].high);
         self[meeting].high = next;
         self[next].low = meeting;
-        Chain { low: lower.low, high: upper.high, rightmost: meeting }
+        ReflexChain { low: lower.low, high: upper.high, rightmost: meeting }
     }
 
     #[inline(always)]
@@ -124,24 +124,24 @@ impl Chains {
     }
 
     #[inline(always)]
-    fn link(&mut self, (corner, point): Corner, low: u32, high: u32) -> u32 {
-        self.links.push(Link { point, corner, low, high });
+    fn link(&mut self, (corner, point): SweepCorner, low: u32, high: u32) -> u32 {
+        self.links.push(ChainLink { point, corner, low, high });
         (self.links.len() - 1) as u32
     }
 }
 
-impl std::ops::Index<u32> for Chains {
-    type Output = Link;
+impl std::ops::Index<u32> for ReflexChains {
+    type Output = ChainLink;
 
     #[inline(always)]
-    fn index(&self, link: u32) -> &Link {
+    fn index(&self, link: u32) -> &ChainLink {
         &self.links[link as usize]
     }
 }
 
-impl std::ops::IndexMut<u32> for Chains {
+impl std::ops::IndexMut<u32> for ReflexChains {
     #[inline(always)]
-    fn index_mut(&mut self, link: u32) -> &mut Link {
+    fn index_mut(&mut self, link: u32) -> &mut ChainLink {
         &mut self.links[link as usize]
     }
 }

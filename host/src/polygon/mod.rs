@@ -24,7 +24,7 @@ use outline::Outline;
 
 /// What a triangulation is to be good at.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Shape {
+pub enum TriangulationKind {
     /// Made in the shortest time; triangles may be long and thin.
     #[default]
     Any,
@@ -64,10 +64,10 @@ impl Triangulation {
 ///
 /// # Errors
 /// A corner that is not finite, a contour without area, or edges that cross or overlap, with their places.
-pub fn triangulate<C: AsRef<[DVec2]>>(contours: &[C], shape: Shape) -> Result<Triangulation, PolygonError> {
+pub fn triangulate<C: AsRef<[DVec2]>>(contours: &[C], shape: TriangulationKind) -> Result<Triangulation, PolygonError> {
     let outline = Outline::of(contours)?;
     let mut triangles = sweep::triangles(&outline)?;
-    if shape == Shape::Delaunay {
+    if shape == TriangulationKind::Delaunay {
         delaunay::flip(&outline.corners, &mut triangles);
     }
     Ok(Triangulation { triangles, dropped: outline.dropped() })

@@ -4,7 +4,7 @@
 
 use glam::DVec2;
 
-use super::chain::Chain;
+use super::chain::ReflexChain;
 use crate::numeric::predicates::turn;
 
 /// Most slots in a block.
@@ -28,11 +28,11 @@ pub(super) struct Slot {
     pub above: u32,
     block: u32,
     /// The left boundary of the interval above, if that is inside of the polygon.
-    pub chain: Option<Chain>,
+    pub chain: Option<ReflexChain>,
 }
 
 impl Slot {
-    pub fn new(left: DVec2, right: DVec2, edge: u32, chain: Option<Chain>) -> Slot {
+    pub fn new(left: DVec2, right: DVec2, edge: u32, chain: Option<ReflexChain>) -> Slot {
         Slot { left, right, edge, below: OUTSIDE, above: OUTSIDE, block: 0, chain }
     }
 

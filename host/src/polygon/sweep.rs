@@ -12,7 +12,7 @@ use std::cmp::Ordering;
 
 use glam::DVec2;
 
-use super::chain::{Chain, Chains};
+use super::chain::{ReflexChain, ReflexChains};
 use super::error::{PolygonEdge, PolygonError};
 use super::outline::Outline;
 use super::status::{OUTSIDE, Slot, Status};
@@ -24,7 +24,7 @@ pub(super) fn triangles(outline: &Outline) -> Result<Vec<[u32; 3]>, PolygonError
     let mut sweep = Sweep {
         outline,
         status: Status::new(),
-        chains: Chains::with_capacity(count),
+        chains: ReflexChains::with_capacity(count),
         slot_of: vec![OUTSIDE; count],
         ending: Vec::new(),
         beginning: Vec::new(),
@@ -44,7 +44,7 @@ pub(super) fn triangles(outline: &Outline) -> Result<Vec<[u32; 3]>, PolygonError
 struct Sweep<'a> {
     outline: &'a Outline,
     status: Status,
-    chains: Chains,
+    chains: ReflexChains,
     /// For each edge under the sweep line its slot.
     slot_of: Vec<u32>,
     /// Slots of the edges through the corner, from low to high.
@@ -126,7 +126,7 @@ impl Sweep<'_> {
     }
 
     /// Puts edge `index` of those that begin into the slot of one that ends, or into a new one above `under`.
-    fn begin(&mut self, index: usize, point: DVec2, under: u32, chain: Option<Chain>) -> u32 {
+    fn begin(&mut self, index: usize, point: DVec2, under: u32, chain: Option<ReflexChain>) -> u32 {
         let (edge, end) = self.beginning[index];
         let new = Slot::new(point, self.outline.points[end as usize], edge, chain);
         let slot = match self.ending.get(index) {

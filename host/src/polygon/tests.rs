@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::numeric::predicates::{in_circle, turn};
-use crate::numeric::sampling::Stream;
+use crate::numeric::sampling::RandomStream;
 
 type Contour = Vec<DVec2>;
 
@@ -20,7 +20,7 @@ fn twice_area(corners: &[DVec2]) -> f64 {
 
 /// Triangulates and proves: every triangle turns counter-clockwise; every edge is used once each way, or once in all,
 /// and these latter are `edges` edges on the contours; the areas add up to `area`, the polygon's, to rounding.
-fn proved(contours: &[Contour], area: f64, edges: usize, shape: Shape) -> Triangulation {
+fn proved(contours: &[Contour], area: f64, edges: usize, shape: TriangulationKind) -> Triangulation {
     let result = triangulate(contours, shape).unwrap();
     let corners: Vec<DVec2> = contours.concat();
     let at = |corner: u32| corners[corner as usize];
@@ -62,15 +62,15 @@ fn proved(contours: &[Contour], area: f64, edges: usize, shape: Shape) -> Triang
 /// A polygon whose contours do not touch, without useless corners, and with `holes` holes.
 fn plain(contours: &[Contour], area: f64, holes: usize) -> Triangulation {
     let corners = contours.iter().map(Vec::len).sum::<usize>();
-    for shape in [Shape::Delaunay, Shape::Any] {
+    for shape in [TriangulationKind::Delaunay, TriangulationKind::Any] {
         let result = proved(contours, area, corners, shape);
         assert_eq!(result.triangles.len(), corners + 2 * holes - 2 * (contours.len() - holes));
         assert_eq!(result.dropped, 0);
-        if shape == Shape::Delaunay {
+        if shape == TriangulationKind::Delaunay {
             assert_delaunay(contours, &result.triangles);
         }
     }
-    triangulate(contours, Shape::Any).unwrap()
+    triangulate(contours, TriangulationKind::Any).unwrap()
 }
 
 fn assert_delaunay(contours: &[Contour], triangles: &[[u32; 3]]) {
@@ -96,7 +96,7 @@ fn contour(points: &[(f64, f64)]) -> Contour {
 }
 
 fn star(corners: usize, seed: u64) -> Contour {
-    let mut random = Stream::new(seed, 0);
+    let mut random = RandomStream::new(seed, 0);
     let arm = |k| DVec2::from_angle(TAU * f64::from(k) / corners as f64) * (0.1 + 0.9 * random.uniform());
     (0..corners as u32).map(arm).collect()
 }
@@ -124,7 +124,7 @@ fn a_triangle_is_itself_and_no_contours_are_nothing() {
     let mut found = plain(&[triangle], 0.5, 0).triangles[0];
     found.sort();
     assert_eq!(found, [0, 1, 2]);
-    assert_eq!(triangulate::<Contour>(&[], Shape::Any).unwrap(), Triangulation::default());
+    assert_eq!(triangulate::<Contour>(&[], TriangulationKind::Any).unwrap(), Triangulation::default());
 }
 
 #[test]
@@ -168,29 +168,29 @@ fn islands_in_holes_and_separate_outlines_are_found_by_counting() {
 fn corners_that_touch_save_two_triangles() {
     let square = rectangle(0.0, 0.0, 4.0, 4.0);
     let touching_corner = contour(&[(0.0, 0.0), (2.0, 1.0), (1.0, 2.0)]);
-    let result = proved(&[square.clone(), touching_corner], 16.0 - 1.5, 7, Shape::Any);
+    let result = proved(&[square.clone(), touching_corner], 16.0 - 1.5, 7, TriangulationKind::Any);
     assert_eq!(result.triangles.len(), 7 + 2 - 2 - 2);
     // Two holes that touch each other save two; a ring of three of them cuts an island off: once more as many.
     let first = contour(&[(1.0, 1.0), (2.0, 2.0), (1.0, 3.0)]);
     let second = contour(&[(2.0, 2.0), (3.0, 1.0), (3.0, 3.0)]);
-    let result = proved(&[square, first, second], 16.0 - 2.0, 10, Shape::Delaunay);
+    let result = proved(&[square, first, second], 16.0 - 2.0, 10, TriangulationKind::Delaunay);
     assert_eq!(result.triangles.len(), 10 + 4 - 2 - 2);
     // Chess fields: many outlines that touch in all corners.
     let fields: Vec<Contour> = (0..64)
         .filter(|k| (k % 8 + k / 8) % 2 == 0)
         .map(|k| rectangle(f64::from(k % 8), f64::from(k / 8), 1.0, 1.0))
         .collect();
-    assert_eq!(proved(&fields, 32.0, 128, Shape::Any).triangles.len(), 64);
+    assert_eq!(proved(&fields, 32.0, 128, TriangulationKind::Any).triangles.len(), 64);
 }
 
 #[test]
 fn a_contour_may_touch_itself() {
     // A bow tie whose middle is a corner of both ways, and a hole reached by a contour that pinches itself.
     let bow = contour(&[(0.0, 0.0), (1.0, 1.0), (2.0, 0.0), (2.0, 2.0), (1.0, 1.0), (0.0, 2.0)]);
-    assert_eq!(proved(&[bow], 2.0, 6, Shape::Any).triangles.len(), 2);
+    assert_eq!(proved(&[bow], 2.0, 6, TriangulationKind::Any).triangles.len(), 2);
     let pinched =
         contour(&[(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (2.0, 2.0), (3.0, 1.0), (1.0, 1.0), (2.0, 2.0), (0.0, 4.0)]);
-    proved(&[pinched], 12.0 - 1.0, 8, Shape::Any);
+    proved(&[pinched], 12.0 - 1.0, 8, TriangulationKind::Any);
 }
 
 #[test]
@@ -201,11 +201,11 @@ fn a_corner_that_touches_an_edge_divides_it() {
         [(2.0, 4.0), (1.0, 2.0), (3.0, 2.0)],
         [(4.0, 2.0), (2.0, 1.0), (2.0, 3.0)],
     ] {
-        let result = proved(&[square.clone(), contour(&hole)], 14.0, 8, Shape::Any);
+        let result = proved(&[square.clone(), contour(&hole)], 14.0, 8, TriangulationKind::Any);
         assert_eq!(result.triangles.len(), 8 + 2 - 2 - 2);
     }
     // Touched at the side by an outline that lies outside.
-    let result = proved(&[square, contour(&[(4.0, 2.0), (6.0, 1.0), (6.0, 3.0)])], 18.0, 8, Shape::Any);
+    let result = proved(&[square, contour(&[(4.0, 2.0), (6.0, 1.0), (6.0, 3.0)])], 18.0, 8, TriangulationKind::Any);
     assert_eq!(result.triangles.len(), 3 + 1);
 }
 
@@ -216,7 +216,7 @@ fn a_thousand_holes_may_meet_in_one_point() {
         let angle = |t: f64| DVec2::from_angle(TAU * (f64::from(k) + t) / 1000.0);
         contours.push(vec![DVec2::ZERO, angle(0.2) * 5.0, angle(0.6) * 7.0]);
     }
-    let result = proved(&contours, area_of(&contours), 3008, Shape::Any);
+    let result = proved(&contours, area_of(&contours), 3008, TriangulationKind::Any);
     assert_eq!(result.triangles.len(), 3008 + 2000 - 2 - 2 * 999);
 }
 
@@ -235,7 +235,7 @@ fn useless_corners_are_dropped() {
         (0.0, 0.5),
         (0.0, 0.0),
     ]);
-    let result = proved(&[square], 4.0, 4, Shape::Any);
+    let result = proved(&[square], 4.0, 4, TriangulationKind::Any);
     assert_eq!((result.triangles.len(), result.dropped), (2, 7));
 }
 
@@ -245,7 +245,7 @@ fn nearly_straight_corners_are_kept_and_covered() {
         let mut strip: Contour = (0..200).map(|k| DVec2::new(f64::from(k), wiggle * f64::from(k * k % 7))).collect();
         strip.extend((0..200).rev().map(|k| DVec2::new(f64::from(k), wiggle * (f64::from(k * k % 5) + 8.0))));
         let corners: Vec<DVec2> = strip.clone();
-        let result = triangulate(&[strip], Shape::Delaunay).unwrap();
+        let result = triangulate(&[strip], TriangulationKind::Delaunay).unwrap();
         assert_eq!(result.triangles.len(), 400 - result.dropped - 2);
         assert!(result.triangles.iter().all(|t| {
             let [a, b, c] = t.map(|corner| corners[corner as usize] * DVec2::new(1.0, 1.0 / wiggle));
@@ -259,20 +259,20 @@ fn nearly_straight_corners_are_kept_and_covered() {
 #[test]
 fn size_and_distance_do_not_matter() {
     let shape = star(500, 9);
-    let expected = triangulate(&[&shape], Shape::Delaunay).unwrap();
+    let expected = triangulate(&[&shape], TriangulationKind::Delaunay).unwrap();
     for exponent in [-1000, -500, 500, 1000] {
         let scaled: Contour = shape.iter().map(|p| *p * 2.0_f64.powi(exponent)).collect();
-        assert_eq!(triangulate(&[scaled], Shape::Delaunay).unwrap(), expected);
+        assert_eq!(triangulate(&[scaled], TriangulationKind::Delaunay).unwrap(), expected);
     }
     check_simple(shape.iter().map(|p| (*p * 4096.0).round() + 1e12).collect::<Vec<_>>());
     let subnormal = contour(&[(0.0, 0.0), (5e-324, 0.0), (0.0, 5e-324)]);
-    assert_eq!(triangulate(&[subnormal], Shape::Any).unwrap().triangles.len(), 1);
+    assert_eq!(triangulate(&[subnormal], TriangulationKind::Any).unwrap().triangles.len(), 1);
     let huge = contour(&[(-f64::MAX, 0.0), (f64::MAX, -f64::MAX), (0.0, f64::MAX)]);
-    assert_eq!(triangulate(&[huge], Shape::Delaunay).unwrap().triangles.len(), 1);
+    assert_eq!(triangulate(&[huge], TriangulationKind::Delaunay).unwrap().triangles.len(), 1);
     let mixed = |size: f64, tiny: f64| contour(&[(0.0, 0.0), (size, 0.0), (size, tiny), (tiny, tiny), (0.0, size)]);
-    assert_eq!(triangulate(&[mixed(1e20, 1e-100)], Shape::Delaunay).unwrap().triangles.len(), 3);
+    assert_eq!(triangulate(&[mixed(1e20, 1e-100)], TriangulationKind::Delaunay).unwrap().triangles.len(), 3);
     // Too small beside the greatest to be told from zero.
-    let error = triangulate(&[mixed(1e300, 1e-300)], Shape::Delaunay).unwrap_err();
+    let error = triangulate(&[mixed(1e300, 1e-300)], TriangulationKind::Delaunay).unwrap_err();
     assert_eq!(error, PolygonError::Overlap { first: edge(0, 0), second: edge(0, 1) });
 }
 
@@ -282,7 +282,7 @@ fn edge(contour: usize, corner: usize) -> PolygonEdge {
 
 #[test]
 fn bad_polygons_are_refused_with_the_place() {
-    let refused = |contours: &[Contour]| triangulate(contours, Shape::Any).unwrap_err();
+    let refused = |contours: &[Contour]| triangulate(contours, TriangulationKind::Any).unwrap_err();
     let square = rectangle(0.0, 0.0, 4.0, 4.0);
     let bow = contour(&[(1.0, 1.0), (3.0, 3.0), (3.0, 1.0), (1.0, 3.0)]);
     assert_eq!(refused(&[square.clone(), bow]), PolygonError::Crossing { first: edge(1, 0), second: edge(1, 2) });
@@ -315,7 +315,7 @@ fn cross([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
 
 #[test]
 fn a_reported_crossing_is_one_and_none_is_missed() {
-    let mut random = Stream::new(11, 0);
+    let mut random = RandomStream::new(11, 0);
     let mut counts = [0; 2];
     for round in 0..3000 {
         let corners = 3 + round % 12;
@@ -323,7 +323,7 @@ fn a_reported_crossing_is_one_and_none_is_missed() {
         let ends = |k: usize| [random_contour[k], random_contour[(k + 1) % corners]];
         let any = (0..corners).any(|i| (0..i).any(|j| cross(ends(i), ends(j))));
         counts[usize::from(any)] += 1;
-        match triangulate(&[&random_contour], Shape::Any) {
+        match triangulate(&[&random_contour], TriangulationKind::Any) {
             Ok(_) => assert!(!any, "a crossing was missed: {random_contour:?}"),
             Err(PolygonError::Crossing { first, second }) => assert!(cross(ends(first.corner), ends(second.corner))),
             Err(error) => panic!("{error}"),
@@ -335,13 +335,13 @@ fn a_reported_crossing_is_one_and_none_is_missed() {
 #[test]
 fn whole_coordinates_give_right_areas_or_a_refusal() {
     // Few places: touching, overlapping and crossing in all ways.
-    let mut random = Stream::new(12, 0);
+    let mut random = RandomStream::new(12, 0);
     let mut accepted = 0;
     for round in 0..20_000 {
         let contours: Vec<Contour> = (0..1 + round % 3)
             .map(|_| (0..3 + round % 5).map(|_| DVec2::new(random.below(6) as f64, random.below(6) as f64)).collect())
             .collect();
-        if let Ok(result) = triangulate(&contours, Shape::Delaunay) {
+        if let Ok(result) = triangulate(&contours, TriangulationKind::Delaunay) {
             accepted += 1;
             let corners = contours.concat();
             let mut boundary: HashMap<[[i64; 2]; 2], i32> = HashMap::new();
@@ -383,7 +383,7 @@ fn a_polygon_in_space_keeps_the_side_of_its_normal() {
         let (u, v) = (axes[k % 3], axes[(k + 1 + k / 3) % 3] + axes[(k + 2 - k / 3) % 3] * 0.25);
         let place = |p: &DVec2| DVec3::splat(7.0) + u * p.x + v * p.y;
         let placed: Vec<Vec<DVec3>> = flat.iter().map(|contour| contour.iter().map(place).collect()).collect();
-        let result = triangulate_in_space(&placed, Shape::Delaunay).unwrap();
+        let result = triangulate_in_space(&placed, TriangulationKind::Delaunay).unwrap();
         assert_eq!(result.triangles.len(), 8);
         let corners = placed.concat();
         for triangle in result.triangles {

@@ -7,15 +7,15 @@ mod progressive;
 
 pub use closed_form::{difference, view_of_dials};
 pub use error::ProductionError;
-pub use progressive::{News, Progressive};
-pub use shot::Shot;
+pub use progressive::{RenderingEvent, Progressive};
+pub use shot::RenderedView;
 
 use crate::{
     picture::{Picture, display::DisplayTransform},
     plan::Plan,
-    render::{Order, RenderError, Watch, World, radiosity::Radiosity, tiles::Tiling},
+    render::{RenderOrder, RenderError, Watch, World, radiosity::Radiosity, tiles::Tiling},
     scene::{Camera, Prepared, Projection, Scene, View},
-    workstation::{Drawing, InitialView, Session, Shown, WorkstationError, network, raster, structure, tiles},
+    workstation::{Drawing, InitialView, Session, StructureCommands, WorkstationError, network, raster, structure, tiles},
 };
 use glam::{DMat4, DVec3};
 use std::num::NonZeroUsize;
@@ -33,7 +33,7 @@ const MOST_RENDERED: usize = 1_000_000;
 pub struct Model {
     prepared: Prepared,
     initial: InitialView,
-    shown: Shown,
+    shown: StructureCommands,
     is_lit: bool,
     begun: Instant,
 }
@@ -90,7 +90,7 @@ pub struct Sent {
     pub seconds: f64,
 }
 
-impl Shot {
+impl RenderedView {
     /// For each row, from the top, whether all of its pixels have samples; false in rows that a stop left out.
     pub fn rows(&self) -> Vec<bool> {
         progressive::rows_of(&self.rendering.film)
@@ -196,10 +196,10 @@ impl Production {
     pub fn render(
         &self,
         matrix: &DMat4,
-        order: &Order,
+        order: &RenderOrder,
         display: &DisplayTransform,
         watch: &Watch<'_>,
-    ) -> Result<Shot, ProductionError> {
+    ) -> Result<RenderedView, ProductionError> {
         let view = View::Projection(self.projection(matrix));
         progressive::shot(&self.prepared, &view, order, display, watch, None)
     }
@@ -213,7 +213,7 @@ impl Production {
     pub fn begin_rendering(
         &self,
         matrix: &DMat4,
-        order: &Order,
+        order: &RenderOrder,
         display: &DisplayTransform,
     ) -> Result<Progressive, ProductionError> {
         let view = View::Projection(self.projection(matrix));

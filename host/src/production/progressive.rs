@@ -1,12 +1,12 @@
 //! Images of a view: at once, or in a thread of their own that tells of itself while samples are added.
 
 use super::error::ProductionError;
-use super::shot::Shot;
+use super::shot::RenderedView;
 use crate::{
     picture::{Picture, display::DisplayTransform},
     plan::Plan,
     render::{
-        Amount, Film, Order, RenderError, Task, Watch, metering::Meter, ray_tracer_watched, ray_tracing::Checkpoints,
+        Progress, Film, RenderOrder, RenderError, Task, Watch, metering::Meter, ray_tracer_watched, ray_tracing::Checkpoints,
     },
     scene::{Prepared, View},
 };
@@ -19,11 +19,11 @@ const EVERY: Duration = Duration::from_millis(150);
 
 /// What is told of a rendering.
 #[derive(Debug)]
-pub enum News {
+pub enum RenderingEvent {
     /// Another stage of the work began: words such as `while rendering`.
     Stage(&'static str),
     /// More of a stage before the image is done.
-    Amount(Amount),
+    Amount(Progress),
     /// There is more of the image.
     Part {
         /// The image as a display shows it; pixels without samples are black.
@@ -36,13 +36,13 @@ pub enum News {
         seconds_left: f64,
     },
     /// It has ended.
-    End(Result<Box<Shot>, ProductionError>),
+    End(Result<Box<RenderedView>, ProductionError>),
 }
 
 /// A rendering in a thread of its own. It is stopped when this is dropped.
 #[derive(Debug)]
 pub struct Progressive {
-    news: mpsc::Receiver<News>,
+    news: mpsc::Receiver<RenderingEvent>,
     is_cancelled: Arc<AtomicBool>,
 }
 
@@ -51,7 +51,7 @@ impl Progressive {
     pub(super) fn begin(
         prepared: Arc<Prepared>,
         view: View,
-        order: Order,
+        order: RenderOrder,
         display: DisplayTransform,
     ) -> Result<Progressive, ProductionError> {
         let (sender, news) = mpsc::channel();
@@ -60,16 +60,16 @@ impl Progressive {
         let work = move || {
             // Nobody may be listening any more.
             let tell = |news| drop(sender.send(news));
-            let stage = |name| tell(News::Stage(name));
+            let stage = |name| tell(RenderingEvent::Stage(name));
             // How many samples there are, parts of the image tell.
-            let progress = |amount: Amount| {
+            let progress = |amount: Progress| {
                 if amount.unit != "samples" {
-                    tell(News::Amount(amount));
+                    tell(RenderingEvent::Amount(amount));
                 }
             };
             let watch = Watch { cancelled: &cancelled, stage: &stage, progress: &progress, memo: None };
-            let mut part = |part: News| tell(part);
-            tell(News::End(shot(&prepared, &view, &order, &display, &watch, Some(&mut part)).map(Box::new)));
+            let mut part = |part: RenderingEvent| tell(part);
+            tell(RenderingEvent::End(shot(&prepared, &view, &order, &display, &watch, Some(&mut part)).map(Box::new)));
         };
         let thread = std::thread::Builder::new().name("rendering".into());
         thread.spawn(work).map_err(|error| ProductionError::Thread(error.to_string()))?;
@@ -77,14 +77,14 @@ impl Progressive {
     }
 
     /// What is new, oldest first; of parts and amounts that follow each other, the last one only.
-    pub fn news(&self) -> Vec<News> {
-        let mut all: Vec<News> = Vec::new();
+    pub fn news(&self) -> Vec<RenderingEvent> {
+        let mut all: Vec<RenderingEvent> = Vec::new();
         loop {
             match self.news.try_recv() {
                 Ok(news) => {
                     let is_outdated = matches!(
                         (all.last(), &news),
-                        (Some(News::Part { .. }), News::Part { .. }) | (Some(News::Amount(_)), News::Amount(_))
+                        (Some(RenderingEvent::Part { .. }), RenderingEvent::Part { .. }) | (Some(RenderingEvent::Amount(_)), RenderingEvent::Amount(_))
                     );
                     if is_outdated {
                         all.pop();
@@ -93,8 +93,8 @@ impl Progressive {
                 }
                 Err(mpsc::TryRecvError::Empty) => return all,
                 Err(mpsc::TryRecvError::Disconnected) => {
-                    if !matches!(all.last(), Some(News::End(_))) {
-                        all.push(News::End(Err(ProductionError::Thread("its thread failed".into()))));
+                    if !matches!(all.last(), Some(RenderingEvent::End(_))) {
+                        all.push(RenderingEvent::End(Err(ProductionError::Thread("its thread failed".into()))));
                     }
                     return all;
                 }
@@ -120,11 +120,11 @@ impl Drop for Progressive {
 pub(super) fn shot(
     prepared: &Prepared,
     view: &View,
-    order: &Order,
+    order: &RenderOrder,
     display: &DisplayTransform,
     watch: &Watch<'_>,
-    parts: Option<&mut dyn FnMut(News)>,
-) -> Result<Shot, ProductionError> {
+    parts: Option<&mut dyn FnMut(RenderingEvent)>,
+) -> Result<RenderedView, ProductionError> {
     let start = Instant::now();
     let plan = Plan::new(prepared, view);
     let (tracer, _) = ray_tracer_watched(&Task { watch: *watch, ..Task::new(prepared, &plan) })?;
@@ -153,17 +153,17 @@ pub(super) fn shot(
         None => tracer.go_on(film, view, order, watch, None)?,
     };
     let shown = shown(&rendering.picture).map_err(RenderError::from)?;
-    Ok(Shot { rendering, octree_bytes, build_seconds, shown, stops })
+    Ok(RenderedView { rendering, octree_bytes, build_seconds, shown, stops })
 }
 
 /// What there is of an image.
-fn part(film: &Film, shown: Picture, order: &Order, begin: Instant) -> News {
+fn part(film: &Film, shown: Picture, order: &RenderOrder, begin: Instant) -> RenderingEvent {
     let rows = rows_of(film);
     let taken: u64 = film.tallies().iter().map(|tally| u64::from(tally.count)).sum();
     let all = film.tallies().len() as u64 * u64::from(order.samples);
     let seconds_left = begin.elapsed().as_secs_f64() * (all as f64 / taken.max(1) as f64 - 1.0).max(0.0);
     let samples = taken as f64 / film.tallies().len() as f64;
-    News::Part { shown, rows, samples, seconds_left }
+    RenderingEvent::Part { shown, rows, samples, seconds_left }
 }
 
 /// For each row whether all of its pixels have samples.

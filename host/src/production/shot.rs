@@ -5,7 +5,7 @@ use crate::render::Rendering;
 
 /// An image of the view that is set on the workstation.
 #[derive(Debug)]
-pub struct Shot {
+pub struct RenderedView {
     /// The image, with what it took.
     pub rendering: Rendering,
     /// Memory of the octree that the rays went through, bytes a triangle; none if the view needs no triangles.

@@ -26,7 +26,7 @@ pub enum RenderError {
     View,
     /// Radiosity has no solution.
     #[error("radiosity: {0}")]
-    Radiosity(#[from] Unsolvable),
+    Radiosity(#[from] RadiosityError),
     /// The threads cannot be started.
     #[error("threads: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -34,7 +34,7 @@ pub enum RenderError {
 
 /// A reason for which radiosity has no solution.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Unsolvable {
+pub enum RadiosityError {
     /// Light that nothing takes away.
     #[error("light comes to surfaces that reflect all of it and from which none escapes: it would grow without end")]
     NoLoss,

@@ -2,11 +2,11 @@
 
 use super::ray_tracer;
 use super::scan_line::ScanLine;
-use super::{Order, Renderer, Rendering, Watch};
-use crate::color::{Beyond, Color, Spectrum};
-use crate::illumination::light::Patch;
-use crate::illumination::material::{Body, Classic, Coated, Finish, Index, Material, Metal, Transparent};
-use crate::illumination::{Bands, Light, Paint};
+use super::{RenderOrder, Renderer, Rendering, Watch};
+use crate::color::{Extrapolation, Color, Spectrum};
+use crate::illumination::light::LightShape;
+use crate::illumination::material::{MaterialKind, Classic, Coated, Finish, RefractiveIndex, Material, Metal, Transparent};
+use crate::illumination::{RgbPower, Light, Paint};
 use crate::picture::difference;
 use crate::plan::Plan;
 use crate::scene::{Camera, Interreflection, Object, Parallel, Prepared, Scene, Settings, Shape, View};
@@ -35,13 +35,13 @@ fn diffuse(k: f64) -> Classic {
 }
 
 fn glass(index: f64, roughness: f64, absorption: f64) -> Material {
-    let (index, absorption) = (Index::Constant(index), Color::grey(absorption));
-    Body::Transparent(Transparent { roughness: roughness.into(), absorption, ..Transparent::clear(index) }).into()
+    let (index, absorption) = (RefractiveIndex::Constant(index), Color::grey(absorption));
+    MaterialKind::Transparent(Transparent { roughness: roughness.into(), absorption, ..Transparent::clear(index) }).into()
 }
 
 fn metal(n: f64, k: f64, finish: Finish) -> Material {
-    let flat = |value: f64| Spectrum::regular(300.0, 600.0, vec![value; 2], Beyond::Held).expect("a spectrum");
-    Body::Metal(Metal { n: flat(n), k: flat(k), finish }).into()
+    let flat = |value: f64| Spectrum::regular(300.0, 600.0, vec![value; 2], Extrapolation::Held).expect("a spectrum");
+    MaterialKind::Metal(Metal { n: flat(n), k: flat(k), finish }).into()
 }
 
 fn rough(name: &str, roughness: f64) -> Finish {
@@ -75,7 +75,7 @@ fn render(scene: &Scene, by_rays: bool) -> Rendering {
     let prepared = Prepared::new(scene).unwrap_or_else(|e| panic!("{e}"));
     let view = prepared.view();
     let plan = Plan::new(&prepared, &view);
-    let order = Order::of(&scene.settings);
+    let order = RenderOrder::of(&scene.settings);
     let rendering = match by_rays {
         true => ray_tracer(&prepared, &plan).expect("ready").render(&view, &order, &Watch::NOBODY),
         false => ScanLine::new(&prepared, &plan).expect("ready").render(&view, &order, &Watch::NOBODY),
@@ -120,7 +120,7 @@ fn polished_surfaces_reflect_what_fresnel_says_up_to_grazing() {
             for degrees in [0.0, 45.0, 80.0, 89.0, 89.9, 89.999, 89.9999] {
                 let body = cuboid(DVec3::new(40.0, 10.0, 40.0), DVec3::NEG_Y * 5.0, material.clone());
                 let mut scene = scene(vec![body], vec![], at_angle(degrees), 1, 256);
-                scene.background = Bands::ONE;
+                scene.background = RgbPower::ONE;
                 let (found, error) = red(&render(&scene, true));
                 let expected = fresnel(n, degrees.to_radians().cos());
                 let off = (found - expected).abs();
@@ -136,7 +136,7 @@ fn polished_surfaces_reflect_what_fresnel_says_up_to_grazing() {
 #[test]
 fn no_roughness_and_no_angle_creates_light() {
     let coated = |roughness| {
-        Body::Coated(Coated { diffuse: Paint::grey(1.0), index: 1.5, roughness: f64::into(roughness) }).into()
+        MaterialKind::Coated(Coated { diffuse: Paint::grey(1.0), index: 1.5, roughness: f64::into(roughness) }).into()
     };
     for roughness in [1e-6, 0.1, 10.0] {
         let lossless = |name| metal(0.0, 3.0, rough(name, roughness));
@@ -158,7 +158,7 @@ fn no_roughness_and_no_angle_creates_light() {
             let tracer = ray_tracer(&prepared, &plan).expect("ready");
             for degrees in [0.0, 60.0, 89.0, 89.9999] {
                 let view = View::Camera(at_angle(degrees));
-                let rendering = tracer.render(&view, &Order::of(&scene.settings), &Watch::NOBODY).expect("a picture");
+                let rendering = tracer.render(&view, &RenderOrder::of(&scene.settings), &Watch::NOBODY).expect("a picture");
                 let (found, error) = red(&rendering);
                 let place = format!("{word} {roughness} {degrees}: {found} {error}");
                 assert!(found < 1.0 + 5.0 * error + 1e-3 && found > 1.0 - loss - 5.0 * error, "{place}");
@@ -176,7 +176,7 @@ fn a_metal_of_almost_no_roughness_is_a_mirror() {
         ];
         let eye = camera(DVec3::new(1.0, 2.0, 6.0), DVec3::ZERO, DVec3::Y, 30.0);
         let mut scene = scene(objects, vec![], eye, 24, 16);
-        (scene.ambient, scene.background) = (Bands::ONE, Bands::splat(0.2));
+        (scene.ambient, scene.background) = (RgbPower::ONE, RgbPower::splat(0.2));
         render(&scene, true).picture
     };
     let mirror = picture(Finish::Polished);
@@ -191,7 +191,7 @@ fn glass_of_almost_the_index_of_air_is_not_seen_and_one_of_a_thousand_loses_noth
     for (index, tolerance) in [(1.0 + 1e-9, 1e-4), (1.0 - 1e-9, 1e-4), (1e3, 1e-2)] {
         let eye = camera(DVec3::Z * 5.0, DVec3::ZERO, DVec3::Y, 24.0);
         let mut scene = scene(vec![ball(1.0, DVec3::ZERO, glass(index, 0.0, 0.0))], vec![], eye, 12, 64);
-        (scene.background, scene.settings.light.reflection_depth) = (Bands::ONE, 200);
+        (scene.background, scene.settings.light.reflection_depth) = (RgbPower::ONE, 200);
         let rendering = render(&scene, true);
         let pixels = rendering.film.tallies();
         let mean = pixels.iter().map(|tally| tally.mean().x).sum::<f64>() / pixels.len() as f64;
@@ -221,9 +221,9 @@ fn lights_a_millionth_wide_give_what_their_closed_forms_say() {
     const R: f64 = 1e-6;
     for height in [1.0, 1e-3, 1e-5, 1e-6] {
         let center = DVec3::Y * height;
-        let disc = Patch::Disc { center, normal: DVec3::NEG_Y, radius: R };
-        let sphere = Patch::Sphere { center, radius: R };
-        let square = Patch::Rectangle {
+        let disc = LightShape::Disc { center, normal: DVec3::NEG_Y, radius: R };
+        let sphere = LightShape::Sphere { center, radius: R };
+        let square = LightShape::Rectangle {
             corner: center - DVec3::new(R, 0.0, R),
             across: DVec3::X * (2.0 * R),
             up: DVec3::Z * (2.0 * R),
@@ -234,7 +234,7 @@ fn lights_a_millionth_wide_give_what_their_closed_forms_say() {
         let side = R / R.hypot(height);
         let of_square = 4.0 * side * (R / R.hypot(height)).atan();
         for (patch, factor) in [(disc, of_disc), (sphere, of_sphere), (square, of_square)] {
-            if matches!(patch, Patch::Sphere { .. }) && height <= R {
+            if matches!(patch, LightShape::Sphere { .. }) && height <= R {
                 continue;
             }
             let light = Light::Area { patch, radiance: Color::grey(1.0 / factor) };
@@ -265,12 +265,12 @@ fn still_life(factor: f64, by: DVec3, by_rays: bool) -> Scene {
     let intensity = Color::grey(8.0 * factor * factor);
     let mut lights = vec![Light::Point { at: at(DVec3::new(2.0, 3.0, 2.0)), intensity }];
     if by_rays {
-        let patch = Patch::Sphere { center: at(DVec3::new(-1.0, 2.5, 1.0)), radius: 0.2 * factor };
+        let patch = LightShape::Sphere { center: at(DVec3::new(-1.0, 2.5, 1.0)), radius: 0.2 * factor };
         lights.push(Light::Area { patch, radiance: Color::grey(20.0) });
     }
     let eye = camera(at(DVec3::new(0.4, 1.6, 4.5)), at(DVec3::new(0.0, 0.5, 0.0)), DVec3::Y, 34.0);
     let mut scene = scene(objects, lights, eye, 32, 9);
-    scene.background = Bands::splat(0.3);
+    scene.background = RgbPower::splat(0.3);
     scene
 }
 
@@ -318,7 +318,7 @@ fn an_eye_on_a_surface_sees_as_one_on_one_of_its_sides() {
                 let from = DVec3::new(0.1, height, 0.3);
                 let eye = camera(at(from), at(from + towards), at(DVec3::X), 50.0);
                 let mut scene = scene(vec![slab, lid], vec![], eye, 16, 4);
-                (scene.ambient, scene.background) = (Bands::ONE, Bands::splat(0.2));
+                (scene.ambient, scene.background) = (RgbPower::ONE, RgbPower::splat(0.2));
                 render(&scene, by_rays).picture
             };
             for towards in [DVec3::Y, DVec3::NEG_Y, DVec3::new(0.0, 1.0, 0.5)] {
@@ -347,7 +347,7 @@ fn depths_from_a_thousandth_to_ten_thousand_are_right_in_one_picture() {
         ..camera(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, 2.0 * 0.8f64.atan().to_degrees())
     };
     let mut scene = scene(objects, vec![], eye, 64, 1);
-    scene.ambient = Bands::ONE;
+    scene.ambient = RgbPower::ONE;
     for by_rays in [true, false] {
         let rendering = render(&scene, by_rays);
         for (index, distance) in distances.iter().enumerate() {

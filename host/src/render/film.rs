@@ -1,7 +1,7 @@
 //! What the samples of all pixels add up to.
 
-use super::guide::Guide;
-use super::tally::{ByClass, Sample, Tally};
+use super::guide::PixelFeatures;
+use super::tally::{RadianceByClass, PixelSample, Tally};
 use crate::memory::prefer_large_pages;
 use crate::picture::{Picture, PictureError};
 use rayon::prelude::*;
@@ -13,18 +13,18 @@ pub struct Film {
     height: u32,
     tallies: Vec<Tally>,
     /// Sums of each class of light; none unless they are asked for.
-    classes: Vec<ByClass>,
+    classes: Vec<RadianceByClass>,
     /// What guides a denoiser; none unless it is asked for.
-    guides: Vec<Guide>,
+    guides: Vec<PixelFeatures>,
     /// Whether the samples of a pixel come one by one, so that halves of them tell the error of all.
     in_turn: bool,
     /// How far pixels have come that get as many samples as their errors ask for.
-    adaptive: Option<Adaptive>,
+    adaptive: Option<AdaptiveSampling>,
 }
 
 /// Adaptive sampling: how far it has come. Each pass decides by the errors before it which pixels get more samples.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Adaptive {
+pub(super) struct AdaptiveSampling {
     /// The relative error at which a pixel has samples enough.
     pub(super) target: f64,
     /// Samples at the end of the last pass that was finished.
@@ -33,7 +33,7 @@ pub(super) struct Adaptive {
     pub(super) goals: Vec<u32>,
 }
 
-impl Adaptive {
+impl AdaptiveSampling {
     /// Begins a pass, unless one has begun already: pixels that are uncertain get more samples.
     ///
     /// - `samples`: of a pixel after the pass. `most`: of them in this pass.
@@ -55,20 +55,20 @@ impl Adaptive {
 }
 
 /// A row of a film.
-pub(super) struct Row<'a> {
+pub(super) struct FilmRow<'a> {
     /// Its pixels.
     pub(super) tallies: &'a mut [Tally],
     /// The sums of each class of light, if they are kept.
-    classes: Option<&'a mut [ByClass]>,
+    classes: Option<&'a mut [RadianceByClass]>,
     /// What guides a denoiser, if it is kept.
-    guides: Option<&'a mut [Guide]>,
+    guides: Option<&'a mut [PixelFeatures]>,
 }
 
-impl Row<'_> {
+impl FilmRow<'_> {
     /// Adds a sample to the pixel in a column.
     ///
     /// - `classes`: its radiance by class.
-    pub(super) fn add(&mut self, x: usize, sample: &Sample, classes: &ByClass) {
+    pub(super) fn add(&mut self, x: usize, sample: &PixelSample, classes: &RadianceByClass) {
         if let Some(guides) = &mut self.guides {
             guides[x].add(sample, &self.tallies[x]);
         }
@@ -102,7 +102,7 @@ impl Film {
 
     /// This film, which keeps the classes of light apart from now on.
     pub fn with_classes(mut self) -> Film {
-        self.classes = vec![ByClass::default(); self.tallies.len()];
+        self.classes = vec![RadianceByClass::default(); self.tallies.len()];
         self
     }
 
@@ -111,32 +111,32 @@ impl Film {
         self.guides = bytemuck::zeroed_vec(self.tallies.len());
         prefer_large_pages(&mut self.guides);
         // See [`Film::untouched`] for why they are written.
-        self.guides.par_chunks_mut(1 << 14).for_each(|guides| guides.fill(Guide::default()));
+        self.guides.par_chunks_mut(1 << 14).for_each(|guides| guides.fill(PixelFeatures::default()));
         self
     }
 
     /// A film of pixels that are known; none if there are not as many as that.
     ///
     /// - `guides`: of a denoiser, for each of them; none if they are not kept.
-    pub(super) fn of_tallies(width: u32, height: u32, tallies: Vec<Tally>, guides: Vec<Guide>) -> Option<Film> {
+    pub(super) fn of_tallies(width: u32, height: u32, tallies: Vec<Tally>, guides: Vec<PixelFeatures>) -> Option<Film> {
         let possible = Picture::pixels_of(width, height).is_ok_and(|count| count == tallies.len());
         possible.then_some(Film { width, height, tallies, classes: Vec::new(), guides, in_turn: true, adaptive: None })
     }
 
     /// How far adaptive sampling has come that goes on towards a target: where it stopped, if that was the target before.
-    pub(super) fn adaptive(&self, target: Option<f64>) -> Option<Adaptive> {
+    pub(super) fn adaptive(&self, target: Option<f64>) -> Option<AdaptiveSampling> {
         let target = target?;
         let before = self.adaptive.clone().filter(|before| before.target == target);
-        Some(before.unwrap_or(Adaptive { target, passed: 0, goals: Vec::new() }))
+        Some(before.unwrap_or(AdaptiveSampling { target, passed: 0, goals: Vec::new() }))
     }
 
     /// How far adaptive sampling has come; none if all pixels get as many samples.
-    pub(super) fn progress(&self) -> Option<&Adaptive> {
+    pub(super) fn progress(&self) -> Option<&AdaptiveSampling> {
         self.adaptive.as_ref()
     }
 
     /// Takes up how far adaptive sampling has come.
-    pub(super) fn set_adaptive(&mut self, adaptive: Option<Adaptive>) {
+    pub(super) fn set_adaptive(&mut self, adaptive: Option<AdaptiveSampling>) {
         self.adaptive = adaptive;
     }
 
@@ -167,27 +167,27 @@ impl Film {
     }
 
     /// Sums of the radiance of each class over all samples, pixel by pixel; none unless they are kept.
-    pub fn classes(&self) -> &[ByClass] {
+    pub fn classes(&self) -> &[RadianceByClass] {
         &self.classes
     }
 
     /// What guides a denoiser, pixel by pixel; none unless it is kept.
-    pub fn guides(&self) -> &[Guide] {
+    pub fn guides(&self) -> &[PixelFeatures] {
         &self.guides
     }
 
     /// What guides a denoiser, pixel by pixel; none unless it is kept.
     #[cfg(test)]
-    pub(super) fn guides_mut(&mut self) -> &mut [Guide] {
+    pub(super) fn guides_mut(&mut self) -> &mut [PixelFeatures] {
         &mut self.guides
     }
 
     /// All rows.
-    pub(super) fn rows_mut(&mut self) -> Vec<Row<'_>> {
+    pub(super) fn rows_mut(&mut self) -> Vec<FilmRow<'_>> {
         let width = self.width as usize;
         let mut classes = self.classes.chunks_exact_mut(width);
         let mut guides = self.guides.chunks_exact_mut(width);
-        let row = |tallies| Row { tallies, classes: classes.next(), guides: guides.next() };
+        let row = |tallies| FilmRow { tallies, classes: classes.next(), guides: guides.next() };
         self.tallies.chunks_exact_mut(width).map(row).collect()
     }
 
@@ -238,17 +238,17 @@ mod tests {
     use super::*;
     use glam::DVec3;
 
-    fn sample(value: f64) -> Sample {
-        Sample { radiance: DVec3::splat(value), covered: true, ..Sample::default() }
+    fn sample(value: f64) -> PixelSample {
+        PixelSample { radiance: DVec3::splat(value), covered: true, ..PixelSample::default() }
     }
 
     #[test]
     fn what_samples_share_is_in_the_error_of_their_mean() {
         // Each group is wrong by 1: its samples agree, and only what they say of themselves, or another group, tells.
-        let (mut film, one) = (Film::new(1, 1).expect("small"), Sample { shared: 1.0, ..sample(1.0) });
+        let (mut film, one) = (Film::new(1, 1).expect("small"), PixelSample { shared: 1.0, ..sample(1.0) });
         (0..SHARING).for_each(|_| film.tallies_mut()[0].add(&one));
         assert!((film.standard_error() - 1.0).abs() < 1e-12 && (film.tallies()[0].variance() - 1.0).abs() < 1e-12);
-        (0..SHARING).for_each(|_| film.tallies_mut()[0].add(&Sample { radiance: DVec3::splat(3.0), ..one }));
+        (0..SHARING).for_each(|_| film.tallies_mut()[0].add(&PixelSample { radiance: DVec3::splat(3.0), ..one }));
         assert!((film.standard_error() - 1.0).abs() < 1e-12, "{}", film.standard_error());
         let apart = 1.0 / f64::from(2 * SHARING - 1);
         assert!((film.tallies()[0].variance() - apart - 0.5).abs() < 1e-12);

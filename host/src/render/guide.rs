@@ -1,12 +1,12 @@
 //! What guides the denoising of a pixel, beside its tally: what its samples saw behind mirrors and glass, how far they are
 //! apart, and their first half.
 
-use super::tally::{Sample, Tally};
+use super::tally::{PixelSample, Tally};
 use serde::{Deserialize, Serialize};
 
 /// Sums over the samples of a pixel for a denoiser.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, bytemuck::Zeroable)]
-pub struct Guide {
+pub struct PixelFeatures {
     /// Sum of the radiance of the samples up to the last power of two before their number, linear sRGB.
     pub early: [f32; 3],
     /// Sum of the squared radiance of all samples.
@@ -26,11 +26,11 @@ pub struct Guide {
 /// Radiance beyond this counts as this in squares, so that these stay numbers.
 const MOST: f32 = 1e16;
 
-impl Guide {
+impl PixelFeatures {
     /// Adds a sample.
     ///
     /// - `before`: the pixel without it.
-    pub fn add(&mut self, sample: &Sample, before: &Tally) {
+    pub fn add(&mut self, sample: &PixelSample, before: &Tally) {
         if before.count.is_power_of_two() {
             self.early = before.sum.as_vec3().to_array();
         }

@@ -4,7 +4,7 @@ use crate::color::Channels;
 
 /// A part of the light that comes to surfaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum IrradiancePart {
     /// All of it.
     All,
     /// Only what other surfaces reflect.
@@ -17,5 +17,5 @@ pub trait IndirectLight: Send + Sync {
     /// wavelengths.
     ///
     /// - `outside`: whether it is the outer side. `weights`: of the corners, each 0..=1, their sum 1.
-    fn irradiance(&self, triangle: u32, outside: bool, weights: [f64; 3], part: Part) -> Channels;
+    fn irradiance(&self, triangle: u32, outside: bool, weights: [f64; 3], part: IrradiancePart) -> Channels;
 }

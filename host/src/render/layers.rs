@@ -1,8 +1,8 @@
 //! Films as EXR files with layers: what is known of each pixel beside its radiance.
 
 use super::film::Film;
-use super::guide::Guide;
-use super::tally::{Class, Tally};
+use super::guide::PixelFeatures;
+use super::tally::{PathClass, Tally};
 use crate::picture::{Picture, PictureError, Pixel, Provenance, encoder};
 use crate::scene::Prepared;
 use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, WritableImage};
@@ -55,12 +55,12 @@ impl Film {
             AnyChannel::new(layer.name, FlatSamples::F32(values.collect()))
         });
         let of_albedo = |(name, band): (&'static str, usize)| {
-            let value = |(guide, tally): (&Guide, &Tally)| guide.albedo[band] / tally.count.max(1) as f32;
+            let value = |(guide, tally): (&PixelFeatures, &Tally)| guide.albedo[band] / tally.count.max(1) as f32;
             AnyChannel::new(name, FlatSamples::F32(self.guides().iter().zip(tallies).map(value).collect()))
         };
         let albedo = [("albedo.R", 0), ("albedo.G", 1), ("albedo.B", 2)].into_iter();
         let albedo = albedo.filter(|_| !self.guides().is_empty()).map(of_albedo);
-        let of_class = |class: Class| {
+        let of_class = |class: PathClass| {
             let value = move |axis: usize| {
                 let pixels = self.classes().iter().zip(tallies);
                 pixels
@@ -72,7 +72,7 @@ impl Film {
                 AnyChannel::new(exr::meta::attribute::Text::new_or_panic(name(band)), FlatSamples::F32(value(axis)))
             })
         };
-        let classes = Class::ALL.into_iter().filter(|_| !self.classes().is_empty()).flat_map(of_class);
+        let classes = PathClass::ALL.into_iter().filter(|_| !self.classes().is_empty()).flat_map(of_class);
         // Materials are counted over all objects.
         let firsts: Vec<u32> = prepared
             .objects
@@ -105,7 +105,7 @@ impl Film {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::Sample;
+    use crate::render::PixelSample;
     use crate::scene::Scene;
     use exr::prelude::read_first_flat_layer_from_file;
     use glam::DVec3;
@@ -114,11 +114,11 @@ mod tests {
     fn layers_hold_what_the_film_knows() {
         let mut film = Film::new(2, 1).expect("small");
         let first = Some((4.0, DVec3::Y, [0, 0]));
-        film.tallies_mut()[1].add(&Sample {
+        film.tallies_mut()[1].add(&PixelSample {
             radiance: DVec3::new(1.0, 2.0, 3.0),
             covered: true,
             first,
-            ..Sample::default()
+            ..PixelSample::default()
         });
         let folder = tempfile::tempdir().expect("folder");
         let path = folder.path().join("a.exr");

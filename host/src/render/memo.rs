@@ -28,12 +28,12 @@ const CHUNK: usize = 8192;
 #[derive(Debug)]
 pub struct Memo {
     path: PathBuf,
-    stand: Mutex<Stand>,
+    stand: Mutex<MemoState>,
 }
 
 /// Where the file stands.
 #[derive(Debug)]
-enum Stand {
+enum MemoState {
     /// What was computed before is read, up to a byte.
     Reading(BufReader<File>, u64),
     /// What is computed is written.
@@ -62,10 +62,10 @@ impl Memo {
             return Err(other(if found.starts_with(&MAGIC) { "what it computed differs" } else { "its kind differs" }));
         }
         let stand = match found.len() == head.len() {
-            true => Stand::Reading(BufReader::new(file), HEAD),
+            true => MemoState::Reading(BufReader::new(file), HEAD),
             false => {
                 file.seek(SeekFrom::Start(0)).and_then(|_| file.write_all(&head)).map_err(failed)?;
-                Stand::Writing(file)
+                MemoState::Writing(file)
             }
         };
         Ok(Memo { path: path.into(), stand: Mutex::new(stand) })
@@ -133,10 +133,10 @@ impl Memo {
     }
 }
 
-impl Stand {
+impl MemoState {
     /// The next record, if it is whole and right; otherwise writing begins in its place.
     fn read<R: DeserializeOwned>(&mut self, is_right: impl Fn(&R) -> bool) -> Option<R> {
-        let Stand::Reading(file, end) = self else { return None };
+        let MemoState::Reading(file, end) = self else { return None };
         match record(file, *end) {
             Ok((content, next)) => {
                 if let Ok((found, used)) = decode::<R, MOST>(&content, Integers::Fixed)
@@ -151,12 +151,12 @@ impl Stand {
             Err(error) => tracing::warn!("intermediate results are computed anew: {error}"),
         }
         let end = *end;
-        *self = match std::mem::replace(self, Stand::Broken) {
-            Stand::Reading(file, _) => {
+        *self = match std::mem::replace(self, MemoState::Broken) {
+            MemoState::Reading(file, _) => {
                 let mut file = file.into_inner();
                 match file.set_len(end).and_then(|()| file.seek(SeekFrom::Start(end))) {
-                    Ok(_) => Stand::Writing(file),
-                    Err(_) => Stand::Broken,
+                    Ok(_) => MemoState::Writing(file),
+                    Err(_) => MemoState::Broken,
                 }
             }
             other => other,
@@ -165,7 +165,7 @@ impl Stand {
     }
 
     fn write(&mut self, made: &impl Serialize) -> io::Result<()> {
-        let Stand::Writing(file) = self else { return Ok(()) };
+        let MemoState::Writing(file) = self else { return Ok(()) };
         let content = encode(made, Integers::Fixed).map_err(io::Error::other)?;
         if content.len() > MOST {
             return Err(io::Error::other("a result is too long to be kept"));
@@ -173,7 +173,7 @@ impl Stand {
         let head = [&(content.len() as u64).to_le_bytes()[..], &crc32fast::hash(&content).to_le_bytes()].concat();
         let written = file.write_all(&head).and_then(|()| file.write_all(&content));
         if written.is_err() {
-            *self = Stand::Broken;
+            *self = MemoState::Broken;
         }
         written
     }

@@ -12,7 +12,7 @@
 //! of the tone curve as long as the rest does not become too dark.
 
 use super::tally::Tally;
-use super::{Film, Order, RenderError, Renderer, Watch};
+use super::{Film, RenderOrder, RenderError, Renderer, Watch};
 use crate::color::srgb::LUMINANCE;
 use crate::picture::display::{DisplayTransform, Exposure, MIDDLE_GREY, Tone};
 use crate::picture::{Filter, Picture};
@@ -83,7 +83,7 @@ impl Meter {
             Exposure::Stops(stops) => return Ok(stops),
         };
         (watch.stage)("while metering the exposure");
-        let order = Order {
+        let order = RenderOrder {
             width: self.width,
             height: self.height,
             samples: SAMPLES,
@@ -91,9 +91,9 @@ impl Meter {
             filter: Filter::Box,
             seed: SEED,
             threads: self.threads,
-            ..Order::of(&prepared.settings)
+            ..RenderOrder::of(&prepared.settings)
         };
-        let mut seen = Seen::default();
+        let mut seen = MeteredPixels::default();
         for view in views {
             let pilot = renderer.render(view, &order, &watch.quiet())?;
             if !pilot.complete {
@@ -109,17 +109,17 @@ impl Meter {
 ///
 /// - `tone`: the curve with which it is shown.
 pub fn stops_of_picture(picture: &Picture, tone: Tone) -> f64 {
-    let mut seen = Seen::default();
+    let mut seen = MeteredPixels::default();
     for (pixel, weight) in picture.pixels().iter().zip(weights(picture.width(), picture.height())) {
         let light = DVec3::from(pixel.radiance.map(f64::from));
-        seen.add(light, weight, if pixel.coverage > 0.0 { Sight::Surface } else { Sight::Sky });
+        seen.add(light, weight, if pixel.coverage > 0.0 { PixelTarget::Surface } else { PixelTarget::Sky });
     }
     seen.stops(tone).unwrap_or_default()
 }
 
 /// Where a pixel looks.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Sight {
+enum PixelTarget {
     Surface,
     /// There is nothing.
     Sky,
@@ -142,16 +142,16 @@ fn weights(width: u32, height: u32) -> impl Iterator<Item = f64> {
 
 /// Brightness of the pixels of pilot pictures, but for those that see lamps.
 #[derive(Default)]
-struct Seen {
+struct MeteredPixels {
     surfaces: Vec<Metered>,
     sky: Vec<Metered>,
     /// The brightest band of each.
     brightest: Vec<f64>,
 }
 
-impl Seen {
-    fn add(&mut self, light: DVec3, weight: f64, sight: Sight) {
-        let place = if sight == Sight::Sky { &mut self.sky } else { &mut self.surfaces };
+impl MeteredPixels {
+    fn add(&mut self, light: DVec3, weight: f64, sight: PixelTarget) {
+        let place = if sight == PixelTarget::Sky { &mut self.sky } else { &mut self.surfaces };
         place.push(Metered { luminance: light.dot(LUMINANCE), weight });
         self.brightest.push(light.max_element());
     }
@@ -165,9 +165,9 @@ impl Seen {
         };
         for (tally, weight) in film.tallies().iter().zip(weights(film.width(), film.height())) {
             if tally.covered == 0.0 {
-                self.add(tally.mean(), weight, Sight::Sky);
+                self.add(tally.mean(), weight, PixelTarget::Sky);
             } else if !is_lamp(tally) {
-                self.add(tally.mean(), weight, Sight::Surface);
+                self.add(tally.mean(), weight, PixelTarget::Surface);
             }
         }
     }
@@ -208,9 +208,9 @@ mod tests {
     use super::*;
 
     fn stops(surfaces: &[f64], sky: &[f64], tone: Tone) -> Option<f64> {
-        let mut seen = Seen::default();
-        surfaces.iter().for_each(|light| seen.add(DVec3::splat(*light), 1.0, Sight::Surface));
-        sky.iter().for_each(|light| seen.add(DVec3::splat(*light), 1.0, Sight::Sky));
+        let mut seen = MeteredPixels::default();
+        surfaces.iter().for_each(|light| seen.add(DVec3::splat(*light), 1.0, PixelTarget::Surface));
+        sky.iter().for_each(|light| seen.add(DVec3::splat(*light), 1.0, PixelTarget::Sky));
         seen.stops(tone)
     }
 

@@ -25,14 +25,14 @@ mod renderers;
 #[cfg(test)]
 mod extreme_tests;
 
-pub use error::{RenderError, Unsolvable};
+pub use error::{RenderError, RadiosityError};
 pub use film::Film;
 pub use memo::Memo;
-pub use order::Order;
+pub use order::RenderOrder;
 pub use renderer::Renderer;
-pub use renderers::{Made, RENDERERS, Ready, RendererRow, Task, Technique, ray_tracer, ray_tracer_watched};
+pub use renderers::{AnyRenderer, RENDERERS, PreparedRenderer, RendererRow, Task, Technique, ray_tracer, ray_tracer_watched};
 pub use rendering::{RayCounts, Rendering, SpanCounts};
-pub use state::{Fingerprint, State, StateError};
-pub use tally::{ByClass, Class, Sample, Tally};
-pub use watch::{Amount, Watch};
+pub use state::{Fingerprint, RenderState, StateError};
+pub use tally::{RadianceByClass, PathClass, PixelSample, Tally};
+pub use watch::{Progress, Watch};
 pub use world::World;

@@ -6,7 +6,7 @@ use std::num::NonZeroUsize;
 
 /// How a picture is to be made.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Order {
+pub struct RenderOrder {
     /// Columns.
     pub width: u32,
     /// Rows.
@@ -33,11 +33,11 @@ pub struct Order {
     pub threads: Option<NonZeroUsize>,
 }
 
-impl Order {
+impl RenderOrder {
     /// What the scene's settings ask for, on every core.
-    pub fn of(settings: &Settings) -> Order {
+    pub fn of(settings: &Settings) -> RenderOrder {
         let ImageSettings { width, height, samples, filter, seed } = settings.image;
-        Order {
+        RenderOrder {
             width,
             height,
             samples,

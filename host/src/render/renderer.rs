@@ -1,7 +1,7 @@
 //! What every renderer does.
 
 use super::error::RenderError;
-use super::order::Order;
+use super::order::RenderOrder;
 use super::rendering::Rendering;
 use super::watch::Watch;
 use crate::scene::View;
@@ -21,5 +21,5 @@ pub trait Renderer: Send + Sync {
     /// # Errors
     /// [`RenderError`] for a view that sees nothing, or when no memory or thread can be had. Being cancelled is no
     /// error: the rendering then holds the rows that were finished.
-    fn render(&self, view: &View, order: &Order, watch: &Watch<'_>) -> Result<Rendering, RenderError>;
+    fn render(&self, view: &View, order: &RenderOrder, watch: &Watch<'_>) -> Result<Rendering, RenderError>;
 }

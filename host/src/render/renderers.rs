@@ -4,7 +4,7 @@ use super::indirect::IndirectLight;
 use super::radiosity::{self, Exitance, Radiosity};
 use super::ray_tracing::RayTracer;
 use super::scan_line::ScanLine;
-use super::two_way::Shelf;
+use super::two_way::PhotonStore;
 use super::world::World;
 use super::{RenderError, Renderer, Watch};
 use crate::plan::{Plan, Stage};
@@ -52,7 +52,7 @@ pub struct RendererRow {
     /// Sets what it needs of the settings of a scene.
     pub require: fn(&mut Settings),
     /// Makes it ready for a scene.
-    prepare: for<'a> fn(&Task<'a>) -> Result<Ready<'a>, RenderError>,
+    prepare: for<'a> fn(&Task<'a>) -> Result<PreparedRenderer<'a>, RenderError>,
 }
 
 /// All renderers, in the order of [`Technique`].
@@ -96,7 +96,7 @@ pub const RENDERERS: [RendererRow; 4] = [
         require: |_| (),
         prepare: |task| {
             let scan_line = ScanLine::new(task.prepared, task.plan)?;
-            Ok(Ready { renderer: Made::Whole(Box::new(scan_line)), radiosity: None })
+            Ok(PreparedRenderer { renderer: AnyRenderer::Whole(Box::new(scan_line)), radiosity: None })
         },
     },
     RendererRow {
@@ -117,7 +117,7 @@ pub const RENDERERS: [RendererRow; 4] = [
             let solution = Radiosity::new(&world, task.plan, &task.prepared.settings.radiosity, None, &task.watch)?;
             let radiosity = Some(solution.report);
             let scan_line = ScanLine::showing(Arc::new(solution), world, task.plan);
-            Ok(Ready { renderer: Made::Whole(Box::new(scan_line)), radiosity })
+            Ok(PreparedRenderer { renderer: AnyRenderer::Whole(Box::new(scan_line)), radiosity })
         },
     },
 ];
@@ -130,7 +130,7 @@ pub struct Task<'a> {
     /// What of it is needed.
     pub plan: &'a Plan,
     /// Where caught light is kept beyond the renderer; nowhere without one.
-    pub shelf: Option<&'a Shelf>,
+    pub shelf: Option<&'a PhotonStore>,
     /// Who watches what is found before the first picture, and may stop it: the light that surfaces send each other is then
     /// known coarsely.
     pub watch: Watch<'a>,
@@ -144,35 +144,35 @@ impl<'a> Task<'a> {
 }
 
 /// A renderer that has taken up a scene.
-pub struct Ready<'a> {
+pub struct PreparedRenderer<'a> {
     /// The renderer, with its world.
-    pub renderer: Made<'a>,
+    pub renderer: AnyRenderer<'a>,
     /// What it took to find the light that diffuse surfaces send each other, if that was found before.
-    pub radiosity: Option<radiosity::Report>,
+    pub radiosity: Option<radiosity::RadiosityReport>,
 }
 
 /// A renderer, by how it makes its pictures.
-pub enum Made<'a> {
+pub enum AnyRenderer<'a> {
     /// Sample by sample: [`RendererRow::adds_samples`].
     BySamples(Box<RayTracer<'a>>),
     /// At once.
     Whole(Box<dyn Renderer + 'a>),
 }
 
-impl<'a> Made<'a> {
+impl<'a> AnyRenderer<'a> {
     /// As any renderer.
     pub fn any(&self) -> &(dyn Renderer + 'a) {
         match self {
-            Made::BySamples(tracer) => &**tracer,
-            Made::Whole(renderer) => &**renderer,
+            AnyRenderer::BySamples(tracer) => &**tracer,
+            AnyRenderer::Whole(renderer) => &**renderer,
         }
     }
 
     /// How long it took to build the octrees that its rays go through, whether for it or for an earlier renderer.
     pub fn octree_time(&self) -> Duration {
         match self {
-            Made::BySamples(tracer) => tracer.world().octree_time(),
-            Made::Whole(_) => Duration::ZERO,
+            AnyRenderer::BySamples(tracer) => tracer.world().octree_time(),
+            AnyRenderer::Whole(_) => Duration::ZERO,
         }
     }
 }
@@ -192,7 +192,7 @@ impl Technique {
     ///
     /// # Errors
     /// [`RenderError`], for a scene that has no octree, an impossible material, or light that grows without end.
-    pub fn prepare<'a>(self, task: &Task<'a>) -> Result<Ready<'a>, RenderError> {
+    pub fn prepare<'a>(self, task: &Task<'a>) -> Result<PreparedRenderer<'a>, RenderError> {
         (self.row().prepare)(task)
     }
 }
@@ -209,7 +209,7 @@ pub fn ray_tracer<'a>(prepared: &'a Prepared, plan: &'a Plan) -> Result<RayTrace
 ///
 /// # Errors
 /// [`RenderError::Octree`], [`RenderError::Material`], [`RenderError::Radiosity`].
-pub fn ray_tracer_watched<'a>(task: &Task<'a>) -> Result<(RayTracer<'a>, Option<radiosity::Report>), RenderError> {
+pub fn ray_tracer_watched<'a>(task: &Task<'a>) -> Result<(RayTracer<'a>, Option<radiosity::RadiosityReport>), RenderError> {
     let Task { prepared, plan, shelf, watch } = *task;
     (watch.stage)("while building the octree");
     let world = World::new(prepared, plan)?;
@@ -230,9 +230,9 @@ pub fn ray_tracer_watched<'a>(task: &Task<'a>) -> Result<(RayTracer<'a>, Option<
     Ok((tracer.with_indirect(light), Some(report)))
 }
 
-fn ray_tracing<'a>(task: &Task<'a>) -> Result<Ready<'a>, RenderError> {
+fn ray_tracing<'a>(task: &Task<'a>) -> Result<PreparedRenderer<'a>, RenderError> {
     let (tracer, radiosity) = ray_tracer_watched(task)?;
-    Ok(Ready { renderer: Made::BySamples(Box::new(tracer)), radiosity })
+    Ok(PreparedRenderer { renderer: AnyRenderer::BySamples(Box::new(tracer)), radiosity })
 }
 
 #[cfg(test)]

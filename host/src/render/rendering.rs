@@ -1,7 +1,7 @@
 //! A picture with what it took.
 
 use super::film::Film;
-use super::two_way::Balance;
+use super::two_way::FluxBalance;
 use crate::picture::display::DisplayTransform;
 use crate::picture::{Picture, Provenance};
 use serde::Serialize;
@@ -20,7 +20,7 @@ pub struct Rendering {
     /// How many spans were drawn; none by ray tracing.
     pub spans: SpanCounts,
     /// What became of the light of lamps that was followed first, if any was.
-    pub balance: Option<Balance>,
+    pub balance: Option<FluxBalance>,
     /// Wall-clock time, seconds.
     pub seconds: f64,
     /// Threads that worked.

@@ -4,9 +4,9 @@
 //! be denoised, the [`Guide`] of each pixel; where adaptive sampling is in the middle of a pass, the goal of each pixel
 //! (u32); and a checksum of all before it (CRC-32, u32). Numbers are little-endian.
 
-use super::Order;
-use super::film::{Adaptive, Film};
-use super::guide::Guide;
+use super::RenderOrder;
+use super::film::{AdaptiveSampling, Film};
+use super::guide::PixelFeatures;
 use super::tally::Tally;
 use crate::encoding::{EncodingError, Integers, decode_from, encode_into};
 use crate::picture::PictureError;
@@ -99,7 +99,7 @@ struct Head {
 
 /// A rendering that was stopped.
 #[derive(Clone, Debug, PartialEq)]
-pub struct State {
+pub struct RenderState {
     /// Views of a sequence that were finished.
     pub views: u32,
     /// The next one, as far as it came.
@@ -108,7 +108,7 @@ pub struct State {
 
 impl Fingerprint {
     /// Of a scene and how it is to be rendered.
-    pub fn of(scene: &Scene, prepared: &Prepared, order: &Order) -> Fingerprint {
+    pub fn of(scene: &Scene, prepared: &Prepared, order: &RenderOrder) -> Fingerprint {
         let checksum = |bytes: &[u8]| crc32fast::hash(bytes);
         let mut scene = scene.clone();
         scene.settings.image.samples = 0;
@@ -118,7 +118,7 @@ impl Fingerprint {
         let mut geometry = Hasher::new();
         geometry.update(bytemuck::cast_slice(&prepared.triangles));
         geometry.update(bytemuck::cast_slice(&prepared.vertices));
-        let Order { width, height, samples, matte, seed, .. } = order;
+        let RenderOrder { width, height, samples, matte, seed, .. } = order;
         // A single sample lies in the middle of its pixel, where none of many need be.
         let order = format!("{width} {height} {matte} {seed} {}", samples.min(&2));
         Fingerprint { scene: checksum(&words), geometry: geometry.finalize(), order: checksum(order.as_bytes()) }
@@ -216,12 +216,12 @@ impl Film {
     }
 }
 
-impl State {
+impl RenderState {
     /// Reads what was written by [`Film::write_state`] for the same fingerprint.
     ///
     /// # Errors
     /// [`StateError`].
-    pub fn read(path: &Path, order: &Order, fingerprint: Fingerprint) -> Result<State, StateError> {
+    pub fn read(path: &Path, order: &RenderOrder, fingerprint: Fingerprint) -> Result<RenderState, StateError> {
         let failed = |source| StateError::File { path: path.into(), source };
         let damaged = |problem: &str| StateError::Damaged { path: path.into(), problem: problem.into() };
         let file = files::open(path).map_err(failed)?;
@@ -250,19 +250,19 @@ impl State {
         let mut all = || -> Result<Film, String> {
             let tallies = (0..pixels).map(|_| decode(&mut file)).collect::<Result<Vec<Tally>, _>>()?;
             let guides = (0..if is_guided { pixels } else { 0 }).map(|_| decode(&mut file));
-            let guides = guides.collect::<Result<Vec<Guide>, _>>()?;
+            let guides = guides.collect::<Result<Vec<PixelFeatures>, _>>()?;
             let mut film = Film::of_tallies(head.width, head.height, tallies, guides).ok_or("its size is wrong")?;
             if let Some((target, passed, has_goals)) = head.adaptive {
                 let goals = (0..if has_goals { pixels } else { 0 }).map(|_| decode(&mut file));
                 let goals = goals.collect::<Result<Vec<u32>, _>>()?;
-                film.set_adaptive(Some(Adaptive { target, passed, goals }));
+                film.set_adaptive(Some(AdaptiveSampling { target, passed, goals }));
             }
             let sum = file.sum.clone().finalize();
             let mut rest = Vec::new();
             file.inner.by_ref().take(5).read_to_end(&mut rest).map_err(|error| error.to_string())?;
             if rest == sum.to_le_bytes() { Ok(film) } else { Err("its checksum is wrong".into()) }
         };
-        Ok(State { views: head.views, film: all().map_err(|problem| damaged(&problem))? })
+        Ok(RenderState { views: head.views, film: all().map_err(|problem| damaged(&problem))? })
     }
 }
 
@@ -280,25 +280,25 @@ fn decode<T: DeserializeOwned>(file: &mut impl Read) -> Result<T, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::Sample;
+    use crate::render::PixelSample;
     use glam::DVec3;
     use std::fs;
 
-    fn order() -> Order {
-        Order::of(&crate::scene::Settings::of_size(3, 2, 16))
+    fn order() -> RenderOrder {
+        RenderOrder::of(&crate::scene::Settings::of_size(3, 2, 16))
     }
 
     fn fingerprint(samples: u32, seed: u64, red: f64) -> Fingerprint {
         let mut scene = Scene { background: DVec3::X * red, ..Scene::default() };
         scene.settings.image.samples = samples;
         let prepared = Prepared::new(&scene).expect("a scene");
-        Fingerprint::of(&scene, &prepared, &Order { seed, samples, ..order() })
+        Fingerprint::of(&scene, &prepared, &RenderOrder { seed, samples, ..order() })
     }
 
     fn film() -> Film {
         let tally = |k: u32| Tally { sum: DVec3::new(0.1, 1.0 / 3.0, f64::from(k)), count: k, ..Tally::default() };
         let mut film = Film::of_tallies(3, 2, (0..6).map(tally).collect(), Vec::new()).expect("six pixels");
-        film.set_adaptive(Some(Adaptive { target: 0.01, passed: 8, goals: (8..14).collect() }));
+        film.set_adaptive(Some(AdaptiveSampling { target: 0.01, passed: 8, goals: (8..14).collect() }));
         film
     }
 
@@ -308,10 +308,10 @@ mod tests {
         let path = folder.path().join("a.state");
         let own = fingerprint(16, 1, 0.5);
         film().write_state(&Destination::of(&path).expect("a destination"), own, 3).expect("written");
-        assert_eq!(State::read(&path, &order(), own).expect("read"), State { views: 3, film: film() });
+        assert_eq!(RenderState::read(&path, &order(), own).expect("read"), RenderState { views: 3, film: film() });
         assert_eq!(own, fingerprint(64, 1, 0.5), "more samples may be added");
         for (other, what) in [(fingerprint(16, 2, 0.5), "seed"), (fingerprint(16, 1, 0.6), "scene")] {
-            let error = State::read(&path, &order(), other).expect_err("another rendering").to_string();
+            let error = RenderState::read(&path, &order(), other).expect_err("another rendering").to_string();
             assert!(error.contains(what), "{error}");
         }
         assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 1, "nothing is left beside it");
@@ -323,15 +323,15 @@ mod tests {
         let destination = Destination::of(folder.path().join("a.state")).expect("a destination");
         let own = fingerprint(16, 1, 0.5);
         let mut guided = Film::new(3, 2).expect("small").with_guides();
-        let sample = Sample { radiance: DVec3::ONE, albedo: DVec3::X, normal: DVec3::Y, ..Sample::default() };
+        let sample = PixelSample { radiance: DVec3::ONE, albedo: DVec3::X, normal: DVec3::Y, ..PixelSample::default() };
         guided.rows_mut()[1].add(2, &sample, &Default::default());
         guided.write_state(&destination, own, 0).expect("written");
         for denoise in [false, true] {
-            let state = State::read(destination.path(), &Order { denoise, ..order() }, own).expect("read");
+            let state = RenderState::read(destination.path(), &RenderOrder { denoise, ..order() }, own).expect("read");
             assert_eq!((state.film.guides(), state.film.guides()[5].albedo[0]), (guided.guides(), 1.0));
         }
         film().write_state(&destination, own, 0).expect("written");
-        let error = State::read(destination.path(), &Order { denoise: true, ..order() }, own).expect_err("no guides");
+        let error = RenderState::read(destination.path(), &RenderOrder { denoise: true, ..order() }, own).expect_err("no guides");
         assert!(error.to_string().contains("--denoise"), "{error}");
     }
 
@@ -346,11 +346,11 @@ mod tests {
             let mut bytes = whole.clone();
             bytes[at] ^= 0x40;
             fs::write(&path, &bytes).expect("written");
-            assert!(State::read(&path, &order(), own).is_err(), "byte {at}");
+            assert!(RenderState::read(&path, &order(), own).is_err(), "byte {at}");
             fs::write(&path, &whole[..at]).expect("written");
-            assert!(State::read(&path, &order(), own).is_err(), "{at} bytes");
+            assert!(RenderState::read(&path, &order(), own).is_err(), "{at} bytes");
         }
         fs::write(&path, [whole, vec![0]].concat()).expect("written");
-        assert!(State::read(&path, &order(), own).is_err(), "one byte too many");
+        assert!(RenderState::read(&path, &order(), own).is_err(), "one byte too many");
     }
 }

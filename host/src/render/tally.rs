@@ -16,7 +16,7 @@ pub(super) const SHARING: u32 = 8;
 /// A turn of light is broad where it is spread about everywhere, as by Lambert's term, and narrow where it is passed on as a
 /// beam: by mirrors, glass and highlights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Class {
+pub enum PathClass {
     /// Of lamps and skies, straight or by narrow turns alone.
     Emitted,
     /// By one broad turn, straight from the lamp; narrow ones may follow.
@@ -27,23 +27,23 @@ pub enum Class {
     Indirect,
 }
 
-impl Class {
+impl PathClass {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Class; 4] = [Class::Emitted, Class::Direct, Class::Caustic, Class::Indirect];
+    pub const ALL: [PathClass; 4] = [PathClass::Emitted, PathClass::Direct, PathClass::Caustic, PathClass::Indirect];
 
     /// The word for it in layers.
     pub fn word(self) -> &'static str {
         match self {
-            Class::Emitted => "emission",
-            Class::Direct => "direct",
-            Class::Caustic => "caustic",
-            Class::Indirect => "indirect",
+            PathClass::Emitted => "emission",
+            PathClass::Direct => "direct",
+            PathClass::Caustic => "caustic",
+            PathClass::Indirect => "indirect",
         }
     }
 }
 
 /// Radiance of each class, linear sRGB.
-pub type ByClass = [DVec3; Class::ALL.len()];
+pub type RadianceByClass = [DVec3; PathClass::ALL.len()];
 
 /// What is known of a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, bytemuck::Zeroable)]
@@ -72,7 +72,7 @@ pub struct Tally {
 
 /// One sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample {
+pub struct PixelSample {
     /// Radiance, linear sRGB, times its weight.
     pub radiance: DVec3,
     /// How much it counts in its pixel by the reconstruction filter; 1 on average.
@@ -91,16 +91,16 @@ pub struct Sample {
     pub shared: f64,
 }
 
-impl Default for Sample {
-    fn default() -> Sample {
+impl Default for PixelSample {
+    fn default() -> PixelSample {
         let (radiance, albedo, normal) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
-        Sample { radiance, weight: 1.0, covered: false, first: None, albedo, normal, shared: 0.0 }
+        PixelSample { radiance, weight: 1.0, covered: false, first: None, albedo, normal, shared: 0.0 }
     }
 }
 
 impl Tally {
     /// Adds a sample; one that is not a number is taken for black.
-    pub fn add(&mut self, sample: &Sample) {
+    pub fn add(&mut self, sample: &PixelSample) {
         if self.count.is_power_of_two() {
             self.early = self.sum.dot(LUMINANCE);
         }
@@ -109,7 +109,7 @@ impl Tally {
 
     /// Adds several samples that are the same.
     #[inline]
-    pub fn add_alike(&mut self, sample: &Sample, count: u32) {
+    pub fn add_alike(&mut self, sample: &PixelSample, count: u32) {
         let radiance = if sample.radiance.is_finite() { sample.radiance } else { DVec3::ZERO };
         let times = f64::from(count);
         self.sum += radiance * times;
@@ -185,8 +185,8 @@ impl Tally {
 mod tests {
     use super::*;
 
-    fn sample(value: f64) -> Sample {
-        Sample { radiance: DVec3::splat(value), covered: true, ..Sample::default() }
+    fn sample(value: f64) -> PixelSample {
+        PixelSample { radiance: DVec3::splat(value), covered: true, ..PixelSample::default() }
     }
 
     #[test]
@@ -195,7 +195,7 @@ mod tests {
         [1.0, 3.0].iter().for_each(|value| tally.add(&sample(*value)));
         assert!((tally.mean() - DVec3::splat(2.0)).length() < 1e-12 && (tally.variance() - 1.0).abs() < 1e-12);
         assert!((tally.relative_error() - 0.5).abs() < 1e-12);
-        tally.add(&Sample { radiance: DVec3::NAN, ..sample(0.0) });
+        tally.add(&PixelSample { radiance: DVec3::NAN, ..sample(0.0) });
         assert!(tally.mean().is_finite() && tally.count == 3);
         assert_eq!(Tally::default().variance(), f64::INFINITY);
     }

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// How much of a stage of the work is done.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Amount {
+pub struct Progress {
     /// What is done, `0..=all`.
     pub done: f64,
     /// All that is to be done.
@@ -14,10 +14,10 @@ pub struct Amount {
     pub unit: &'static str,
 }
 
-impl Amount {
+impl Progress {
     /// So many of so many.
-    pub fn of(done: u64, all: u64, unit: &'static str) -> Amount {
-        Amount { done: done as f64, all: all as f64, unit }
+    pub fn of(done: u64, all: u64, unit: &'static str) -> Progress {
+        Progress { done: done as f64, all: all as f64, unit }
     }
 }
 
@@ -27,7 +27,7 @@ pub struct Watch<'a> {
     /// Set from outside to stop after the rows that are being rendered.
     pub cancelled: &'a AtomicBool,
     /// Called when more of the stage is done; from any thread.
-    pub progress: &'a (dyn Fn(Amount) + Sync),
+    pub progress: &'a (dyn Fn(Progress) + Sync),
     /// Called when another stage of the work begins, with words such as `while rendering`.
     pub stage: &'a (dyn Fn(&'static str) + Sync),
     /// Where results of long computations are kept, if anywhere.

@@ -28,7 +28,7 @@ pub struct SceneOctree {
 
 /// Which objects of a scene octrees are built over.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Kept {
+pub struct AccelerationKey {
     /// Whether each object of the scene counts.
     pub objects: Vec<bool>,
     /// Whether motions count; without them everything stands where it is in the middle of the time in which the shutter is
@@ -38,8 +38,8 @@ pub struct Kept {
 
 /// The octrees that were built last, for whoever asks for the same again.
 #[derive(Debug, Default)]
-pub(super) struct Built {
-    last: Mutex<Option<(Kept, Arc<Acceleration>)>>,
+pub(super) struct AccelerationCache {
+    last: Mutex<Option<(AccelerationKey, Arc<Acceleration>)>>,
     times: AtomicU32,
 }
 
@@ -56,18 +56,18 @@ impl SceneOctree {
     }
 }
 
-impl Built {
-    fn last(&self) -> MutexGuard<'_, Option<(Kept, Arc<Acceleration>)>> {
+impl AccelerationCache {
+    fn last(&self) -> MutexGuard<'_, Option<(AccelerationKey, Arc<Acceleration>)>> {
         self.last.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The octrees over the objects that are kept, if they were built last.
-    pub(super) fn get(&self, kept: &Kept) -> Option<Arc<Acceleration>> {
+    pub(super) fn get(&self, kept: &AccelerationKey) -> Option<Arc<Acceleration>> {
         self.last().as_ref().filter(|(of, _)| of == kept).map(|(_, acceleration)| acceleration.clone())
     }
 
     /// Keeps octrees that were built in the place of those before.
-    pub(super) fn keep(&self, kept: Kept, acceleration: &Arc<Acceleration>) {
+    pub(super) fn keep(&self, kept: AccelerationKey, acceleration: &Arc<Acceleration>) {
         self.times.fetch_add(1, Ordering::Relaxed);
         *self.last() = Some((kept, acceleration.clone()));
     }

@@ -1,7 +1,7 @@
 //! Solids made of other objects.
 
 use super::ShapeError;
-use super::made::Made;
+use super::made::ShapeMesh;
 use super::object::{Composite, Object, Operation, Shape};
 use super::stretch::largest_stretch;
 use crate::illumination::Material;
@@ -17,7 +17,7 @@ use rayon::prelude::*;
 const NAMED: usize = 4;
 
 /// An operand that is no composite itself.
-struct Leaf<'a> {
+struct LeafOperand<'a> {
     object: &'a Object,
     to_whole: DMat4,
     material: Option<Material>,
@@ -31,10 +31,10 @@ impl Composite {
     ///
     /// # Errors
     /// [`ShapeError`] if an operand has no triangles, or bounds no solid, or if the result has no end or crosses itself.
-    pub fn made(&self, tolerance: Tolerance) -> Result<Made, ShapeError> {
+    pub fn made(&self, tolerance: Tolerance) -> Result<ShapeMesh, ShapeError> {
         let mut leaves = Vec::new();
         let expression = self.collect(&DMat4::IDENTITY, None, tolerance.chord, &mut leaves);
-        let finite = |leaf: &Leaf| if leaf.is_half_space() { Ok(None) } else { leaf.solid(tolerance.angle).map(Some) };
+        let finite = |leaf: &LeafOperand| if leaf.is_half_space() { Ok(None) } else { leaf.solid(tolerance.angle).map(Some) };
         let finite: Vec<Option<ExactSolid>> = leaves.par_iter().map(finite).collect::<Result<_, _>>()?;
         let vertices = finite.iter().flatten().flat_map(|solid| &solid.solid().mesh().vertices);
         let bounds = Bounds::of(vertices.copied());
@@ -49,11 +49,11 @@ impl Composite {
         // A half-space reaches far beyond all others: what keeps its end has none itself.
         let reach = bounds.diagonal();
         let is_beyond = |p: &DVec3| (*p - p.clamp(bounds.min, bounds.max)).length() > reach;
-        if leaves.iter().any(Leaf::is_half_space) && (bounds.is_empty() || mesh.vertices.iter().any(is_beyond)) {
+        if leaves.iter().any(LeafOperand::is_half_space) && (bounds.is_empty() || mesh.vertices.iter().any(is_beyond)) {
             return Err(PrimitiveError::Endless.into());
         }
         let operand_of = outcome.sources.iter().map(|[operand, _]| *operand).collect();
-        Ok(Made { mesh, surfaces, operand_of, ..Made::default() })
+        Ok(ShapeMesh { mesh, surfaces, operand_of, ..ShapeMesh::default() })
     }
 
     /// What it is called in messages.
@@ -87,7 +87,7 @@ impl Composite {
         to_whole: &DMat4,
         whole: Option<Material>,
         chord: f64,
-        leaves: &mut Vec<Leaf<'a>>,
+        leaves: &mut Vec<LeafOperand<'a>>,
     ) -> Expression {
         let whole = whole.or_else(|| self.first_material());
         let part = |operand: &'a Object| {
@@ -97,7 +97,7 @@ impl Composite {
                 Shape::Composite(inner) => inner.collect(&to_whole, material, chord, leaves),
                 _ => {
                     let chord = operand.tolerance.unwrap_or(chord);
-                    leaves.push(Leaf { object: operand, to_whole, material, chord });
+                    leaves.push(LeafOperand { object: operand, to_whole, material, chord });
                     Expression::Operand(leaves.len() - 1)
                 }
             }
@@ -116,7 +116,7 @@ impl Composite {
     }
 }
 
-impl Leaf<'_> {
+impl LeafOperand<'_> {
     fn is_half_space(&self) -> bool {
         matches!(self.object.shape, Shape::HalfSpace { .. })
     }
@@ -131,7 +131,7 @@ impl Leaf<'_> {
 
     fn solid(&self, angle: f64) -> Result<ExactSolid, ShapeError> {
         let tolerance = Tolerance::new(self.chord / largest_stretch(&self.to_whole), angle);
-        let Made { mesh, surfaces, .. } = self.object.shape.made(tolerance)?;
+        let ShapeMesh { mesh, surfaces, .. } = self.object.shape.made(tolerance)?;
         ExactSolid::new_at(mesh, surfaces, &self.placement()).map_err(|source| self.failed(source))
     }
 
@@ -209,7 +209,7 @@ mod tests {
             ..solid(Primitive::Cylinder { radius: 0.4, height: 4.0 })
         };
         let made = composite(Operation::Difference, vec![solid(Primitive::Sphere { radius: 1.0 }), drill]);
-        let Made { mesh, surfaces, operand_of, .. } = made.made(within(1e-3)).unwrap();
+        let ShapeMesh { mesh, surfaces, operand_of, .. } = made.made(within(1e-3)).unwrap();
         assert_eq!((surfaces.len(), operand_of.len()), (4, mesh.triangles.len()));
         for triangle in 0..mesh.triangles.len() {
             let surface = surfaces[mesh.surfaces[triangle] as usize].as_ref().unwrap();

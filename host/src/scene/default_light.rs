@@ -7,7 +7,7 @@
 use super::soft_box::soft_box;
 use super::{Camera, Object, Prepared, Scene, SceneError, Studio};
 use crate::color::Color;
-use crate::illumination::Bands;
+use crate::illumination::RgbPower;
 use crate::illumination::light::{Light, Panorama, SkyMap};
 use crate::numeric::bounds::Bounds;
 use glam::DVec3;
@@ -17,25 +17,25 @@ use std::sync::Arc;
 /// Irradiance by the key light of a surface in the middle of the scene that faces it, W/m².
 const KEY: f64 = 2.9;
 /// Irradiance by the bounce, W/m²; that of warm light, as from a wooden floor.
-const BOUNCE: Bands = DVec3::new(0.55, 0.50, 0.44);
+const BOUNCE: RgbPower = DVec3::new(0.55, 0.50, 0.44);
 /// Radiance of the sky above, at the horizon and below, W/(m² sr).
-const SKY: [Bands; 3] = [DVec3::new(0.18, 0.20, 0.23), DVec3::new(0.30, 0.31, 0.32), DVec3::new(0.06, 0.058, 0.055)];
+const SKY: [RgbPower; 3] = [DVec3::new(0.18, 0.20, 0.23), DVec3::new(0.30, 0.31, 0.32), DVec3::new(0.06, 0.058, 0.055)];
 /// Irradiance by a light at the eye of what the camera looks at, W/m², and ambient radiance, W/(m² sr), where lamps around
 /// the scene may be behind walls.
 const HEADLIGHT: f64 = 0.8;
-const INDOORS: Bands = DVec3::splat(0.3);
+const INDOORS: RgbPower = DVec3::splat(0.3);
 /// Rows of the picture of the sky: so many that steps from row to row are not seen.
 const ROWS: u32 = 2048;
 
 /// Where a lamp stands, along the view, seen from the middle of the scene: to the right, up, and towards the viewer, and
 /// its side; all in half diagonals of the scene.
-struct Stand {
+struct LampPlacement {
     place: DVec3,
     side: f64,
 }
 
-const KEY_STAND: Stand = Stand { place: DVec3::new(-2.4, 2.8, 2.4), side: 2.0 };
-const BOUNCE_STAND: Stand = Stand { place: DVec3::new(2.0, -2.2, 1.0), side: 2.4 };
+const KEY_STAND: LampPlacement = LampPlacement { place: DVec3::new(-2.4, 2.8, 2.4), side: 2.0 };
+const BOUNCE_STAND: LampPlacement = LampPlacement { place: DVec3::new(2.0, -2.2, 1.0), side: 2.4 };
 
 impl Scene {
     /// The scene as it is looked at: in its studio, and lit.
@@ -54,7 +54,7 @@ impl Scene {
     /// [`SceneError`] if its triangles cannot be made.
     fn in_default_light(mut self) -> Result<Scene, SceneError> {
         let is_emissive = |object: &Object| object.materials(&[]).0.iter().any(|m| m.emission != Color::BLACK);
-        let has_light = !self.lights.is_empty() || self.ambient != Bands::ZERO;
+        let has_light = !self.lights.is_empty() || self.ambient != RgbPower::ZERO;
         if !has_light && !self.objects.is_empty() && !self.objects.iter().any(is_emissive) {
             let prepared = Prepared::new(&self)?;
             let (camera, bounds) = (prepared.camera, prepared.subject());
@@ -74,18 +74,18 @@ impl Scene {
     }
 }
 
-fn default_lights(camera: &Camera, bounds: &Bounds, background: Bands) -> Result<Vec<Light>, SceneError> {
+fn default_lights(camera: &Camera, bounds: &Bounds, background: RgbPower) -> Result<Vec<Light>, SceneError> {
     let (center, half) = (bounds.center(), (bounds.diagonal() / 2.0).max(f64::MIN_POSITIVE.sqrt()));
     let sky = match background {
-        Bands::ZERO => Light::Sky { map: Some(sky()?), radiance: Color::grey(1.0), turned: 0.0 },
+        RgbPower::ZERO => Light::Sky { map: Some(sky()?), radiance: Color::grey(1.0), turned: 0.0 },
         radiance => Light::Sky { map: None, radiance: radiance.into(), turned: 0.0 },
     };
     let Some([right, up, forward]) = camera.axes() else { return Ok(vec![sky]) };
-    let lamp = |stand: &Stand, irradiance: Bands| {
+    let lamp = |stand: &LampPlacement, irradiance: RgbPower| {
         let place = (right * stand.place.x + up * stand.place.y - forward * stand.place.z) * half;
         soft_box(center + place, center, stand.side * half, irradiance)
     };
-    Ok(vec![lamp(&KEY_STAND, Bands::splat(KEY)), lamp(&BOUNCE_STAND, BOUNCE), sky])
+    Ok(vec![lamp(&KEY_STAND, RgbPower::splat(KEY)), lamp(&BOUNCE_STAND, BOUNCE), sky])
 }
 
 /// A sky that goes from the horizon smoothly up and down.
@@ -102,7 +102,7 @@ fn sky() -> Result<SkyMap, SceneError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::illumination::light::Patch;
+    use crate::illumination::light::LightShape;
     use crate::scene::Shape;
     use crate::solid::Primitive;
     use glam::DMat4;
@@ -119,7 +119,7 @@ mod tests {
         for (size, at) in [(1e-6, DVec3::ZERO), (1.0, DVec3::new(5.0, -3.0, 2.0)), (1e6, DVec3::X)] {
             let lit = scene(size, at).lit().expect("a box");
             let [Light::Area { patch, radiance }, ..] = &lit.lights[..] else { panic!("{:?}", lit.lights) };
-            let &Patch::Rectangle { corner, across, up } = patch else { panic!("{patch:?}") };
+            let &LightShape::Rectangle { corner, across, up } = patch else { panic!("{patch:?}") };
             assert!(across.cross(up).dot(at - corner) > 0.0, "it shines on what is there");
             let half = size * 3.0_f64.sqrt() / 2.0;
             let solid_angle = patch.area() / (KEY_STAND.place.length() * half).powi(2);
@@ -139,14 +139,14 @@ mod tests {
         glowing.objects[0].material.get_or_insert_default().emission = Color::grey(1.0);
         for own in [
             Scene { lights: vec![sun], ..bare.clone() },
-            Scene { ambient: Bands::splat(0.1), ..bare.clone() },
+            Scene { ambient: RgbPower::splat(0.1), ..bare.clone() },
             glowing,
             lines,
             Scene::default(),
         ] {
             assert_eq!(own.clone().lit().expect("nothing to be made"), own);
         }
-        let blue = Bands::new(0.2, 0.3, 0.5);
+        let blue = RgbPower::new(0.2, 0.3, 0.5);
         let lit = Scene { background: blue, ..bare }.lit().expect("a box");
         assert_eq!(lit.lights[2], Light::Sky { map: None, radiance: blue.into(), turned: 0.0 });
     }

@@ -16,13 +16,13 @@ const TURNED: u32 = 1 << 31;
 
 /// Curved surfaces, each in the coordinates of its object, and which of them triangles belong to.
 #[derive(Clone, Default)]
-pub(super) struct Exact {
+pub(super) struct ExactSurfaces {
     surfaces: Vec<Arc<dyn Surface>>,
     /// By the triangles of the objects that have any, with [`TURNED`].
     surface_of: Vec<u32>,
 }
 
-impl Exact {
+impl ExactSurfaces {
     /// Takes the curved surfaces of an object; where the numbers of its triangles begin, if it has any.
     pub(super) fn add(&mut self, mesh: &Mesh, surfaces: &[Option<Arc<dyn Surface>>]) -> Option<u32> {
         let count = mesh.triangles.len();
@@ -73,7 +73,7 @@ impl Exact {
     }
 }
 
-impl fmt::Debug for Exact {
+impl fmt::Debug for ExactSurfaces {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} surfaces of {} triangles", self.surfaces.len(), self.surface_of.len())
     }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 /// Triangles of a shape, and what they belong to.
 #[derive(Clone, Default)]
-pub struct Made {
+pub struct ShapeMesh {
     /// The triangles, in own coordinates.
     pub mesh: Mesh,
     /// The exact surfaces that the triangles name; none where only triangles are known.

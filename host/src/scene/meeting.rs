@@ -1,10 +1,10 @@
 //! Curves in which objects meet.
 
-use super::made::Made;
+use super::made::ShapeMesh;
 use super::object::Object;
 use super::stretch::largest_stretch;
 use super::{Scene, SceneError, ShapeError};
-use crate::intersection::{Intersection, Precision, Sheet, intersect};
+use crate::intersection::{Intersection, CurvePrecision, ExactSheet, intersect};
 use crate::numeric::bounds::Bounds;
 use crate::solid::moved;
 use crate::surface::Tolerance;
@@ -12,7 +12,7 @@ use glam::DAffine3;
 
 /// The curves in which two objects of a scene meet.
 #[derive(Clone, Debug)]
-pub struct Meeting {
+pub struct ObjectIntersection {
     /// The numbers of the objects in the scene, the lower first.
     pub objects: [usize; 2],
     /// The curves, in scene coordinates.
@@ -23,18 +23,18 @@ pub struct Meeting {
 ///
 /// # Errors
 /// [`SceneError`] if an object has no triangles.
-pub fn meetings(scene: &Scene, precision: &Precision) -> Result<Vec<Meeting>, SceneError> {
+pub fn meetings(scene: &Scene, precision: &CurvePrecision) -> Result<Vec<ObjectIntersection>, SceneError> {
     scene.check()?;
     let placed = |object: &Object| {
         let made = object.made(scene.settings.geometry.tolerance, scene.settings.geometry.angle)?;
         Ok(object.placed(made))
     };
-    let placed: Vec<Made> = scene.objects.iter().map(placed).collect::<Result<_, SceneError>>()?;
+    let placed: Vec<ShapeMesh> = scene.objects.iter().map(placed).collect::<Result<_, SceneError>>()?;
     let bounds: Vec<Bounds> = placed.iter().map(|made| made.mesh.bounds().unwrap_or(Bounds::EMPTY)).collect();
     let mut meetings = Vec::new();
     for (two, behind) in placed.iter().enumerate() {
         for (one, before) in placed[..two].iter().enumerate().filter(|(one, _)| bounds[*one].touches(bounds[two])) {
-            meetings.push(Meeting { objects: [one, two], intersection: between(before, behind, precision) });
+            meetings.push(ObjectIntersection { objects: [one, two], intersection: between(before, behind, precision) });
         }
     }
     meetings.sort_by_key(|meeting| meeting.objects);
@@ -47,7 +47,7 @@ pub fn meetings(scene: &Scene, precision: &Precision) -> Result<Vec<Meeting>, Sc
 pub(super) fn meet(
     objects: [&Object; 2],
     tolerance: Tolerance,
-    precision: &Precision,
+    precision: &CurvePrecision,
 ) -> Result<Intersection, ShapeError> {
     let made = |object: &Object| {
         let chord = object.tolerance.unwrap_or(tolerance.chord) / largest_stretch(&object.transform);
@@ -57,15 +57,15 @@ pub(super) fn meet(
     Ok(between(&made(one)?, &made(two)?, precision))
 }
 
-fn between(one: &Made, two: &Made, precision: &Precision) -> Intersection {
-    let [one, two] = [one, two].map(|made| Sheet::new(&made.mesh, &made.surfaces));
+fn between(one: &ShapeMesh, two: &ShapeMesh, precision: &CurvePrecision) -> Intersection {
+    let [one, two] = [one, two].map(|made| ExactSheet::new(&made.mesh, &made.surfaces));
     intersect(one, two, precision)
 }
 
 impl Object {
     /// What its shape was made of, where it is placed.
-    pub(super) fn placed(&self, made: Made) -> Made {
+    pub(super) fn placed(&self, made: ShapeMesh) -> ShapeMesh {
         let (mesh, surfaces) = moved(&made.mesh, &made.surfaces, &DAffine3::from_mat4(self.transform));
-        Made { mesh, surfaces, ..made }
+        ShapeMesh { mesh, surfaces, ..made }
     }
 }

@@ -31,30 +31,30 @@ mod soft_box;
 mod default_light;
 mod studio;
 
-pub use acceleration::{Acceleration, Kept, SceneOctree};
+pub use acceleration::{Acceleration, AccelerationKey, SceneOctree};
 pub use cage::{Cage, Sharp, Sharpening};
 pub use error::{SceneError, ShapeError};
-pub use made::Made;
-pub use meeting::{Meeting, meetings};
-pub use motion::{Motion, Moved};
-pub use object::{Composite, MAX_NESTING, Object, Operation, Rounded, Shape};
-pub use piercing::OnSurface;
-pub use places::{Places, Position};
-pub use placing::{Sides, footprint};
+pub use made::ShapeMesh;
+pub use meeting::{ObjectIntersection, meetings};
+pub use motion::{Motion, Displacement};
+pub use object::{Composite, MAX_NESTING, Object, Operation, RoundedSolid, Shape};
+pub use piercing::SurfacePoint;
+pub use places::{ShapeOrigins, ScriptPosition};
+pub use placing::{Footprint, footprint};
 pub use prepared::{Contents, Prepared, PreparedObject};
-pub use sculpture::{Sculpture, SculptureError, Sheet};
+pub use sculpture::{Sculpture, SculptureError, SurfaceSheet};
 pub use settings::{
     Caustics, GeometrySettings, ImageSettings, LightSettings, MAX_PHOTONS, MAX_REFLECTION_DEPTH, MAX_SAMPLES,
     PhotonSettings, RadiositySettings, Settings,
 };
-pub use solid::Solid;
+pub use solid::PrimitiveSolid;
 pub use studio::Studio;
 pub use view::{Camera, Lens, Parallel, Projection, View};
 
 pub use crate::illumination::optics::Interreflection;
 
-use crate::illumination::light::Patch;
-use crate::illumination::{Bands, Light};
+use crate::illumination::light::LightShape;
+use crate::illumination::{RgbPower, Light};
 use crate::picture::display::DisplayTransform;
 use serde::{Deserialize, Serialize};
 
@@ -78,11 +78,11 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// Rectangles through which the light of skies comes in, their normals pointing inwards. They change the noise of
     /// pictures, not what these show.
-    pub portals: Vec<Patch>,
+    pub portals: Vec<LightShape>,
     /// Radiance that arrives from everywhere, W/(m² sr); only diffuse reflection answers it.
-    pub ambient: Bands,
+    pub ambient: RgbPower,
     /// Radiance where a ray meets nothing, W/(m² sr).
-    pub background: Bands,
+    pub background: RgbPower,
     /// From where it is seen; without one, what is no ground is framed from the front, a little from above.
     pub camera: Option<Camera>,
     /// How it is rendered.
@@ -93,7 +93,7 @@ pub struct Scene {
     pub studio: Option<Studio>,
     /// Where its objects stand in its script.
     #[serde(skip)]
-    pub places: Places,
+    pub places: ShapeOrigins,
 }
 
 impl Scene {
@@ -172,7 +172,7 @@ impl Scene {
     }
 }
 
-fn check_power(what: &str, power: Bands) -> Result<(), String> {
+fn check_power(what: &str, power: RgbPower) -> Result<(), String> {
     if power.is_finite() && power.min_element() >= 0.0 {
         Ok(())
     } else {

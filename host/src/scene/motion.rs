@@ -20,7 +20,7 @@ pub struct Motion {
 
 /// Where something is at a time of its motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Moved {
+pub struct Displacement {
     turn: DQuat,
     through: DVec3,
     by: DVec3,
@@ -39,9 +39,9 @@ impl Motion {
     }
 
     /// Where it is after a time.
-    pub fn at(&self, time: f64) -> Moved {
+    pub fn at(&self, time: f64) -> Displacement {
         let turn = DQuat::from_axis_angle(self.axis, self.angle * time);
-        Moved { turn, through: self.through, by: self.by * time }
+        Displacement { turn, through: self.through, by: self.by * time }
     }
 
     /// The motion of what stands where this one has brought it after a time.
@@ -67,7 +67,7 @@ impl Motion {
     }
 }
 
-impl Moved {
+impl Displacement {
     /// Where a point comes to.
     pub fn point(&self, point: DVec3) -> DVec3 {
         self.through + self.turn * (point - self.through) + self.by

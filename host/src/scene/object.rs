@@ -2,7 +2,7 @@
 
 use super::cage::Cage;
 use super::sculpture::Sculpture;
-use super::solid::Solid;
+use super::solid::PrimitiveSolid;
 use crate::illumination::Material;
 use crate::solid::Primitive;
 use glam::{DMat4, DVec3};
@@ -37,7 +37,7 @@ pub enum Shape {
     /// The Stanford bunny, about 2 high.
     Bunny,
     /// A solid of a few measures.
-    Solid(Solid),
+    Solid(PrimitiveSolid),
     /// All that is behind a plane; it must be combined with other solids.
     HalfSpace {
         /// Towards the empty side, any length above 0.
@@ -71,12 +71,12 @@ pub enum Shape {
     /// The curves in which two objects meet; lines without triangles.
     Curve(Box<[Object; 2]>),
     /// A solid with rounded edges.
-    Rounded(Box<Rounded>),
+    Rounded(Box<RoundedSolid>),
 }
 
 /// A solid of flat faces, edges of which are rounded.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Rounded {
+pub struct RoundedSolid {
     /// The solid.
     pub object: Object,
     /// Points; for each the edge that is nearest to it is rounded. Without any, all edges are.

@@ -1,9 +1,9 @@
 //! Octrees over the objects of a prepared scene, built when they are first asked for.
 
 use super::Motion;
-use super::acceleration::{Acceleration, Kept, SceneOctree};
+use super::acceleration::{Acceleration, AccelerationKey, SceneOctree};
 use super::prepared::Contents;
-use crate::octree::{Octree, OctreeError, Settings};
+use crate::octree::{Octree, OctreeError, OctreeSettings};
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Instant;
@@ -14,7 +14,7 @@ impl Contents {
     ///
     /// # Errors
     /// [`OctreeError`], for more triangles than an octree takes.
-    pub fn acceleration(&self, kept: Kept) -> Result<Arc<Acceleration>, OctreeError> {
+    pub fn acceleration(&self, kept: AccelerationKey) -> Result<Arc<Acceleration>, OctreeError> {
         if let Some(acceleration) = self.built.get(&kept) {
             return Ok(acceleration);
         }
@@ -32,7 +32,7 @@ impl Contents {
     }
 
     /// The octree over the objects that are kept and stand still; none if they have no triangles.
-    fn still(&self, kept: &Kept) -> Result<Option<SceneOctree>, OctreeError> {
+    fn still(&self, kept: &AccelerationKey) -> Result<Option<SceneOctree>, OctreeError> {
         let stands = |object: usize| kept.objects[object] && !(kept.motions && self.objects[object].motion.is_some());
         let (triangles, triangle_of) = match (0..self.objects.len()).all(stands) {
             true => (self.triangles.clone(), Vec::new()),
@@ -45,12 +45,12 @@ impl Contents {
         if triangles.is_empty() {
             return Ok(None);
         }
-        let octree = Octree::sharing(self.vertices.clone(), triangles, &Settings::default())?;
+        let octree = Octree::sharing(self.vertices.clone(), triangles, &OctreeSettings::default())?;
         Ok(Some(SceneOctree { octree, triangle_of }))
     }
 
     /// Octrees over the objects that are kept and move, one for each motion.
-    fn moving(&self, kept: &Kept) -> Result<Vec<(Motion, SceneOctree)>, OctreeError> {
+    fn moving(&self, kept: &AccelerationKey) -> Result<Vec<(Motion, SceneOctree)>, OctreeError> {
         let mut groups: Vec<(Motion, Vec<u32>)> = Vec::new();
         for (object, is_kept) in self.objects.iter().zip(&kept.objects) {
             let Some(motion) = object.motion.filter(|_| *is_kept && object.count > 0) else { continue };
@@ -72,7 +72,7 @@ impl Contents {
             };
             let triangles: Vec<[u32; 3]> =
                 triangle_of.iter().map(|&t| self.triangles[t as usize].map(&mut number)).collect();
-            let octree = Octree::sharing(Arc::new(vertices), Arc::new(triangles), &Settings::default())?;
+            let octree = Octree::sharing(Arc::new(vertices), Arc::new(triangles), &OctreeSettings::default())?;
             Ok((motion, SceneOctree { octree, triangle_of }))
         };
         groups.into_iter().map(made).collect()
@@ -98,7 +98,7 @@ mod tests {
         let one = Prepared::new(&Scene { objects: vec![cube(0.0), cube(3.0)], ..Scene::default() }).expect("a scene");
         let mut other = one.clone();
         other.settings.image.samples = 64;
-        let kept = |objects: [bool; 2]| Kept { objects: objects.into(), motions: true };
+        let kept = |objects: [bool; 2]| AccelerationKey { objects: objects.into(), motions: true };
         let both = one.acceleration(kept([true, true])).expect("few triangles");
         assert!(Arc::ptr_eq(&both, &other.acceleration(kept([true, true])).expect("few triangles")));
         let triangles = |acceleration: &Acceleration| -> Vec<u32> {

@@ -2,12 +2,12 @@
 
 use super::prepared::Contents;
 use crate::numeric::ray::Ray;
-use crate::surface::{Line, Pierced, pierced};
+use crate::surface::{PiercingLine, PiercingPoint, pierced};
 use glam::{DVec2, DVec3};
 
 /// Where a ray meets the exact surface behind a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OnSurface {
+pub struct SurfacePoint {
     /// How far it is from where the ray meets the triangle, in lengths of the ray's direction; less than 0 before it.
     pub beyond: f64,
     /// The unit normal on the side of the viewer, scene coordinates.
@@ -32,7 +32,7 @@ impl Contents {
         ray: &Ray,
         weights: [f64; 3],
         (position, outside): (DVec3, bool),
-    ) -> Option<OnSurface> {
+    ) -> Option<SurfacePoint> {
         let object = self.object(triangle);
         let (surface, is_turned) = self.exact.surface(object.surfaces_from? + triangle - object.first)?;
         let [low, high] = surface.domain();
@@ -43,9 +43,9 @@ impl Contents {
         let reach = [q - p, r - q, p - r].map(|side| own(side).length_squared()).into_iter().fold(0.0, f64::max).sqrt();
         let (from, direction) = (object.to_own.transform_point3(position), own(ray.direction));
         let outward = outside == is_turned;
-        let Pierced { uv, normal, t } = pierced(surface, &Line { from, direction, outward }, guess, reach)?;
+        let PiercingPoint { uv, normal, t } = pierced(surface, &PiercingLine { from, direction, outward }, guess, reach)?;
         let outwards = (object.normals_to_scene * normal).try_normalize()?;
         let normal = if outward { -outwards } else { outwards };
-        Some(OnSurface { beyond: t, normal, uv: (uv - low) / (high - low), own: from + direction * t })
+        Some(SurfacePoint { beyond: t, normal, uv: (uv - low) / (high - low), own: from + direction * t })
     }
 }

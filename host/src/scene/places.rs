@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 /// A place in a script.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Position {
+pub struct ScriptPosition {
     /// Line, from 1.
     pub line: usize,
     /// Column, from 1.
@@ -16,20 +16,20 @@ pub struct Position {
 ///
 /// It is no part of what the scene is: scenes that differ in it only are equal, and it is not stored.
 #[derive(Clone, Debug, Default)]
-pub struct Places {
+pub struct ShapeOrigins {
     /// The script.
     pub file: String,
     /// By the name of the object.
-    pub of: HashMap<String, Position>,
+    pub of: HashMap<String, ScriptPosition>,
 }
 
-impl PartialEq for Places {
-    fn eq(&self, _: &Places) -> bool {
+impl PartialEq for ShapeOrigins {
+    fn eq(&self, _: &ShapeOrigins) -> bool {
         true
     }
 }
 
-impl Places {
+impl ShapeOrigins {
     /// An error with the place where the object that it names got its shape, if that is known.
     pub(super) fn placed(&self, error: SceneError) -> SceneError {
         let position = match &error {
@@ -37,7 +37,7 @@ impl Places {
             _ => None,
         };
         match position {
-            Some(Position { line, column }) => {
+            Some(ScriptPosition { line, column }) => {
                 let place = format!("{}:{line}:{column}", self.file);
                 SceneError::Placed { place, source: Box::new(error) }
             }

@@ -1,16 +1,16 @@
 //! Where on its surface, and in its body, a point of a triangle is: parameters and own coordinates, for textures.
 
 use super::prepared::Contents;
-use crate::illumination::texture::{Place, Side};
+use crate::illumination::texture::{TextureFootprint, FootprintSide};
 use glam::{DVec2, DVec3};
 
 /// What of a surface a ray stands for at a triangle: a parallelogram of these sides.
-pub type Sides = [DVec3; 2];
+pub type Footprint = [DVec3; 2];
 
 /// The sides of the part of a plane that a cone about a ray meets, at right angles: along the view and across.
 ///
 /// - `normal`, `towards`: unit length. `width`: of the cone there.
-pub fn footprint(normal: DVec3, towards: DVec3, width: f64) -> Sides {
+pub fn footprint(normal: DVec3, towards: DVec3, width: f64) -> Footprint {
     /// A plane that is seen edgewise would be met by an endless part.
     const STEEPEST: f64 = 1e-4;
     /// Sine below which a view is along the normal.
@@ -27,7 +27,7 @@ impl Contents {
     /// Where a point of a triangle is, and what of it is looked at.
     ///
     /// - `weights`: of the corners of the triangle. `sides`: tangents, scene units.
-    pub fn place(&self, triangle: u32, weights: [f64; 3], sides: Sides) -> Place {
+    pub fn place(&self, triangle: u32, weights: [f64; 3], sides: Footprint) -> TextureFootprint {
         let [p, q, r] = self.corners(triangle);
         let to_own = &self.object(triangle).to_own;
         let own = to_own.transform_point3(p * weights[0] + q * weights[1] + r * weights[2]);
@@ -40,7 +40,7 @@ impl Contents {
             Some([a, b, c]) => [*a * weights[0] + *b * weights[1] + *c * weights[2], *b - *a, *c - *a],
             None => [DVec2::ZERO; 3],
         };
-        let side = |scene: DVec3| Side {
+        let side = |scene: DVec3| FootprintSide {
             scene,
             uv: across * duals[0].dot(scene) + up * duals[1].dot(scene),
             own: to_own.transform_vector3(scene),
@@ -51,7 +51,7 @@ impl Contents {
         } else {
             [DVec3::ZERO; 2]
         };
-        Place { uv, own, sides: sides.map(side), along }
+        TextureFootprint { uv, own, sides: sides.map(side), along }
     }
 }
 
@@ -61,14 +61,14 @@ mod tests {
     use super::*;
     use crate::color::Color;
     use crate::illumination::material::Classic;
-    use crate::illumination::texture::{Laying, Motif, Paint, Pattern};
+    use crate::illumination::texture::{TextureMapping, Motif, Paint, Pattern};
     use crate::scene::Prepared;
     use crate::solid::Primitive;
     use glam::DMat4;
 
     fn textured(shape: Shape, transform: DMat4) -> Prepared {
         let paints = vec![Paint::grey(0.1), Paint::Plain(Color::grey(0.9))];
-        let checker = Pattern { motif: Motif::Checker, laying: Laying::default(), paints };
+        let checker = Pattern { motif: Motif::Checker, laying: TextureMapping::default(), paints };
         let material = Classic { diffuse: Paint::Pattern(Box::new(checker)), ..Classic::default() }.into();
         let object = Object { name: "thing".into(), shape, transform, material: Some(material), tolerance: Some(0.01) };
         Prepared::new(&Scene { objects: vec![object], ..Scene::default() }).expect("a scene")

@@ -1,15 +1,15 @@
 //! A scene flattened for rendering: one soup of triangles, with what each belongs to.
 
-use super::acceleration::Built;
-use super::exact::{Exact, FLAT_SINE};
-use super::made::Made;
+use super::acceleration::AccelerationCache;
+use super::exact::{ExactSurfaces, FLAT_SINE};
+use super::made::ShapeMesh;
 use super::object::{GROUND, Object};
 use super::parameters::parameters;
-use super::shared::Shared;
+use super::shared::SharedMeshes;
 use super::stretch::{cofactors, largest_stretch};
 use super::{Camera, GeometrySettings, Motion, Scene, SceneError, Settings, View};
-use crate::illumination::light::Patch;
-use crate::illumination::{Bands, Light, Material};
+use crate::illumination::light::LightShape;
+use crate::illumination::{RgbPower, Light, Material};
 use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
 use crate::numeric::triangle::MAX_MAGNITUDE;
@@ -42,7 +42,7 @@ pub struct Contents {
     /// Parameters of the corners, for the triangles of objects whose textures or exact surfaces need them.
     parameters: Vec<[DVec2; 3]>,
     /// The exact surfaces of the triangles of curved objects, as far as they are known.
-    pub(super) exact: Exact,
+    pub(super) exact: ExactSurfaces,
     /// For the triangles of objects of several materials, which of them.
     material_of: Vec<u32>,
     /// The objects, in the order of the scene.
@@ -50,17 +50,17 @@ pub struct Contents {
     /// The lights.
     pub lights: Vec<Light>,
     /// Rectangles through which the light of skies comes in.
-    pub portals: Vec<Patch>,
+    pub portals: Vec<LightShape>,
     /// Ambient radiance.
-    pub ambient: Bands,
+    pub ambient: RgbPower,
     /// Background radiance.
-    pub background: Bands,
+    pub background: RgbPower,
     /// The camera of the scene, or one that frames it.
     pub camera: Camera,
     /// A box around everything.
     pub bounds: Bounds,
     /// Its octrees, as far as they were asked for.
-    pub(super) built: Built,
+    pub(super) built: AccelerationCache,
 }
 
 /// One object of a prepared scene.
@@ -136,7 +136,7 @@ impl Contents {
             object_of: Vec::new(),
             normals: Vec::new(),
             parameters: Vec::new(),
-            exact: Exact::default(),
+            exact: ExactSurfaces::default(),
             material_of: Vec::new(),
             objects: Vec::new(),
             lights: scene.lights.clone(),
@@ -145,9 +145,9 @@ impl Contents {
             background: scene.background,
             camera: Camera::framing(&Bounds::EMPTY),
             bounds: Bounds::EMPTY,
-            built: Built::default(),
+            built: AccelerationCache::default(),
         };
-        let mut shared = Shared::of(scene);
+        let mut shared = SharedMeshes::of(scene);
         let motions: FxHashMap<u32, Motion> = match scene.settings.geometry.shutter > 0.0 {
             true => scene.motions.iter().copied().collect(),
             false => FxHashMap::default(),
@@ -169,13 +169,13 @@ impl Contents {
     fn add(
         &mut self,
         object: &Object,
-        made: &Made,
+        made: &ShapeMesh,
         chord: f64,
         motion: Option<Motion>,
         settings: &GeometrySettings,
     ) -> Result<(), SceneError> {
         let failed = |problem: String| SceneError::Object { object: object.name.clone(), problem };
-        let Made { mesh, surfaces, operand_of, lines } = made;
+        let ShapeMesh { mesh, surfaces, operand_of, lines } = made;
         if self.triangles.len() as u64 + mesh.triangles.len() as u64 > MAX_TRIANGLES {
             return Err(SceneError::Limit { what: "triangles", limit: MAX_TRIANGLES });
         }

@@ -17,13 +17,13 @@ use std::sync::Arc;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sculpture {
     /// The sheets.
-    pub sheets: Vec<Sheet>,
+    pub sheets: Vec<SurfaceSheet>,
 }
 
 /// A piece of surface.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Sheet {
+pub enum SurfaceSheet {
     /// A surface of a net of control points.
     Spline {
         /// The surface.
@@ -60,24 +60,24 @@ type Patch = Arc<dyn Curved>;
 /// Tolerance with which trimmed sheets are looked at, as a part of their extent.
 const COARSE: f64 = 1.0 / 100.0;
 
-impl Sheet {
+impl SurfaceSheet {
     /// The sheet moved by `placement`; a reflection keeps outside out.
-    pub fn transformed(&self, placement: &DAffine3) -> Sheet {
+    pub fn transformed(&self, placement: &DAffine3) -> SurfaceSheet {
         match self {
-            Sheet::Spline { surface, loops } => {
+            SurfaceSheet::Spline { surface, loops } => {
                 let ([low, high], is_mirrored) = (surface.domain(), placement.matrix3.determinant() < 0.0);
                 // A reflection reverses u.
                 let (factor, shift) = if is_mirrored { (-1.0, low.x + high.x) } else { (1.0, 0.0) };
                 let map =
                     DAffine3::from_translation(DVec3::X * shift) * DAffine3::from_scale(DVec3::new(factor, 1.0, 1.0));
                 let moved = |ring: &Vec<SplineCurve>| ring.iter().map(|curve| curve.transformed(&map)).collect();
-                Sheet::Spline {
+                SurfaceSheet::Spline {
                     surface: Box::new(surface.transformed(placement)),
                     loops: loops.iter().map(moved).collect(),
                 }
             }
-            Sheet::Filled { sides, around_vertex } => {
-                Sheet::Filled { sides: HoleSide::transformed(sides, placement), around_vertex: *around_vertex }
+            SurfaceSheet::Filled { sides, around_vertex } => {
+                SurfaceSheet::Filled { sides: HoleSide::transformed(sides, placement), around_vertex: *around_vertex }
             }
         }
     }
@@ -89,8 +89,8 @@ impl Sheet {
     ///
     /// # Errors
     /// The problem in words.
-    pub fn trimmed(&self, cut: &[Vec<SplineCurve>], holes: bool) -> Result<Sheet, String> {
-        let Sheet::Spline { surface, loops } = self else {
+    pub fn trimmed(&self, cut: &[Vec<SplineCurve>], holes: bool) -> Result<SurfaceSheet, String> {
+        let SurfaceSheet::Spline { surface, loops } = self else {
             return Err("a filled hole cannot be trimmed".into());
         };
         if !holes && !loops.is_empty() {
@@ -106,18 +106,18 @@ impl Sheet {
         }
         all.extend(cut.iter().map(placed));
         TrimmedSurface::new(surface.as_ref(), edges(&all)).map_err(|error| error.to_string())?;
-        Ok(Sheet::Spline { surface: surface.clone(), loops: all })
+        Ok(SurfaceSheet::Spline { surface: surface.clone(), loops: all })
     }
 
     fn is_trimmed(&self) -> bool {
-        matches!(self, Sheet::Spline { loops, .. } if !loops.is_empty())
+        matches!(self, SurfaceSheet::Spline { loops, .. } if !loops.is_empty())
     }
 
     /// Points that hold it, or nearly: control points.
     fn hull(&self) -> Vec<DVec3> {
         match self {
-            Sheet::Spline { surface, .. } => surface.control().iter().map(|control| control.point).collect(),
-            Sheet::Filled { sides, .. } => sides.iter().flat_map(|side| *side.curve()).collect(),
+            SurfaceSheet::Spline { surface, .. } => surface.control().iter().map(|control| control.point).collect(),
+            SurfaceSheet::Filled { sides, .. } => sides.iter().flat_map(|side| *side.curve()).collect(),
         }
     }
 
@@ -127,15 +127,15 @@ impl Sheet {
             patches.into_iter().map(|patch| Arc::new(patch) as Patch).collect()
         }
         Ok(match self {
-            Sheet::Spline { surface, .. } => shared(surface.patches().iter().cloned()),
-            Sheet::Filled { sides, around_vertex: false } => shared(n_sided_patch(sides)?),
-            Sheet::Filled { sides, around_vertex: true } => shared(patches_around_vertex(sides)?),
+            SurfaceSheet::Spline { surface, .. } => shared(surface.patches().iter().cloned()),
+            SurfaceSheet::Filled { sides, around_vertex: false } => shared(n_sided_patch(sides)?),
+            SurfaceSheet::Filled { sides, around_vertex: true } => shared(patches_around_vertex(sides)?),
         })
     }
 
     /// What is there of each surface that is tessellated: a trimmed one is one surface with all its spans.
     fn faces(&self) -> Result<Vec<TrimmedSurface<Patch>>, SculptureError> {
-        if let Sheet::Spline { surface, loops } = self
+        if let SurfaceSheet::Spline { surface, loops } = self
             && !loops.is_empty()
         {
             return Ok(vec![TrimmedSurface::new(Arc::new(SplineSurface::clone(surface)) as Patch, edges(loops))?]);
@@ -152,7 +152,7 @@ fn edges(loops: &[Vec<SplineCurve>]) -> Vec<Vec<TrimEdge>> {
 
 impl Sculpture {
     /// The sculpture of one sheet.
-    pub fn of(sheet: Sheet) -> Sculpture {
+    pub fn of(sheet: SurfaceSheet) -> Sculpture {
         Sculpture { sheets: vec![sheet] }
     }
 
@@ -163,7 +163,7 @@ impl Sculpture {
 
     /// Whether curves cut parts of a sheet off.
     pub fn is_trimmed(&self) -> bool {
-        self.sheets.iter().any(Sheet::is_trimmed)
+        self.sheets.iter().any(SurfaceSheet::is_trimmed)
     }
 
     /// Triangles of all sheets, and the exact surfaces that they name.
@@ -172,11 +172,11 @@ impl Sculpture {
     /// [`SculptureError`] if a hole cannot be filled, loops cross, or the tolerance is too fine.
     pub fn tessellated(&self, tolerance: Tolerance) -> Result<(Mesh, Vec<Arc<dyn Surface>>), SculptureError> {
         if self.is_trimmed() {
-            let faces = self.sheets.iter().map(Sheet::faces).collect::<Result<Vec<_>, _>>()?.concat();
+            let faces = self.sheets.iter().map(SurfaceSheet::faces).collect::<Result<Vec<_>, _>>()?.concat();
             let mesh = tessellate_trimmed(&faces, tolerance)?;
             return Ok((mesh, faces.iter().map(|face| Arc::clone(face.surface()) as Arc<dyn Surface>).collect()));
         }
-        let patches = self.sheets.iter().map(Sheet::patches).collect::<Result<Vec<_>, _>>()?.concat();
+        let patches = self.sheets.iter().map(SurfaceSheet::patches).collect::<Result<Vec<_>, _>>()?.concat();
         let mesh = tessellate(&patches, tolerance).map_err(TrimError::from)?;
         Ok((mesh, patches.into_iter().map(|patch| patch as Arc<dyn Surface>).collect()))
     }
@@ -186,7 +186,7 @@ impl Sculpture {
     /// # Errors
     /// [`SculptureError`] with the open edges if they do not.
     pub fn check_closed(&self) -> Result<(), SculptureError> {
-        let patches = self.sheets.iter().map(Sheet::patches).collect::<Result<Vec<_>, _>>()?.concat();
+        let patches = self.sheets.iter().map(SurfaceSheet::patches).collect::<Result<Vec<_>, _>>()?.concat();
         if !self.is_trimmed() {
             sculptured(patches)?;
             return Ok(());
@@ -198,7 +198,7 @@ impl Sculpture {
 
     /// The length of the diagonal of a box around the control points.
     pub fn extent(&self) -> f64 {
-        Bounds::of(self.sheets.iter().flat_map(Sheet::hull)).diagonal()
+        Bounds::of(self.sheets.iter().flat_map(SurfaceSheet::hull)).diagonal()
     }
 
     /// The continuity along every side that two of all patches share, measured at `samples` points; the numbers of
@@ -223,8 +223,8 @@ mod tests {
     use crate::curve::Basis;
     use crate::surface::{Direction, car_body, rational_sphere};
 
-    fn spline(surface: SplineSurface) -> Sheet {
-        Sheet::Spline { surface: Box::new(surface), loops: Vec::new() }
+    fn spline(surface: SplineSurface) -> SurfaceSheet {
+        SurfaceSheet::Spline { surface: Box::new(surface), loops: Vec::new() }
     }
 
     fn square(low: f64, high: f64) -> Vec<SplineCurve> {
@@ -233,7 +233,7 @@ mod tests {
         vec![SplineCurve::new(Basis::clamped(1, 5).unwrap(), &corners, &[]).unwrap()]
     }
 
-    fn triangles(sheet: Sheet) -> Mesh {
+    fn triangles(sheet: SurfaceSheet) -> Mesh {
         Sculpture::of(sheet).tessellated(Tolerance::new(1e-3, 30.0)).unwrap().0
     }
 
@@ -284,8 +284,8 @@ mod tests {
         let [front, ..] = car_body().unwrap();
         let sheet = spline(front).trimmed(&[square(0.3, 0.6)], true).unwrap();
         let text = serde_json::to_string(&sheet).unwrap();
-        assert_eq!(serde_json::from_str::<Sheet>(&text).unwrap(), sheet);
+        assert_eq!(serde_json::from_str::<SurfaceSheet>(&text).unwrap(), sheet);
         let broken = text.replacen("\"degree\":3", "\"degree\":2", 1);
-        assert!(serde_json::from_str::<Sheet>(&broken).is_err(), "control points no longer fit");
+        assert!(serde_json::from_str::<SurfaceSheet>(&broken).is_err(), "control points no longer fit");
     }
 }

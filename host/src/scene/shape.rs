@@ -1,13 +1,13 @@
 //! Shapes in their own coordinates: whether their measures are sound, their sizes, and their triangles.
 
-use super::made::Made;
+use super::made::ShapeMesh;
 use super::meeting::meet;
-use super::object::{MAX_NESTING, Object, Rounded, Shape};
+use super::object::{MAX_NESTING, Object, RoundedSolid, Shape};
 use super::settings::check_tolerance;
 use super::stretch::largest_stretch;
 use super::{SceneError, ShapeError};
-use crate::database::{Content, Kind, Library};
-use crate::intersection::Precision;
+use crate::database::{RecordContent, RecordKind, Library};
+use crate::intersection::CurvePrecision;
 use crate::memory;
 use crate::mesh::{self, Mesh, NoBunny, edges::EdgeTable};
 use crate::octree::{self, Octree};
@@ -90,34 +90,34 @@ impl Shape {
     ///
     /// # Errors
     /// [`ShapeError`] if the file cannot be read, the tolerance asks for too many triangles, or there is no such solid.
-    pub fn made(&self, tolerance: Tolerance) -> Result<Made, ShapeError> {
+    pub fn made(&self, tolerance: Tolerance) -> Result<ShapeMesh, ShapeError> {
         let known = |mesh: Mesh, surfaces: Vec<Arc<dyn Surface>>| {
             let surfaces = surfaces.into_iter().map(Some).collect();
-            Made { mesh, surfaces, ..Made::default() }
+            ShapeMesh { mesh, surfaces, ..ShapeMesh::default() }
         };
         match self {
             Shape::Composite(composite) => composite.made(tolerance),
             Shape::Sculpture(sculpture) => {
                 let (mesh, surfaces) = sculpture.tessellated(tolerance)?;
-                Ok(Made { mesh, surfaces: surfaces.into_iter().map(Some).collect(), ..Made::default() })
+                Ok(ShapeMesh { mesh, surfaces: surfaces.into_iter().map(Some).collect(), ..ShapeMesh::default() })
             }
             Shape::Subdivision(cage) => {
                 let mesh = cage.polyhedron()?.tessellated(tolerance.chord)?;
-                Ok(Made { mesh, ..Made::default() })
+                Ok(ShapeMesh { mesh, ..ShapeMesh::default() })
             }
             Shape::Curve(objects) => {
-                let precision = Precision { chord: Some(tolerance.chord), ..Precision::default() };
+                let precision = CurvePrecision { chord: Some(tolerance.chord), ..CurvePrecision::default() };
                 let lines = meet([&objects[0], &objects[1]], tolerance, &precision)?.polylines();
-                Ok(Made { lines, ..Made::default() })
+                Ok(ShapeMesh { lines, ..ShapeMesh::default() })
             }
             Shape::Rounded(rounded) => rounded.made(tolerance),
-            Shape::Bunny => Ok(Made { mesh: mesh::bunny()?, ..Made::default() }),
-            Shape::Mesh { path } => Ok(Made { mesh: mesh_of(path)?, ..Made::default() }),
+            Shape::Bunny => Ok(ShapeMesh { mesh: mesh::bunny()?, ..ShapeMesh::default() }),
+            Shape::Mesh { path } => Ok(ShapeMesh { mesh: mesh_of(path)?, ..ShapeMesh::default() }),
             Shape::Stored { database, name } => {
-                let (record, _) = Library::of(database.as_deref())?.record(Kind::Geometry, name)?;
+                let (record, _) = Library::of(database.as_deref())?.record(RecordKind::Geometry, name)?;
                 match record.content {
-                    Content::Geometry(grouped) => Ok(Made { mesh: grouped.mesh, ..Made::default() }),
-                    _ => Ok(Made::default()),
+                    RecordContent::Geometry(grouped) => Ok(ShapeMesh { mesh: grouped.mesh, ..ShapeMesh::default() }),
+                    _ => Ok(ShapeMesh::default()),
                 }
             }
             Shape::HalfSpace { .. } => Err(PrimitiveError::Endless.into()),
@@ -143,7 +143,7 @@ impl Shape {
     /// # Errors
     /// As [`Shape::made`].
     pub(super) fn chord_error(&self, tolerance: Tolerance) -> Result<f64, ShapeError> {
-        let Made { mesh, surfaces, .. } = self.made(tolerance)?;
+        let ShapeMesh { mesh, surfaces, .. } = self.made(tolerance)?;
         match self {
             Shape::Subdivision(cage) => Ok(cage.polyhedron()?.distance(&mesh, tolerance.chord)?),
             Shape::Rounded(rounded) => rounded.distance(&mesh, tolerance),
@@ -202,13 +202,13 @@ impl Object {
     }
 }
 
-impl Rounded {
-    fn made(&self, tolerance: Tolerance) -> Result<Made, ShapeError> {
+impl RoundedSolid {
+    fn made(&self, tolerance: Tolerance) -> Result<ShapeMesh, ShapeError> {
         let (solid, operands) = self.solid(tolerance)?;
         let rounded = solid.rounded(&self.choice(), self.radius, tolerance.chord).map_err(|e| self.failed(e))?;
         let (mesh, surfaces) = rounded.into_parts();
         let operand_of = if operands.is_empty() { Vec::new() } else { operands_beside(&mesh, operands) };
-        Ok(Made { mesh, surfaces, operand_of, ..Made::default() })
+        Ok(ShapeMesh { mesh, surfaces, operand_of, ..ShapeMesh::default() })
     }
 
     /// How far triangles that were made are from the rounded surface.
@@ -222,7 +222,7 @@ impl Rounded {
     fn solid(&self, tolerance: Tolerance) -> Result<(ExactSolid, HashMap<u32, u32>), ShapeError> {
         let object = &self.object;
         let chord = tolerance.chord / largest_stretch(&object.transform);
-        let Made { mesh, surfaces, operand_of, .. } =
+        let ShapeMesh { mesh, surfaces, operand_of, .. } =
             object.placed(object.shape.made(Tolerance { chord, ..tolerance })?);
         let operands: HashMap<u32, u32> = mesh.surfaces.iter().copied().zip(operand_of).collect();
         let solid = ExactSolid::new(mesh, surfaces)

@@ -1,6 +1,6 @@
 //! Shapes that several objects have: their triangles are made once.
 
-use super::made::Made;
+use super::made::ShapeMesh;
 use super::{Scene, SceneError};
 use crate::memory;
 use crate::numeric::print_of;
@@ -11,14 +11,14 @@ use std::rc::Rc;
 const BYTES: u64 = 64;
 
 /// The triangles of shapes, as long as an object needs them.
-pub(super) struct Shared {
+pub(super) struct SharedMeshes {
     /// For each object the first one with the same shape and tolerance.
     first: Vec<u32>,
     /// For each object its tolerance in own coordinates, 0 for flat shapes.
     chords: Vec<f64>,
     /// For each first one how many objects still need its triangles.
     needed: Vec<u32>,
-    made: FxHashMap<u32, Rc<Made>>,
+    made: FxHashMap<u32, Rc<ShapeMesh>>,
 }
 
 /// The first object with its shape and tolerance.
@@ -28,9 +28,9 @@ struct First {
     extent: Option<f64>,
 }
 
-impl Shared {
+impl SharedMeshes {
     /// Finds out which objects of a scene have the same triangles, in their own coordinates.
-    pub(super) fn of(scene: &Scene) -> Shared {
+    pub(super) fn of(scene: &Scene) -> SharedMeshes {
         let count = scene.objects.len();
         let (mut first, mut chords, mut needed) =
             (Vec::with_capacity(count), Vec::with_capacity(count), vec![0; count]);
@@ -50,7 +50,7 @@ impl Shared {
             first.push(found);
             chords.push(chord);
         }
-        Shared { first, chords, needed, made: FxHashMap::default() }
+        SharedMeshes { first, chords, needed, made: FxHashMap::default() }
     }
 
     /// The tolerance of an object in own coordinates, 0 for flat shapes.
@@ -62,7 +62,7 @@ impl Shared {
     ///
     /// # Errors
     /// [`SceneError`] if they cannot be made, or if all objects that need them would take more memory than there is.
-    pub(super) fn made(&mut self, scene: &Scene, index: u32) -> Result<Rc<Made>, SceneError> {
+    pub(super) fn made(&mut self, scene: &Scene, index: u32) -> Result<Rc<ShapeMesh>, SceneError> {
         let (first, object) = (self.first[index as usize], &scene.objects[index as usize]);
         let needed = &mut self.needed[first as usize];
         let made = match self.made.get(&first) {

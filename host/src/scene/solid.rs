@@ -7,12 +7,12 @@ use std::sync::{Arc, OnceLock};
 /// A primitive with its body between exact surfaces, which is made when it is first asked for. Copies share it.
 #[derive(Clone, Serialize, Deserialize)]
 #[serde(from = "Primitive", into = "Primitive")]
-pub struct Solid {
+pub struct PrimitiveSolid {
     primitive: Primitive,
     body: Arc<OnceLock<Body>>,
 }
 
-impl Solid {
+impl PrimitiveSolid {
     /// Its measures.
     pub fn primitive(&self) -> &Primitive {
         &self.primitive
@@ -31,25 +31,25 @@ impl Solid {
     }
 }
 
-impl From<Primitive> for Solid {
-    fn from(primitive: Primitive) -> Solid {
-        Solid { primitive, body: Arc::default() }
+impl From<Primitive> for PrimitiveSolid {
+    fn from(primitive: Primitive) -> PrimitiveSolid {
+        PrimitiveSolid { primitive, body: Arc::default() }
     }
 }
 
-impl From<Solid> for Primitive {
-    fn from(solid: Solid) -> Primitive {
+impl From<PrimitiveSolid> for Primitive {
+    fn from(solid: PrimitiveSolid) -> Primitive {
         solid.primitive
     }
 }
 
-impl PartialEq for Solid {
-    fn eq(&self, other: &Solid) -> bool {
+impl PartialEq for PrimitiveSolid {
+    fn eq(&self, other: &PrimitiveSolid) -> bool {
         self.primitive == other.primitive
     }
 }
 
-impl std::fmt::Debug for Solid {
+impl std::fmt::Debug for PrimitiveSolid {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         self.primitive.fmt(formatter)
     }
@@ -61,9 +61,9 @@ mod tests {
 
     #[test]
     fn copies_of_a_solid_share_one_body_and_a_solid_that_is_none_says_so() {
-        let one = Solid::from(Primitive::Sphere { radius: 2.0 });
+        let one = PrimitiveSolid::from(Primitive::Sphere { radius: 2.0 });
         let other = one.clone();
         assert!(std::ptr::eq(one.body().expect("a sphere"), other.body().expect("a sphere")));
-        assert!(Solid::from(Primitive::Sphere { radius: -1.0 }).body().is_err());
+        assert!(PrimitiveSolid::from(Primitive::Sphere { radius: -1.0 }).body().is_err());
     }
 }

@@ -1,13 +1,13 @@
 //! A studio for objects that come without light and view: a sweep, a window, a soft box.
 
-use super::sculpture::{Sculpture, Sheet};
+use super::sculpture::{Sculpture, SurfaceSheet};
 use super::soft_box::soft_box;
 use super::{Camera, Object, Prepared, Scene, SceneError, Shape};
 use crate::color::Color;
 use crate::curve::Basis;
-use crate::illumination::Bands;
-use crate::illumination::light::{Light, Patch};
-use crate::illumination::material::{Body, Classic};
+use crate::illumination::RgbPower;
+use crate::illumination::light::{Light, LightShape};
+use crate::illumination::material::{MaterialKind, Classic};
 use crate::surface::SplineSurface;
 use glam::{DMat4, DVec3};
 use serde::{Deserialize, Serialize};
@@ -55,7 +55,7 @@ impl Scene {
         let center = bounds.center();
         let lowest = DVec3::new(center.x, bounds.min.y, center.z);
         let middle = center.y - lowest.y;
-        let grey = Body::Classic(Classic { diffuse: Color::grey(0.5).into(), ..Classic::default() });
+        let grey = MaterialKind::Classic(Classic { diffuse: Color::grey(0.5).into(), ..Classic::default() });
         self.objects.push(Object {
             name: "sweep".into(),
             shape: sweep()?,
@@ -89,9 +89,9 @@ fn lights(lowest: DVec3, middle: f64, unit: f64) -> [Light; 3] {
     let place = |x: f64, y: f64, z: f64| lowest + DVec3::new(x, y, z) * unit;
     let along = |x: f64, y: f64, z: f64| DVec3::new(x, y, z) * unit;
     let window =
-        Patch::Rectangle { corner: place(-5.0, 1.5, 2.0), across: along(1.0, 4.5, 0.0), up: along(0.0, 0.0, 4.0) };
+        LightShape::Rectangle { corner: place(-5.0, 1.5, 2.0), across: along(1.0, 4.5, 0.0), up: along(0.0, 0.0, 4.0) };
     let window = Light::Area { patch: window, radiance: Color::grey(3.0) };
-    let lamp = soft_box(place(3.5, 4.0, 4.0), lowest + DVec3::Y * middle, 1.4 * unit, Bands::splat(1.6));
+    let lamp = soft_box(place(3.5, 4.0, 4.0), lowest + DVec3::Y * middle, 1.4 * unit, RgbPower::splat(1.6));
     let sky = Light::Sky { map: None, radiance: Color::grey(0.35), turned: 0.0 };
     [window, lamp, sky]
 }
@@ -105,7 +105,7 @@ fn sweep() -> Result<Shape, SceneError> {
     };
     let surface = surface().map_err(|error| SceneError::Setting(error.to_string()))?;
     Ok(Shape::Sculpture(Box::new(Sculpture {
-        sheets: vec![Sheet::Spline { surface: Box::new(surface), loops: Vec::new() }],
+        sheets: vec![SurfaceSheet::Spline { surface: Box::new(surface), loops: Vec::new() }],
     })))
 }
 

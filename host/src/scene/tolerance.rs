@@ -1,6 +1,6 @@
 //! How closely the triangles of an object follow its surface: its own tolerance, that of the scene, or a part of its size.
 
-use super::made::Made;
+use super::made::ShapeMesh;
 use super::object::{Object, Shape};
 use super::stretch::largest_stretch;
 use super::{SceneError, ShapeError};
@@ -16,7 +16,7 @@ impl Object {
     }
 
     /// The triangles in own coordinates.
-    pub(super) fn made(&self, scene_tolerance: Option<f64>, angle: f64) -> Result<Made, SceneError> {
+    pub(super) fn made(&self, scene_tolerance: Option<f64>, angle: f64) -> Result<ShapeMesh, SceneError> {
         let tolerance = self.own_tolerance(scene_tolerance, angle);
         self.shape.made(tolerance).map_err(|source| self.failed(source))
     }

@@ -1,9 +1,9 @@
 //! A scene as one mesh, of which every triangle knows its object and its surface.
 
-use super::{MAX_OBJECTS, Made, Object, Scene, SceneError, Shape};
+use super::{MAX_OBJECTS, ShapeMesh, Object, Scene, SceneError, Shape};
 use crate::illumination::Material;
-use crate::illumination::material::{Appearance, Body};
-use crate::mesh::{Grouped, Look, Mesh};
+use crate::illumination::material::{MaterialPreview, MaterialKind};
+use crate::mesh::{Grouped, MetallicRoughness, Mesh};
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
@@ -20,9 +20,9 @@ impl Scene {
         self.check()?;
         let settings = &self.settings;
         let made = |object: &Object| object.made(settings.geometry.tolerance, settings.geometry.angle);
-        let all = self.objects.par_iter().map(made).collect::<Result<Vec<Made>, SceneError>>()?;
+        let all = self.objects.par_iter().map(made).collect::<Result<Vec<ShapeMesh>, SceneError>>()?;
         let mut whole = Grouped::default();
-        for (object, Made { mut mesh, operand_of, .. }) in self.objects.iter().zip(all) {
+        for (object, ShapeMesh { mut mesh, operand_of, .. }) in self.objects.iter().zip(all) {
             if (whole.mesh.triangles.len() + mesh.triangles.len()) as u64 > MAX_TRIANGLES {
                 return Err(SceneError::Limit { what: "triangles", limit: MAX_TRIANGLES });
             }
@@ -75,13 +75,13 @@ impl Scene {
 /// # Source
 /// The exponent n of a highlight belongs to facets of the roughness a with n = 2 / a^2 - 2 (Walter et al. 2007), and a is the
 /// square of the number that glTF wants.
-fn look(material: &Material) -> Look {
-    if let Body::Principled(principled) = &material.body {
+fn look(material: &Material) -> MetallicRoughness {
+    if let MaterialKind::Principled(principled) = &material.body {
         let base = principled.base_color.mean_bands().clamp(DVec3::ZERO, DVec3::ONE);
-        return Look { base, metallic: principled.metallic.mean(), roughness: principled.roughness.mean() };
+        return MetallicRoughness { base, metallic: principled.metallic.mean(), roughness: principled.roughness.mean() };
     }
     let sum = |bands: DVec3| bands.element_sum();
-    let Appearance { diffuse, specular, exponent, mirror } = material.appearance();
+    let MaterialPreview { diffuse, specular, exponent, mirror } = material.appearance();
     // The highlight of a body without another color is its color.
     let shine = if diffuse == DVec3::ZERO { specular } else { DVec3::ZERO };
     let base = (diffuse + mirror + shine).min(DVec3::ONE);
@@ -93,7 +93,7 @@ fn look(material: &Material) -> Look {
     } else {
         1.0
     };
-    Look { base, metallic, roughness }
+    MetallicRoughness { base, metallic, roughness }
 }
 
 fn flat_normals(mesh: &Mesh) -> Vec<[DVec3; 3]> {
@@ -137,7 +137,7 @@ mod tests {
         let ball = object("ball", Primitive::Sphere { radius: 1.0 }, 5.0);
         let scene = Scene { objects: vec![can, ball], ..Scene::default() };
         let Grouped { mesh, names, looks } = scene.tessellated().unwrap();
-        assert_eq!(looks, [Some(Look { base: DVec3::splat(0.7), metallic: 0.0, roughness: 1.0 }); 4]);
+        assert_eq!(looks, [Some(MetallicRoughness { base: DVec3::splat(0.7), metallic: 0.0, roughness: 1.0 }); 4]);
         assert_eq!(names, ["can/0", "can/1", "can/2", "ball"]);
         for (k, surface) in mesh.surfaces.iter().enumerate() {
             assert_eq!(*surface == 3, mesh.corners(k)[0].x > 3.0);

@@ -1,10 +1,10 @@
 //! The scene while a script builds it.
 
-use super::definition::{Definition, Definitions};
+use super::definition::{ParameterAssignment, ScriptParameters};
 use super::folders::Folders;
-use super::handle::{Done, Handle};
+use super::handle::{CallResult, Handle};
 use crate::database::Library;
-use crate::scene::{Composite, MAX_NESTING, MAX_OBJECTS, Motion, Object, Operation, Position, Scene, Shape};
+use crate::scene::{Composite, MAX_NESTING, MAX_OBJECTS, Motion, Object, Operation, ScriptPosition, Scene, Shape};
 use glam::{DMat4, DVec3};
 use rhai::Dynamic;
 use std::collections::HashMap;
@@ -18,7 +18,7 @@ pub(super) struct Builder {
     /// Objects by handle; none where one became part of another.
     objects: Vec<Option<Object>>,
     /// The calls that gave objects their shapes, by handle.
-    positions: Vec<Option<Position>>,
+    positions: Vec<Option<ScriptPosition>>,
     /// How objects move, by handle.
     motions: Vec<Option<Motion>>,
     /// How many objects of each kind there have been.
@@ -28,14 +28,14 @@ pub(super) struct Builder {
     /// Below which it reads.
     pub(super) folders: Folders,
     /// Values of parameters.
-    pub(super) definitions: Definitions,
+    pub(super) definitions: ScriptParameters,
     /// Where names of reflectances, spectra, materials, lights and geometry are looked up.
     pub(super) library: Library,
 }
 
 impl Builder {
     /// An empty scene.
-    pub(super) fn new(folders: Folders, given: &[Definition]) -> Builder {
+    pub(super) fn new(folders: Folders, given: &[ParameterAssignment]) -> Builder {
         Builder {
             scene: Scene::default(),
             objects: Vec::new(),
@@ -44,7 +44,7 @@ impl Builder {
             of_kind: HashMap::new(),
             shutter: [0.0, 1.0],
             folders,
-            definitions: Definitions::new(given),
+            definitions: ScriptParameters::new(given),
             library: Library::default(),
         }
     }
@@ -72,7 +72,7 @@ impl Builder {
     }
 
     /// Notes that a call gave an object its shape.
-    pub(super) fn note(&mut self, handle: Handle, position: Position) {
+    pub(super) fn note(&mut self, handle: Handle, position: ScriptPosition) {
         if self.positions.len() < self.objects.len() {
             self.positions.resize(self.objects.len(), None);
         }
@@ -87,7 +87,7 @@ impl Builder {
     }
 
     /// Lets an object move.
-    pub(super) fn let_move(&mut self, handle: Handle, motion: Motion) -> Done {
+    pub(super) fn let_move(&mut self, handle: Handle, motion: Motion) -> CallResult {
         self.object(handle)?;
         if let Some(slot) = self.motions.get_mut(handle.0) {
             *slot = Some(motion);
@@ -126,7 +126,7 @@ impl Builder {
     }
 
     /// Names an object.
-    pub(super) fn name(&mut self, handle: Handle, name: &str) -> Done {
+    pub(super) fn name(&mut self, handle: Handle, name: &str) -> CallResult {
         let object = self.object(handle)?;
         if name.chars().count() > MOST_LETTERS {
             return Err(format!("a name has at most {MOST_LETTERS} characters"));
@@ -150,7 +150,7 @@ impl Builder {
     }
 
     /// Makes one solid of two objects, which are no objects of their own any more.
-    pub(super) fn combine(&mut self, operation: Operation, one: Handle, two: Handle) -> Done {
+    pub(super) fn combine(&mut self, operation: Operation, one: Handle, two: Handle) -> CallResult {
         if one == two {
             return Err("an object cannot be combined with itself; copy() it before".into());
         }
@@ -189,7 +189,7 @@ impl Builder {
 
     /// Divides a solid by the plane through `at`: what is behind stays, what is in front, where `normal` points, becomes
     /// another object.
-    pub(super) fn split(&mut self, handle: Handle, normal: DVec3, at: DVec3) -> Done {
+    pub(super) fn split(&mut self, handle: Handle, normal: DVec3, at: DVec3) -> CallResult {
         self.check_still(handle)?;
         let whole = self.object(handle)?.clone();
         check_bounding(&whole)?;
@@ -218,7 +218,7 @@ impl Builder {
     }
 
     /// Moves an object by a further transformation, after those before.
-    pub(super) fn transform(&mut self, handle: Handle, by: DMat4) -> Done {
+    pub(super) fn transform(&mut self, handle: Handle, by: DMat4) -> CallResult {
         let object = self.object(handle)?;
         let placed = by * object.transform;
         if !placed.is_finite() {

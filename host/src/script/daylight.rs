@@ -2,11 +2,11 @@
 
 use super::builder::Builder;
 use super::function::{Function, function};
-use super::handle::Done;
-use super::kinds::{Flag, Number, Text};
+use super::handle::CallResult;
+use super::kinds::{Flag, NumberKind, TextKind};
 use super::lighting::add;
 use super::parameter::{optional, with_default};
-use crate::color::{Beyond, Color, Spectrum};
+use crate::color::{Extrapolation, Color, Spectrum};
 use crate::illumination::Light;
 use crate::illumination::atmosphere::{
     Atmosphere, COLUMNS, ClearSky, Moment, NODES, ROWS, SUN_RADIUS, Spectral, node, solar_position,
@@ -15,22 +15,22 @@ use crate::illumination::light::{Panorama, SkyDisc, SkyMap};
 use glam::DVec3;
 use std::sync::Arc;
 
-const DEGREES: Number = Number(-360.0, 360.0);
+const DEGREES: NumberKind = NumberKind(-360.0, 360.0);
 
 /// The function.
 pub(super) const FUNCTIONS: &[Function] = &[function! {
     sun_and_sky(
-        latitude: with_default(Number(-90.0, 90.0), 30.26, "degrees, north above 0; without it, that of Hangzhou"),
-        longitude: with_default(Number(-180.0, 180.0), 120.12, "degrees, east above 0; without it, that of Hangzhou"),
-        date: with_default(Text, "1988-06-21", "year, month and day"),
-        hour: with_default(Number(0.0, 24.0), 10.0, "of the day, 13.5 for half past one"),
+        latitude: with_default(NumberKind(-90.0, 90.0), 30.26, "degrees, north above 0; without it, that of Hangzhou"),
+        longitude: with_default(NumberKind(-180.0, 180.0), 120.12, "degrees, east above 0; without it, that of Hangzhou"),
+        date: with_default(TextKind, "1988-06-21", "year, month and day"),
+        hour: with_default(NumberKind(0.0, 24.0), 10.0, "of the day, 13.5 for half past one"),
         zone: optional(
-            Number(-14.0, 14.0),
+            NumberKind(-14.0, 14.0),
             "that of the longitude",
             "hours by which clocks are ahead of Greenwich",
         ),
         elevation: optional(
-            Number(-20.0, 90.0),
+            NumberKind(-20.0, 90.0),
             "by place, date and hour",
             "of the sun over the horizon, degrees",
         ),
@@ -40,17 +40,17 @@ pub(super) const FUNCTIONS: &[Function] = &[function! {
             "of the sun, clockwise from north, degrees",
         ),
         turbidity: with_default(
-            Number(1.0, 10.0),
+            NumberKind(1.0, 10.0),
             3.0,
             "how much haze there is: 1 none, 2 clear, 3 ordinary, 10 thick",
         ),
         ground: with_default(
-            Number(0.0, 1.0),
+            NumberKind(0.0, 1.0),
             0.2,
             "the part of the light that the ground beyond the scene reflects",
         ),
-        altitude: with_default(Number(0.0, 50_000.0), 50.0, "of the scene over that ground, metres"),
-        factor: with_default(Number(0.0, 1e9), 1.0, "what all of it is multiplied with"),
+        altitude: with_default(NumberKind(0.0, 50_000.0), 50.0, "of the scene over that ground, metres"),
+        factor: with_default(NumberKind(0.0, 1e9), 1.0, "what all of it is multiplied with"),
         sun: with_default(Flag, true, "whether the sun shines; without it, it stands behind something"),
     )
     "Lights the scene by the sun and a clear sky, of a place, a date and an hour or of where the sun is; -z is north. Its light is that of the day: an exposure is best left to the meter."
@@ -82,7 +82,7 @@ pub(super) const FUNCTIONS: &[Function] = &[function! {
 /// The light of the sky.
 ///
 /// - `azimuth`: of the sun, radians.
-fn add_sky(builder: &mut Builder, sky: &ClearSky, azimuth: f64, factor: f64) -> Done {
+fn add_sky(builder: &mut Builder, sky: &ClearSky, azimuth: f64, factor: f64) -> CallResult {
     let map = SkyMap { file: "a clear sky".into(), panorama: Some(Arc::new(panorama(sky)?)), disc: None };
     // The table begins at the sun; the panorama's middle is -z.
     let turned = -azimuth.to_degrees();
@@ -90,11 +90,11 @@ fn add_sky(builder: &mut Builder, sky: &ClearSky, azimuth: f64, factor: f64) -> 
 }
 
 /// The disc of the sun.
-fn add_sun(builder: &mut Builder, sky: &ClearSky, towards: DVec3, factor: f64) -> Done {
+fn add_sun(builder: &mut Builder, sky: &ClearSky, towards: DVec3, factor: f64) -> CallResult {
     let disc = SkyDisc { towards, radius: SUN_RADIUS };
     let samples: Vec<(f64, f64)> =
         sky.sun.iter().enumerate().map(|(index, light)| (node(index), light / disc.solid_angle() * factor)).collect();
-    let spectrum = Spectrum::irregular(&samples, Beyond::Held).map_err(|error| error.to_string())?;
+    let spectrum = Spectrum::irregular(&samples, Extrapolation::Held).map_err(|error| error.to_string())?;
     let map = SkyMap { file: "the sun".into(), panorama: None, disc: Some(disc) };
     add(builder, Light::Sky { map: Some(map), radiance: Color::Spectrum(spectrum), turned: 0.0 })
 }
@@ -120,7 +120,7 @@ fn panorama(sky: &ClearSky) -> Result<Panorama, String> {
     let hat = |index: usize| {
         let middle = node(index);
         let step = node(1) - node(0);
-        Spectrum::irregular(&[(middle - step, 0.0), (middle, 1.0), (middle + step, 0.0)], Beyond::Zero)
+        Spectrum::irregular(&[(middle - step, 0.0), (middle, 1.0), (middle + step, 0.0)], Extrapolation::Zero)
     };
     let hats = (0..NODES).map(hat).collect::<Result<Vec<_>, _>>().map_err(|error| error.to_string())?;
     let value = |row: usize, column: usize| {

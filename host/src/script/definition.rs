@@ -11,20 +11,20 @@ const MOST_BYTES: usize = 4096;
 
 /// A value for a parameter of a script, as text: `name=value`.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Definition {
+pub struct ParameterAssignment {
     /// The parameter.
     pub name: String,
     /// Its value; its kind is that of the default in the script.
     pub value: String,
 }
 
-impl FromStr for Definition {
+impl FromStr for ParameterAssignment {
     type Err = String;
 
-    fn from_str(text: &str) -> Result<Definition, String> {
+    fn from_str(text: &str) -> Result<ParameterAssignment, String> {
         let failed = || format!("'{text}' is not NAME=VALUE, such as teeth=12");
         let (name, value) = text.split_once('=').ok_or_else(failed)?;
-        if is_name(name) { Ok(Definition { name: name.into(), value: value.into() }) } else { Err(failed()) }
+        if is_name(name) { Ok(ParameterAssignment { name: name.into(), value: value.into() }) } else { Err(failed()) }
     }
 }
 
@@ -35,7 +35,7 @@ fn is_name(text: &str) -> bool {
 }
 
 /// A parameter that a script asked for.
-struct Asked {
+struct DeclaredParameter {
     name: String,
     default: Dynamic,
     meaning: String,
@@ -43,15 +43,15 @@ struct Asked {
 
 /// What was given, and what was asked for so far.
 #[derive(Default)]
-pub(super) struct Definitions {
-    given: Vec<Definition>,
-    asked: Vec<Asked>,
+pub(super) struct ScriptParameters {
+    given: Vec<ParameterAssignment>,
+    asked: Vec<DeclaredParameter>,
 }
 
-impl Definitions {
+impl ScriptParameters {
     /// Nothing asked for yet. Of several definitions of a name the last holds.
-    pub(super) fn new(given: &[Definition]) -> Definitions {
-        Definitions { given: given.to_vec(), asked: Vec::new() }
+    pub(super) fn new(given: &[ParameterAssignment]) -> ScriptParameters {
+        ScriptParameters { given: given.to_vec(), asked: Vec::new() }
     }
 
     /// The value that was given for `name`, of the kind of `default`; without one, `default`.
@@ -71,9 +71,9 @@ impl Definitions {
                 return Err(format!("the {what} of a parameter has at most {MOST_BYTES} bytes"));
             }
             let (name, meaning) = (name.to_owned(), meaning.to_owned());
-            self.asked.push(Asked { name, default: default.clone(), meaning });
+            self.asked.push(DeclaredParameter { name, default: default.clone(), meaning });
         }
-        let Some(Definition { value, .. }) = self.given.iter().rev().find(|d| d.name == name) else {
+        let Some(ParameterAssignment { value, .. }) = self.given.iter().rev().find(|d| d.name == name) else {
             return Ok(default);
         };
         let read = if default.is_bool() {
@@ -89,7 +89,7 @@ impl Definitions {
     }
 
     /// The first definition that the script did not ask for.
-    pub(super) fn unknown(&self) -> Option<&Definition> {
+    pub(super) fn unknown(&self) -> Option<&ParameterAssignment> {
         self.given.iter().find(|given| !self.asked.iter().any(|asked| asked.name == given.name))
     }
 
@@ -99,7 +99,7 @@ impl Definitions {
             return "the script asks for no parameters".into();
         }
         let mut text = String::from("the script asks for");
-        for Asked { name, default, meaning } in &self.asked {
+        for DeclaredParameter { name, default, meaning } in &self.asked {
             let colon = if meaning.is_empty() { "" } else { ": " };
             // Writing to a string cannot fail.
             let _ = write!(text, "\n  {name}={default}  {}{colon}{meaning}", kind(default));
@@ -126,8 +126,8 @@ mod tests {
 
     #[test]
     fn definitions_are_a_name_and_all_behind_the_first_sign() {
-        let read = |text: &str| text.parse::<Definition>();
-        assert_eq!(read("a_1=b=c"), Ok(Definition { name: "a_1".into(), value: "b=c".into() }));
+        let read = |text: &str| text.parse::<ParameterAssignment>();
+        assert_eq!(read("a_1=b=c"), Ok(ParameterAssignment { name: "a_1".into(), value: "b=c".into() }));
         for wrong in ["", "a", "=1", "1a=2", "a b=2", "ä=2"] {
             assert!(read(wrong).unwrap_err().contains("is not NAME=VALUE"), "{wrong}");
         }

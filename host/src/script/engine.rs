@@ -1,22 +1,22 @@
 //! The interpreter: limits, bindings from the table, and one run.
 
 use super::builder::Builder;
-use super::definition::Definition;
+use super::definition::ParameterAssignment;
 use super::error::{self, MAX_OPERATIONS, OutOfMemory, ScriptError};
 use super::evaluated::{Evaluated, Inputs};
 use super::folders::Folders;
 use super::function::Function;
 use super::functions::{functions, makes_shapes};
-use super::given::Given;
+use super::given::BoundArguments;
 use super::handle::Handle;
 use super::printed::Printed;
 use super::spline::ControlMeaning;
 use crate::curve::SplineCurve;
 use crate::illumination::Paint;
 use crate::illumination::distribution::{FacetError, FacetTable};
-use crate::illumination::texture::Number;
+use crate::illumination::texture::NumberTexture;
 use crate::memory;
-use crate::scene::Position;
+use crate::scene::ScriptPosition;
 use rhai::module_resolvers::DummyModuleResolver;
 use rhai::{Dynamic, Engine, EvalAltResult, FnPtr, Map, NativeCallContext};
 use std::cell::RefCell;
@@ -72,7 +72,7 @@ pub fn evaluate(text: &str, name: &str, folder: &Path, inputs: &Inputs) -> Resul
     engine.register_type_with_name::<ControlMeaning>("spline");
     engine.register_type_with_name::<SplineCurve>("curve");
     engine.register_type_with_name::<Paint>("pattern");
-    engine.register_type_with_name::<Number>("pattern of numbers");
+    engine.register_type_with_name::<NumberTexture>("pattern of numbers");
     engine.register_type_with_name::<FacetTable>("distribution");
     for function in functions() {
         bind(&mut engine, function, &state);
@@ -86,7 +86,7 @@ pub fn evaluate(text: &str, name: &str, folder: &Path, inputs: &Inputs) -> Resul
     let outcome = engine.run(text);
     drop(engine);
     outcome.map_err(|e| error::place(&e, text, name))?;
-    if let Some(Definition { name: parameter, value }) = state.borrow().definitions.unknown() {
+    if let Some(ParameterAssignment { name: parameter, value }) = state.borrow().definitions.unknown() {
         let (parameter, value, known) = (parameter.clone(), value.clone(), state.borrow().definitions.list());
         return Err(ScriptError::Definition { file: name.to_owned(), parameter, value, known });
     }
@@ -170,13 +170,13 @@ fn call(function: &Function, state: &State, context: &NativeCallContext<'_>, val
     } else {
         values
     };
-    let mut given = Given::new(function.parameters, || function.usage(), values).map_err(failed)?;
+    let mut given = BoundArguments::new(function.parameters, || function.usage(), values).map_err(failed)?;
     let made = (function.action)(&mut state.borrow_mut(), &mut given).map_err(failed)?;
     let at = context.call_position();
     if let (Some(handle), Some(line)) = (made.clone().try_cast::<Handle>(), at.line()) {
         let mut builder = state.borrow_mut();
         if makes_shapes(function) || !builder.is_noted(handle) {
-            builder.note(handle, Position { line, column: at.position().unwrap_or(1) });
+            builder.note(handle, ScriptPosition { line, column: at.position().unwrap_or(1) });
         }
     }
     Ok(made)

@@ -38,7 +38,7 @@ pub enum ScriptError {
     },
     /// The script is wrong at a place.
     #[error("{0}")]
-    Place(Box<Place>),
+    Place(Box<ScriptFault>),
     /// A value was given for a parameter that the script does not ask for.
     #[error("-D {parameter}={value}: {file} has no parameter {parameter}; {known}")]
     Definition {
@@ -63,7 +63,7 @@ pub enum ScriptError {
 
 /// A place in a script and what is wrong there.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct ScriptFault {
     /// The script.
     pub file: String,
     /// Line, from 1; 0 if it is not known.
@@ -76,9 +76,9 @@ pub struct Place {
     pub text: String,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for ScriptFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Place { file, line, column, message, text } = self;
+        let ScriptFault { file, line, column, message, text } = self;
         match line {
             0 => write!(f, "{file}: {message}"),
             _ => {
@@ -102,7 +102,7 @@ pub(super) fn place(error: &EvalAltResult, script: &str, file: &str) -> ScriptEr
     let line = position.line().unwrap_or(0);
     let column = if line == 0 { 0 } else { position.position().unwrap_or(1) };
     let text = line.checked_sub(1).and_then(|l| script.lines().nth(l)).unwrap_or_default().to_owned();
-    ScriptError::Place(Box::new(Place { file: file.to_owned(), line, column, message, text }))
+    ScriptError::Place(Box::new(ScriptFault { file: file.to_owned(), line, column, message, text }))
 }
 
 pub(super) fn describe(error: &EvalAltResult) -> (String, Position) {

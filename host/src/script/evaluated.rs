@@ -1,6 +1,6 @@
 //! What a script is given, and what it makes.
 
-use super::definition::Definition;
+use super::definition::ParameterAssignment;
 use crate::scene::Scene;
 use std::path::PathBuf;
 
@@ -8,7 +8,7 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Inputs {
     /// Values for parameters that it asks for.
-    pub definitions: Vec<Definition>,
+    pub definitions: Vec<ParameterAssignment>,
     /// Folders below which it may read, beside its own.
     pub allowed: Vec<PathBuf>,
 }

@@ -1,8 +1,8 @@
 //! A row of the function table: name, parameters, help, example, action.
 
 use super::builder::Builder;
-use super::given::Given;
-use super::handle::Done;
+use super::given::BoundArguments;
+use super::handle::CallResult;
 use super::parameter::Parameter;
 
 /// A function that scripts may call; `function!` writes one.
@@ -16,7 +16,7 @@ pub struct Function {
     /// A line of script that uses it.
     pub example: &'static str,
     /// What it does to the scene; returns the value of the call: the object that it made or changed, if there is one.
-    pub(super) action: fn(&mut Builder, &mut Given) -> Done,
+    pub(super) action: fn(&mut Builder, &mut BoundArguments) -> CallResult,
 }
 
 /// A row: `name(parameter: what it takes, ...) "summary" "example" |builder| action`. In the action every parameter is a

@@ -7,11 +7,11 @@ use crate::database::Library;
 use rhai::{Dynamic, Map};
 
 /// The values of a call, one for each parameter in turn; none where none was given.
-pub(super) struct Given {
+pub(super) struct BoundArguments {
     values: std::vec::IntoIter<Option<Dynamic>>,
 }
 
-impl Given {
+impl BoundArguments {
     /// Assigns the values of a call to the parameters of a function.
     ///
     /// - `usage`: how the function is called, for messages.
@@ -19,7 +19,7 @@ impl Given {
         parameters: &[Parameter],
         usage: impl Fn() -> String,
         values: &[Dynamic],
-    ) -> Result<Given, String> {
+    ) -> Result<BoundArguments, String> {
         let mut slots: Vec<Option<Dynamic>> = vec![None; parameters.len()];
         let mut rest = values;
         let mut following = 0..parameters.len();
@@ -41,7 +41,7 @@ impl Given {
         let is_missing = |(p, slot): &(&Parameter, &Option<Dynamic>)| slot.is_none() && p.takes.otherwise().is_none();
         match parameters.iter().zip(&slots).find(is_missing) {
             Some((parameter, _)) => Err(format!("{} is missing; use {}", parameter.name, usage())),
-            None => Ok(Given { values: slots.into_iter() }),
+            None => Ok(BoundArguments { values: slots.into_iter() }),
         }
     }
 

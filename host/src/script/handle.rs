@@ -7,4 +7,4 @@ use rhai::Dynamic;
 pub(super) struct Handle(pub(super) usize);
 
 /// The value of a call, or what was wrong with it.
-pub(super) type Done = Result<Dynamic, String>;
+pub(super) type CallResult = Result<Dynamic, String>;

@@ -2,13 +2,13 @@
 
 use super::builder::Builder;
 use super::function::{Function, function};
-use super::handle::Done;
-use super::kinds::{Flag, Length, Number, Powers, Text, Vector};
+use super::handle::CallResult;
+use super::kinds::{Flag, Length, NumberKind, Powers, TextKind, Vector};
 use super::parameter::{Defaulted, Optional, Required, optional, required, with_default};
 use crate::color::srgb::LUMINANCE;
 use crate::color::{Color, Spectrum, light_of_temperature};
 use crate::illumination::Light;
-use crate::illumination::light::{Goniometry, Panorama, Patch, SkyDisc, SkyMap};
+use crate::illumination::light::{Goniometry, Panorama, LightShape, SkyDisc, SkyMap};
 use crate::memory;
 use crate::scene::{MAX_LIGHTS, MAX_PORTALS, Studio};
 use glam::DVec3;
@@ -20,8 +20,8 @@ use std::sync::Arc;
 const MAX_GONIOMETRY: u64 = 16 << 20;
 
 /// The spectrum of a light.
-pub(super) const SPECTRUM: Optional<Text> = optional(
-    Text,
+pub(super) const SPECTRUM: Optional<TextKind> = optional(
+    TextKind,
     "none: red, green and blue",
     "\"D65\", \"A\", \"F11\" and others, \"blackbody 3000\" or \"daylight 5000\" (kelvin); the numbers tell how bright it is",
 );
@@ -69,7 +69,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             direction: required(Vector, "where the light goes"),
             irradiance: with_default(Powers, PI, "of a surface that faces it, W/m²"),
             diameter: with_default(
-                Number(0.0, 90.0),
+                NumberKind(0.0, 90.0),
                 0.0,
                 "of the disc in the sky from which it comes, degrees, 0.53 for the sun: edges of shadows are then as soft as its light makes them",
             ),
@@ -96,8 +96,8 @@ pub(super) const FUNCTIONS: &[Function] = &[
             at: AT,
             to: required(Vector, "a point on the axis of the cone"),
             intensity: required(Powers, "radiant intensity on the axis, W/sr"),
-            inner: with_default(Number(0.0, 180.0), 15.0, "angle from the axis where it begins to fall, degrees"),
-            outer: with_default(Number(0.0, 180.0), 30.0, "angle from the axis where it ends, degrees"),
+            inner: with_default(NumberKind(0.0, 180.0), 15.0, "angle from the axis where it begins to fall, degrees"),
+            outer: with_default(NumberKind(0.0, 180.0), 30.0, "angle from the axis where it ends, degrees"),
             spectrum: SPECTRUM,
         )
         "Adds a light that shines in a cone."
@@ -110,7 +110,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     function! {
         luminaire(
             at: AT,
-            file: required(Text, "its path; relative to the folder of the script"),
+            file: required(TextKind, "its path; relative to the folder of the script"),
             down: with_default(Vector, [0.0, -1.0, 0.0], "where its vertical angle is 0"),
             front: with_default(Vector, [0.0, 0.0, 1.0], "about where its horizontal angle is 0"),
             factor: with_default(Powers, 1.0, "what its intensities are multiplied with"),
@@ -147,7 +147,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         )
         "Adds a rectangle that shines on one side: where its two sides turn counter-clockwise."
         "rectangle_light(#{ corner: [-1, 5, -1], across: [2, 0, 0], up: [0, 0, 2], power: 60 });"
-        |builder| add_area(builder, Patch::Rectangle { corner, across, up }, [radiance, power], spectrum)
+        |builder| add_area(builder, LightShape::Rectangle { corner, across, up }, [radiance, power], spectrum)
     },
     function! {
         disc_light(
@@ -160,23 +160,23 @@ pub(super) const FUNCTIONS: &[Function] = &[
         )
         "Adds a disc that shines on the side of its normal."
         "disc_light(#{ center: [0, 6, 0], radius: 0.5, power: 40 });"
-        |builder| add_area(builder, Patch::Disc { center, normal, radius }, [radiance, power], spectrum)
+        |builder| add_area(builder, LightShape::Disc { center, normal, radius }, [radiance, power], spectrum)
     },
     function! {
         sphere_light(center: CENTER, radius: RADIUS, radiance: RADIANCE, power: POWER, spectrum: SPECTRUM)
         "Adds a sphere that shines in all directions."
         "sphere_light(#{ center: [3, 5, 2], radius: 0.4, power: 100, spectrum: \"blackbody 2900\" });"
-        |builder| add_area(builder, Patch::Sphere { center, radius }, [radiance, power], spectrum)
+        |builder| add_area(builder, LightShape::Sphere { center, radius }, [radiance, power], spectrum)
     },
     function! {
         sky(
             radiance: with_default(Powers, 1.0, "radiance, W/(m² sr); with a file a factor"),
             file: optional(
-                Text,
+                TextKind,
                 "none",
                 "a picture, .hdr, .exr or .png, over turn and angle from the zenith: its first row is up, its last down, its middle ahead (-z)",
             ),
-            turned: with_default(Number(-1e6, 1e6), 0.0, "degrees about the upright axis"),
+            turned: with_default(NumberKind(-1e6, 1e6), 0.0, "degrees about the upright axis"),
             spectrum: SPECTRUM,
         )
         "Surrounds the scene with light: the same from everywhere, or a picture over latitude and longitude."
@@ -202,7 +202,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             if builder.scene.portals.len() >= MAX_PORTALS {
                 return Err(format!("more than {MAX_PORTALS} portals"));
             }
-            let portal = Patch::Rectangle { corner, across, up };
+            let portal = LightShape::Rectangle { corner, across, up };
             portal.check().map_err(|error| error.to_string())?;
             builder.scene.portals.push(portal);
             Ok(Dynamic::UNIT)
@@ -241,7 +241,7 @@ impl Strength {
 }
 
 /// Adds a surface that shines.
-fn add_area(builder: &mut Builder, patch: Patch, given: [Option<DVec3>; 2], spectrum: Option<String>) -> Done {
+fn add_area(builder: &mut Builder, patch: LightShape, given: [Option<DVec3>; 2], spectrum: Option<String>) -> CallResult {
     let [strength, power] = given;
     // A surface of radiance 1 emits pi on each unit of area.
     let flux = PI * patch.area().max(f64::MIN_POSITIVE);
@@ -265,7 +265,7 @@ pub(super) fn spectrum_named(builder: &Builder, name: &str) -> Result<Spectrum, 
 }
 
 /// Adds a light that was checked.
-pub(super) fn add(builder: &mut Builder, light: Light) -> Done {
+pub(super) fn add(builder: &mut Builder, light: Light) -> CallResult {
     if builder.scene.lights.len() >= MAX_LIGHTS {
         return Err(format!("more than {MAX_LIGHTS} lights"));
     }

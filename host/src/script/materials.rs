@@ -2,32 +2,32 @@
 
 use super::builder::Builder;
 use super::function::{Function, function};
-use super::handle::{Done, Handle};
+use super::handle::{CallResult, Handle};
 use super::kinds::{
-    Amount, Distribution, DistributionValue, Flag, FunctionOfAngle, Integer, Number, NumberOrText, NumberOrTextValue,
-    Powers, Reflectance, Text, Vector,
+    AmountKind, DistributionKind, DistributionValue, Flag, FunctionOfAngle, Integer, NumberKind, NumberOrText, NumberOrTextValue,
+    Powers, Reflectance, TextKind, Vector,
 };
 use super::lighting::{SPECTRUM, color_of_light};
 use super::parameter::{Defaulted, optional, required, with_default};
 use super::shared::OBJECT;
 use crate::color::{Color, shipped};
 use crate::illumination::material::{
-    Body, Classic, Coated, Finish, Form, Index, Material, Metal, Principled, Shaped, Transparent,
+    MaterialKind, Classic, Coated, Finish, DistributionForm, RefractiveIndex, Material, Metal, Principled, Distributed, Transparent,
 };
-use crate::illumination::texture::Number as PaintedNumber;
+use crate::illumination::texture::NumberTexture as PaintedNumber;
 use glam::DVec3;
 use rhai::Dynamic;
 
 /// A roughness; 0 is polished.
-const ROUGHNESS: Defaulted<Amount, f64> =
-    with_default(Amount(0.0, 1000.0), 0.0, "roughness m: root mean square slope of its facets, times the root of 2")
+const ROUGHNESS: Defaulted<AmountKind, f64> =
+    with_default(AmountKind(0.0, 1000.0), 0.0, "roughness m: root mean square slope of its facets, times the root of 2")
         .note("polished");
 
 /// A part of the whole.
-const PART: Amount = Amount(0.0, 1.0);
+const PART: AmountKind = AmountKind(0.0, 1.0);
 
 /// Refractive indices.
-const INDEX: Number = Number(1e-6, 1e6);
+const INDEX: NumberKind = NumberKind(1e-6, 1e6);
 
 /// What a transparent body absorbs.
 const ABSORPTION: Defaulted<Powers, f64> =
@@ -49,7 +49,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             object: OBJECT,
             diffuse: with_default(Reflectance, 0.7, "diffusely reflected fraction"),
             specular: with_default(Reflectance, 0.0, "fraction in the highlight"),
-            exponent: with_default(Amount(1.0, Classic::MOST_EXPONENT), 50.0, "sharpness of the highlight"),
+            exponent: with_default(AmountKind(1.0, Classic::MOST_EXPONENT), 50.0, "sharpness of the highlight"),
             mirror: with_default(Reflectance, 0.0, "mirrored fraction"),
             transparency: with_default(Reflectance, 0.0, "fraction that goes straight through"),
         )
@@ -57,29 +57,29 @@ pub(super) const FUNCTIONS: &[Function] = &[
         "pot.material(#{ diffuse: [0.8, 0.5, 0.3], specular: 0.1, exponent: 60, mirror: 0.1 });"
         |builder| {
             let classic = Classic { diffuse, specular, exponent, mirror, transparency };
-            give(builder, object, Body::Classic(classic))
+            give(builder, object, MaterialKind::Classic(classic))
         }
     },
     function! {
         metal(
             object: OBJECT,
             name: required(
-                Text,
+                TextKind,
                 "brass, bronze, chromium, copper, gold, iron, nickel, silver, stainless_steel, titanium or another: peris db list names them",
             ),
             roughness: ROUGHNESS,
             distribution: optional(
-                Text,
+                TextKind,
                 "\"Beckmann, all\"",
                 "how its facets are distributed: a member of the family that peris study illumination lists",
             ),
             along: optional(Vector, "not brushed", "the direction in which it is brushed"),
-            across: optional(Amount(0.0, 1000.0), "roughness", "roughness across that direction"),
+            across: optional(AmountKind(0.0, 1000.0), "roughness", "roughness across that direction"),
         )
         "Makes an object of a metal, with the refractive indices that were measured of it."
         "pot.metal(\"copper\", 0.2);"
         |builder| {
-            let shipped::Metal { n, k } = builder.library.metal(&name).map_err(|error| error.to_string())?;
+            let shipped::ComplexIndex { n, k } = builder.library.metal(&name).map_err(|error| error.to_string())?;
             let finish = match (along, across) {
                 (Some(along), _) if along.try_normalize().is_none() => {
                     return Err("along must not have the length 0".into());
@@ -97,7 +97,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
                     Finish::Rough { name: distribution.unwrap_or_else(|| "Beckmann, all".into()), roughness }
                 }
             };
-            give(builder, object, Body::Metal(Metal { n, k, finish }))
+            give(builder, object, MaterialKind::Metal(Metal { n, k, finish }))
         }
     },
     function! {
@@ -108,7 +108,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
                 "1.5",
                 "refractive index of all wavelengths, or the name of a glass that disperses, as BK7, SF11 or diamond",
             ),
-            name: optional(Text, "none", "the name of a glass, instead of an index"),
+            name: optional(TextKind, "none", "the name of a glass, instead of an index"),
             roughness: ROUGHNESS,
             absorption: ABSORPTION,
             priority: priority(0),
@@ -116,10 +116,10 @@ pub(super) const FUNCTIONS: &[Function] = &[
         "Makes an object of glass, plastic or a gem: it reflects, refracts and absorbs. It must be closed. Where bodies overlap, that of the greatest priority is there: let water reach a little into the glass in which it stands."
         "pot.glass(\"BK7\");"
         |builder| {
-            let named = |name: &str| shipped::glass(name).map(Index::Dispersive).map_err(|error| error.to_string());
+            let named = |name: &str| shipped::glass(name).map(RefractiveIndex::Dispersive).map_err(|error| error.to_string());
             let index = match (index, name) {
-                (None, None) => Index::Constant(1.5),
-                (Some(NumberOrTextValue::Number(index)), None) => Index::Constant(index),
+                (None, None) => RefractiveIndex::Constant(1.5),
+                (Some(NumberOrTextValue::Number(index)), None) => RefractiveIndex::Constant(index),
                 (None, Some(name)) | (Some(NumberOrTextValue::Text(name)), None) => named(&name)?,
                 _ => return Err("give either an index or the name of a glass".into()),
             };
@@ -138,7 +138,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     function! {
         liquid(
             object: OBJECT,
-            name: required(Text, "water, ethanol, glycerol, acetone or toluene"),
+            name: required(TextKind, "water, ethanol, glycerol, acetone or toluene"),
             absorption: ABSORPTION,
             roughness: ROUGHNESS,
             priority: priority(Transparent::LIQUID),
@@ -159,7 +159,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         )
         "Gives an object a diffuse ground under a transparent coat, as plastic, varnish and glaze have it."
         "pot.coated([0.7, 0.1, 0.1], 0.05);"
-        |builder| give(builder, object, Body::Coated(Coated { diffuse, index, roughness }))
+        |builder| give(builder, object, MaterialKind::Coated(Coated { diffuse, index, roughness }))
     },
     function! {
         principled(
@@ -198,15 +198,15 @@ pub(super) const FUNCTIONS: &[Function] = &[
                 sheen,
                 sheen_roughness,
             };
-            give(builder, object, Body::Principled(Box::new(principled)))
+            give(builder, object, MaterialKind::Principled(Box::new(principled)))
         }
     },
     function! {
         shaped(
             object: OBJECT,
             reflectance: required(Reflectance, "the reflected fraction K"),
-            distribution: required(Distribution, "its name, as peris study illumination lists it"),
-            roughness: optional(Amount(0.0, 1000.0), "0.3", "its roughness m; not of one of the user's"),
+            distribution: required(DistributionKind, "its name, as peris study illumination lists it"),
+            roughness: optional(AmountKind(0.0, 1000.0), "0.3", "its roughness m; not of one of the user's"),
         )
         "Lets an object reflect a fraction, distributed by a member of the family of distributions."
         "pot.shaped(#{ reflectance: 0.6, distribution: \"Blinn\", roughness: 0.2 });"
@@ -215,12 +215,12 @@ pub(super) const FUNCTIONS: &[Function] = &[
                 (DistributionValue::Table(_), Some(_)) => {
                     return Err("a distribution of the user's has no roughness".into());
                 }
-                (DistributionValue::Table(table), None) => Form::Facets(table),
+                (DistributionValue::Table(table), None) => DistributionForm::Facets(table),
                 (DistributionValue::Name(name), roughness) => {
-                    Form::Member { name, roughness: roughness.unwrap_or(PaintedNumber::Constant(0.3)) }
+                    DistributionForm::Member { name, roughness: roughness.unwrap_or(PaintedNumber::Constant(0.3)) }
                 }
             };
-            give(builder, object, Body::Shaped(Shaped { reflectance, form }))
+            give(builder, object, MaterialKind::Shaped(Distributed { reflectance, form }))
         }
     },
     function! {
@@ -244,7 +244,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
 ];
 
 /// Gives an object a body; what it emits and its relief stay.
-fn give(builder: &mut Builder, handle: Handle, body: Body) -> Done {
+fn give(builder: &mut Builder, handle: Handle, body: MaterialKind) -> CallResult {
     let object = builder.object(handle)?;
     let Material { emission, relief, .. } = object.material.clone().unwrap_or_default();
     let material = Material { body, emission, relief };
@@ -253,16 +253,16 @@ fn give(builder: &mut Builder, handle: Handle, body: Body) -> Done {
     Ok(Dynamic::from(handle))
 }
 
-fn transparent(builder: &mut Builder, handle: Handle, body: Transparent) -> Done {
-    give(builder, handle, Body::Transparent(body))
+fn transparent(builder: &mut Builder, handle: Handle, body: Transparent) -> CallResult {
+    give(builder, handle, MaterialKind::Transparent(body))
 }
 
 /// A polished body that absorbs.
-fn absorbing(index: Index, absorption: DVec3) -> Transparent {
+fn absorbing(index: RefractiveIndex, absorption: DVec3) -> Transparent {
     Transparent { absorption: Color::Bands(absorption), ..Transparent::clear(index) }
 }
 
 /// The refractive index of a liquid that ships with the program.
-fn liquid(name: &str) -> Result<Index, String> {
-    shipped::liquid(name).map(Index::Dispersive).map_err(|error| error.to_string())
+fn liquid(name: &str) -> Result<RefractiveIndex, String> {
+    shipped::liquid(name).map(RefractiveIndex::Dispersive).map_err(|error| error.to_string())
 }

@@ -40,7 +40,7 @@ mod surface_tests;
 mod tests;
 
 pub use camera_call::camera_call;
-pub use definition::Definition;
+pub use definition::ParameterAssignment;
 pub use engine::{MAX_SCRIPT_BYTES, evaluate};
 pub use error::{MAX_OPERATIONS, ScriptError};
 pub use evaluated::{Evaluated, Inputs};

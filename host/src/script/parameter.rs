@@ -6,7 +6,7 @@ use crate::curve::SplineCurve;
 use crate::database::Library;
 use crate::illumination::Paint;
 use crate::illumination::distribution::FacetTable;
-use crate::illumination::texture::Number;
+use crate::illumination::texture::NumberTexture;
 use rhai::{Dynamic, ImmutableString};
 
 /// What a function takes: a row of its help.
@@ -19,7 +19,7 @@ pub struct Parameter {
 }
 
 /// A kind of value, and what the value of a script becomes.
-pub(super) trait Kind {
+pub(super) trait ParameterKind {
     /// What a value becomes.
     type Value;
     /// Whether three bare numbers may stand for one value.
@@ -42,7 +42,7 @@ pub(super) trait Kind {
 }
 
 /// A kind whose default can be written as a constant.
-pub(super) trait HasDefault: Kind {
+pub(super) trait HasDefault: ParameterKind {
     /// How the default is written.
     type Default: Copy;
 
@@ -104,14 +104,14 @@ pub(super) struct Optional<K> {
 
 /// A parameter that changes a setting, which stays where it is not given.
 #[derive(Clone, Copy)]
-pub(super) struct Kept<K, D> {
+pub(super) struct WithFallback<K, D> {
     kind: K,
     default: D,
     help: &'static str,
 }
 
 /// A parameter that must be given.
-pub(super) const fn required<K: Kind + Copy>(kind: K, help: &'static str) -> Required<K> {
+pub(super) const fn required<K: ParameterKind + Copy>(kind: K, help: &'static str) -> Required<K> {
     Required { kind, help }
 }
 
@@ -126,18 +126,18 @@ where
 /// A parameter that may be left out.
 ///
 /// - `otherwise`: what holds then, in words.
-pub(super) const fn optional<K: Kind + Copy>(kind: K, otherwise: &'static str, help: &'static str) -> Optional<K> {
+pub(super) const fn optional<K: ParameterKind + Copy>(kind: K, otherwise: &'static str, help: &'static str) -> Optional<K> {
     Optional { kind, otherwise, help }
 }
 
 /// A parameter that changes a setting.
 ///
 /// - `default`: that of a scene where the setting was never changed.
-pub(super) const fn kept<K>(kind: K, default: K::Default, help: &'static str) -> Kept<K, K::Default>
+pub(super) const fn kept<K>(kind: K, default: K::Default, help: &'static str) -> WithFallback<K, K::Default>
 where
     K: HasDefault + Copy,
 {
-    Kept { kind, default, help }
+    WithFallback { kind, default, help }
 }
 
 impl<K: Copy, D: Copy> Defaulted<K, D> {
@@ -177,7 +177,7 @@ macro_rules! described {
     };
 }
 
-impl<K: Kind> Described for Required<K> {
+impl<K: ParameterKind> Described for Required<K> {
     described!(|_parameter| None);
 }
 
@@ -188,15 +188,15 @@ impl<K: HasDefault> Described for Defaulted<K, K::Default> {
     });
 }
 
-impl<K: Kind> Described for Optional<K> {
+impl<K: ParameterKind> Described for Optional<K> {
     described!(|parameter| Some(parameter.otherwise.to_owned()));
 }
 
-impl<K: HasDefault> Described for Kept<K, K::Default> {
+impl<K: HasDefault> Described for WithFallback<K, K::Default> {
     described!(|parameter| Some(parameter.kind.shown(parameter.default)));
 }
 
-impl<K: Kind> Takes for Required<K> {
+impl<K: ParameterKind> Takes for Required<K> {
     type Value = K::Value;
 
     fn value(&self, name: &str, given: Option<&Dynamic>, library: &Library) -> Result<K::Value, String> {
@@ -212,7 +212,7 @@ impl<K: HasDefault> Takes for Defaulted<K, K::Default> {
     }
 }
 
-impl<K: Kind> Takes for Optional<K> {
+impl<K: ParameterKind> Takes for Optional<K> {
     type Value = Option<K::Value>;
 
     fn value(&self, name: &str, given: Option<&Dynamic>, library: &Library) -> Result<Option<K::Value>, String> {
@@ -220,7 +220,7 @@ impl<K: Kind> Takes for Optional<K> {
     }
 }
 
-impl<K: HasDefault> Takes for Kept<K, K::Default> {
+impl<K: HasDefault> Takes for WithFallback<K, K::Default> {
     type Value = Option<K::Value>;
 
     fn value(&self, name: &str, given: Option<&Dynamic>, library: &Library) -> Result<Option<K::Value>, String> {
@@ -229,7 +229,7 @@ impl<K: HasDefault> Takes for Kept<K, K::Default> {
 }
 
 /// A value of this kind.
-fn checked<K: Kind>(kind: &K, name: &str, value: &Dynamic, library: &Library) -> Result<K::Value, String> {
+fn checked<K: ParameterKind>(kind: &K, name: &str, value: &Dynamic, library: &Library) -> Result<K::Value, String> {
     let text = value.read_lock::<ImmutableString>();
     if let Some(found) = text.and_then(|text| kind.look_up(&text, library)) {
         return found.map_err(|error| format!("{name}: {error}"));
@@ -245,7 +245,7 @@ fn in_short(value: &Dynamic) -> String {
         (value.is::<SplineCurve>(), "a curve"),
         (value.is::<ControlMeaning>(), "a kind of spline"),
         (value.is::<Paint>(), "a pattern"),
-        (value.is::<Number>(), "a pattern of numbers"),
+        (value.is::<NumberTexture>(), "a pattern of numbers"),
         (value.is::<FacetTable>(), "a distribution"),
     ] {
         if is_one {

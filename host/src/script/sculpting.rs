@@ -1,9 +1,9 @@
 //! What scripts do with sculptured surfaces: evaluating, trimming, joining, filling, closing.
 
 use super::builder::Builder;
-use super::handle::{Done, Handle};
+use super::handle::{CallResult, Handle};
 use crate::curve::{Curve, SplineCurve};
-use crate::scene::{Sculpture, Shape, Sheet};
+use crate::scene::{Sculpture, Shape, SurfaceSheet};
 use crate::surface::{
     BezierPatch, Direction, HoleSide, Joint, Smoothness, SplineSurface, Surface, SurfaceSide, TensorPatch, joined,
     joint, n_sided_patch, patches_around_vertex,
@@ -45,7 +45,7 @@ fn report(joint: &Joint) -> Dynamic {
 
 impl Builder {
     /// The sheets of an object, placed as it is.
-    fn placed_sheets(&mut self, handle: Handle) -> Result<Vec<Sheet>, String> {
+    fn placed_sheets(&mut self, handle: Handle) -> Result<Vec<SurfaceSheet>, String> {
         let object = self.object(handle)?;
         let Shape::Sculpture(sculpture) = &object.shape else {
             return Err(format!("{} is no surface", object.name));
@@ -59,7 +59,7 @@ impl Builder {
     /// The only spline surface of an object, placed as it is.
     pub(super) fn spline_surface(&mut self, handle: Handle) -> Result<SplineSurface, String> {
         match self.placed_sheets(handle)?.pop() {
-            Some(Sheet::Spline { surface, .. }) if self.sheet_count(handle)? == 1 => Ok(*surface),
+            Some(SurfaceSheet::Spline { surface, .. }) if self.sheet_count(handle)? == 1 => Ok(*surface),
             _ => Err(format!("{} is not one surface over a mesh of control points", self.object(handle)?.name)),
         }
     }
@@ -72,7 +72,7 @@ impl Builder {
     }
 
     /// Gives an object another sheet, which is placed already.
-    fn set_sheet(&mut self, handle: Handle, sheet: Sheet) -> Result<(), String> {
+    fn set_sheet(&mut self, handle: Handle, sheet: SurfaceSheet) -> Result<(), String> {
         let object = self.object(handle)?;
         object.shape = Shape::Sculpture(Box::new(Sculpture::of(sheet)));
         object.transform = DMat4::IDENTITY;
@@ -80,7 +80,7 @@ impl Builder {
     }
 
     /// Point and normal of a surface at parts of its parameters.
-    pub(super) fn surface_at(&mut self, handle: Handle, part: DVec2) -> Done {
+    pub(super) fn surface_at(&mut self, handle: Handle, part: DVec2) -> CallResult {
         let surface = self.spline_surface(handle)?;
         let [low, high] = surface.domain();
         let uv = low * (DVec2::ONE - part) + high * part;
@@ -88,7 +88,7 @@ impl Builder {
     }
 
     /// Trims a surface by loops in parts of its parameters.
-    pub(super) fn trim(&mut self, handle: Handle, loops: &[Vec<SplineCurve>], holes: bool) -> Done {
+    pub(super) fn trim(&mut self, handle: Handle, loops: &[Vec<SplineCurve>], holes: bool) -> CallResult {
         if self.sheet_count(handle)? > 1 {
             return Err("an object of several surfaces cannot be trimmed; trim them before".into());
         }
@@ -98,12 +98,12 @@ impl Builder {
     }
 
     /// Changes the second surface so that it continues the first; returns what holds then.
-    pub(super) fn join(&mut self, handles: [Handle; 2], sides: [SurfaceSide; 2], smoothness: Smoothness) -> Done {
+    pub(super) fn join(&mut self, handles: [Handle; 2], sides: [SurfaceSide; 2], smoothness: Smoothness) -> CallResult {
         if handles[0] == handles[1] {
             return Err("a surface cannot be joined to itself".into());
         }
         for handle in handles {
-            if self.placed_sheets(handle)?.iter().any(|s| matches!(s, Sheet::Spline { loops, .. } if !loops.is_empty()))
+            if self.placed_sheets(handle)?.iter().any(|s| matches!(s, SurfaceSheet::Spline { loops, .. } if !loops.is_empty()))
             {
                 return Err(format!("{} is trimmed; join surfaces before", self.object(handle)?.name));
             }
@@ -115,13 +115,13 @@ impl Builder {
         let found = [at(sides[1]), at(sides[1].opposite())];
         let found = if found[0].gap <= found[1].gap { found[0] } else { found[1] };
         for (handle, surface) in handles.into_iter().zip([first, second]) {
-            self.set_sheet(handle, Sheet::Spline { surface: Box::new(surface), loops: Vec::new() })?;
+            self.set_sheet(handle, SurfaceSheet::Spline { surface: Box::new(surface), loops: Vec::new() })?;
         }
         Ok(report(&Joint { sides: [(0, sides[0]), (1, sides[1])], ..found }))
     }
 
     /// What holds along all sides that patches of some surfaces share.
-    pub(super) fn continuity(&mut self, handles: impl IntoIterator<Item = Handle>) -> Done {
+    pub(super) fn continuity(&mut self, handles: impl IntoIterator<Item = Handle>) -> CallResult {
         let mut sheets = Vec::new();
         for handle in handles {
             sheets.extend(self.placed_sheets(handle)?);
@@ -136,7 +136,7 @@ impl Builder {
         around: &[(Handle, SurfaceSide)],
         around_vertex: bool,
         tolerance: Option<f64>,
-    ) -> Done {
+    ) -> CallResult {
         let mut sides = Vec::new();
         for (handle, side) in around {
             let surface = self.spline_surface(*handle)?;
@@ -147,7 +147,7 @@ impl Builder {
         let filled =
             if around_vertex { patches_around_vertex(&sides).map(|_| ()) } else { n_sided_patch(&sides).map(|_| ()) };
         filled.map_err(|error| error.to_string())?;
-        let sculpture = Sculpture::of(Sheet::Filled { sides, around_vertex });
+        let sculpture = Sculpture::of(SurfaceSheet::Filled { sides, around_vertex });
         self.add(Shape::Sculpture(Box::new(sculpture)), tolerance).map(Dynamic::from)
     }
 

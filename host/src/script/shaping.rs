@@ -2,18 +2,18 @@
 
 use super::builder::{Builder, check_bounding, check_nesting, nesting_of};
 use super::function::{Function, function};
-use super::handle::{Done, Handle};
-use super::kinds::{AnObject, Length, Points};
+use super::handle::{CallResult, Handle};
+use super::kinds::{ObjectKind, Length, PointsKind};
 use super::parameter::{optional, required};
 use super::shared::{OBJECT, TOLERANCE};
-use crate::scene::{Object, Rounded, Shape};
+use crate::scene::{Object, RoundedSolid, Shape};
 use glam::DMat4;
 use rhai::Dynamic;
 
 /// The functions.
 pub(super) const FUNCTIONS: &[Function] = &[
     function! {
-        meeting(object: OBJECT, other: required(AnObject, "the other object"), tolerance: TOLERANCE)
+        meeting(object: OBJECT, other: required(ObjectKind, "the other object"), tolerance: TOLERANCE)
         "Adds the curves in which two objects meet, accurate on their exact surfaces, as lines; both objects stay."
         "let edge = ball.meeting(pot);"
         |builder| add_curve(builder, [object, other], tolerance)
@@ -26,7 +26,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
                 "of a ball that touches the faces where the rounding begins; four times that far must a face reach",
             ),
             edges: optional(
-                Points,
+                PointsKind,
                 "all",
                 "points [x, y, z] in scene coordinates; for each the nearest edge is rounded",
             ),
@@ -40,14 +40,14 @@ pub(super) const FUNCTIONS: &[Function] = &[
             check_nesting(nesting_of(rounded) + 1)?;
             let (name, material) = (rounded.name.clone(), rounded.material.clone());
             let edges = edges.unwrap_or_default();
-            let shape = Shape::Rounded(Box::new(Rounded { object: rounded.clone(), edges, radius }));
+            let shape = Shape::Rounded(Box::new(RoundedSolid { object: rounded.clone(), edges, radius }));
             *rounded = Object { name, shape, transform: DMat4::IDENTITY, material, tolerance };
             Ok(Dynamic::from(object))
         }
     },
 ];
 
-fn add_curve(builder: &mut Builder, objects: [Handle; 2], tolerance: Option<f64>) -> Done {
+fn add_curve(builder: &mut Builder, objects: [Handle; 2], tolerance: Option<f64>) -> CallResult {
     let one = builder.object(objects[0])?.clone();
     let two = builder.object(objects[1])?.clone();
     check_bounding(&one).and(check_bounding(&two))?;

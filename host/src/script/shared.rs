@@ -1,10 +1,10 @@
 //! Parameters that several functions share.
 
-use super::kinds::{AnObject, Length};
+use super::kinds::{ObjectKind, Length};
 use super::parameter::{Optional, Required, optional, required};
 
 /// The object before the dot.
-pub(super) const OBJECT: Required<AnObject> = required(AnObject, "the object");
+pub(super) const OBJECT: Required<ObjectKind> = required(ObjectKind, "the object");
 
 /// How closely the triangles of a curved object follow it.
 pub(super) const TOLERANCE: Optional<Length> =

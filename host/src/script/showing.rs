@@ -1,7 +1,7 @@
 //! Functions of the scene language that say how pictures are shown, one row each.
 
 use super::function::{Function, function};
-use super::kinds::{Number, Scalar, Text, Word};
+use super::kinds::{NumberKind, ScalarKind, TextKind, Word};
 use super::lighting::spectrum_named;
 use super::parameter::{required, with_default};
 use crate::picture::display::{Tone, neutral};
@@ -12,7 +12,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     function! {
         exposure(
             stops: required(
-                Scalar,
+                ScalarKind,
                 "each doubles the light; 0 shows radiance as it is, \"auto\" is the meter's, \"auto+0.5\" half a stop more",
             ),
         )
@@ -39,7 +39,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     },
     function! {
         white_balance(
-            light: required(Text, "\"A\", \"D50\" and others, \"blackbody 3000\" or \"daylight 5000\" (kelvin)"),
+            light: required(TextKind, "\"A\", \"D50\" and others, \"blackbody 3000\" or \"daylight 5000\" (kelvin)"),
         )
         "Shows the white of a light as white, as an eye that is adapted to it sees it."
         "white_balance(\"A\");"
@@ -50,7 +50,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         }
     },
     function! {
-        bloom(amount: with_default(Number(0.0, 100.0), 1.0, "times what a healthy eye spreads"))
+        bloom(amount: with_default(NumberKind(0.0, 100.0), 1.0, "times what a healthy eye spreads"))
         "Spreads light about bright points as the lens and the cornea of an eye do."
         "bloom(0.5);"
         |builder| {

@@ -2,18 +2,18 @@
 
 use super::builder::Builder;
 use super::function::{Function, function};
-use super::handle::Done;
+use super::handle::CallResult;
 use super::kinds::{
-    ANY_NUMBER, AnObject, Axis, Contours, Curve, Flag, Integer, Length, Lengths, Number, Points, Vector,
+    ANY_NUMBER, ObjectKind, AxisKind, Contours, CurveKind, Flag, Integer, Length, Lengths, NumberKind, PointsKind, Vector,
 };
 use super::parameter::{Defaulted, Required, required, with_default};
 use super::shared::{OBJECT, TOLERANCE};
-use crate::scene::{Operation, Shape, Solid};
+use crate::scene::{Operation, Shape, PrimitiveSolid};
 use crate::solid::Primitive;
 use glam::{DVec2, DVec3};
 use rhai::Dynamic;
 
-const OTHER: Required<AnObject> = required(AnObject, "the other object; both must be closed");
+const OTHER: Required<ObjectKind> = required(ObjectKind, "the other object; both must be closed");
 const CONTOURS: Required<Contours> = required(
     Contours,
     "corners [x, y] of the polygon, or of several contours: what is in an odd number of them is inside",
@@ -51,7 +51,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     function! {
         wedge(
             size: with_default(Lengths, 1.0, "its sides along x, y and z"),
-            top: with_default(Number(0.0, f64::INFINITY), 0.0, "length of the top along x"),
+            top: with_default(NumberKind(0.0, f64::INFINITY), 0.0, "length of the top along x"),
         )
         "Adds a box around the origin whose top is shortened to an edge or a strip at the side of least x."
         "let ramp = wedge(#{ size: [3, 1, 2], top: 0.5 });"
@@ -77,7 +77,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         cone(
             radius: with_default(Length, 1.0, "radius below"),
             height: HEIGHT,
-            top: with_default(Number(0.0, f64::INFINITY), 0.0, "radius above"),
+            top: with_default(NumberKind(0.0, f64::INFINITY), 0.0, "radius above"),
             tolerance: TOLERANCE,
         )
         "Adds a cone or a frustum, its axis along y, the middle of its height at the origin."
@@ -135,7 +135,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     function! {
         turning(
             contours: CONTOURS,
-            angle: with_default(Number(0.0, 360.0), 360.0, "how far, degrees"),
+            angle: with_default(NumberKind(0.0, 360.0), 360.0, "how far, degrees"),
             tolerance: TOLERANCE,
         )
         "Adds a polygon of the plane of x and y, with x not below 0, that turned about the y axis from the z axis on towards the x axis."
@@ -145,7 +145,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     function! {
         revolution(
             profile: required(
-                Points,
+                PointsKind,
                 "points [r, y, bulge]; the bulge is the tangent of a quarter of the angle of the arc to the next point, positive if it turns left, 0 for a line",
             ),
             tolerance: TOLERANCE,
@@ -156,7 +156,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     },
     function! {
         lathe(
-            profile: required(Points, "control points [r, y]; the curve begins in the first and ends in the last"),
+            profile: required(PointsKind, "control points [r, y]; the curve begins in the first and ends in the last"),
             tolerance: TOLERANCE,
         )
         "Adds the solid of a smooth profile that turned about the y axis: the cubic B-spline of some points, closed over the axis."
@@ -167,12 +167,12 @@ pub(super) const FUNCTIONS: &[Function] = &[
         sweep(
             contours: CONTOURS,
             path: required(
-                Curve,
+                CurveKind,
                 "the curve, or control points of the cubic B-spline that begins in the first and ends in the last",
             ),
             closed: with_default(Flag, false, "whether the curve of control points is closed"),
             twist: with_default(ANY_NUMBER, 0.0, "how far the polygon turns about the curve, degrees"),
-            taper: with_default(Number(0.0, 1e6), 1.0, "how much wider the polygon is at the end"),
+            taper: with_default(NumberKind(0.0, 1e6), 1.0, "how much wider the polygon is at the end"),
             tolerance: TOLERANCE,
         )
         "Adds the solid of a polygon that went along a curve, square to it."
@@ -183,7 +183,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         }
     },
     function! {
-        half_space(normal: required(Axis, "towards the empty side"), at: POINT_OF_PLANE)
+        half_space(normal: required(AxisKind, "towards the empty side"), at: POINT_OF_PLANE)
         "Adds all that is behind a plane; it must be combined with solids that have an end."
         "let dome = sphere(1) - half_space(\"y\");"
         |builder| builder.add(Shape::HalfSpace { normal, at }, None).map(Dynamic::from)
@@ -215,7 +215,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     function! {
         split(
             object: OBJECT,
-            normal: required(Axis, "what the plane is square to, towards the front"),
+            normal: required(AxisKind, "what the plane is square to, towards the front"),
             at: POINT_OF_PLANE,
         )
         "Divides a solid by a plane: the object keeps what is behind it; what is in front is the new object that is returned."
@@ -225,8 +225,8 @@ pub(super) const FUNCTIONS: &[Function] = &[
 ];
 
 /// Adds a solid if there is one of these measures.
-fn add(builder: &mut Builder, primitive: Primitive, tolerance: Option<f64>) -> Done {
-    let solid = Solid::from(primitive);
+fn add(builder: &mut Builder, primitive: Primitive, tolerance: Option<f64>) -> CallResult {
+    let solid = PrimitiveSolid::from(primitive);
     solid.body().map_err(|error| error.to_string())?;
     builder.add(Shape::Solid(solid), tolerance).map(Dynamic::from)
 }

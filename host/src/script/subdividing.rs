@@ -2,16 +2,16 @@
 
 use super::builder::Builder;
 use super::function::{Function, function};
-use super::handle::{Done, Handle};
-use super::kinds::{Indices, Length, Number, Points};
+use super::handle::{CallResult, Handle};
+use super::kinds::{Indices, Length, NumberKind, PointsKind};
 use super::parameter::{Optional, optional, required, with_default};
 use super::shared::{OBJECT, TOLERANCE};
 use crate::scene::{Cage, Shape, Sharp, Sharpening};
 use crate::surface::Tolerance;
 use rhai::Dynamic;
 
-const STEPS: Optional<Number> = optional(
-    Number(0.0, 1000.0),
+const STEPS: Optional<NumberKind> = optional(
+    NumberKind(0.0, 1000.0),
     "for ever",
     "for so many steps it stays sharp; a part of a step makes it partly sharp",
 );
@@ -22,7 +22,7 @@ const COARSE: f64 = 1.0 / 20.0;
 pub(super) const FUNCTIONS: &[Function] = &[
     function! {
         subdivision(
-            points: required(Points, "the vertices [x, y, z]"),
+            points: required(PointsKind, "the vertices [x, y, z]"),
             faces: required(Indices, "the vertices of each face, counter-clockwise from outside"),
             tolerance: TOLERANCE,
         )
@@ -48,7 +48,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         |builder| subdivide(builder, object, coarse)
     },
     function! {
-        sharpen_creases(object: OBJECT, angle: with_default(Number(0.0, 180.0), 30.0, "degrees"), steps: STEPS)
+        sharpen_creases(object: OBJECT, angle: with_default(NumberKind(0.0, 180.0), 30.0, "degrees"), steps: STEPS)
         "Keeps all edges of a subdivided polyhedron sharp at which two faces meet at more than an angle."
         "let worn = box(2, 1, 1).subdivide().sharpen_creases(30, 1.5);"
         |builder| sharpen(builder, object, Sharpening { of: Sharp::Creases(angle), steps })
@@ -76,7 +76,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     },
 ];
 
-fn subdivide(builder: &mut Builder, handle: Handle, coarse: Option<f64>) -> Done {
+fn subdivide(builder: &mut Builder, handle: Handle, coarse: Option<f64>) -> CallResult {
     let angle = builder.scene.settings.geometry.angle;
     let object = builder.object(handle)?;
     let chord = coarse.unwrap_or(COARSE * object.shape.extent().unwrap_or(1.0));
@@ -89,7 +89,7 @@ fn subdivide(builder: &mut Builder, handle: Handle, coarse: Option<f64>) -> Done
     Ok(Dynamic::from(handle))
 }
 
-fn sharpen(builder: &mut Builder, handle: Handle, sharpening: Sharpening) -> Done {
+fn sharpen(builder: &mut Builder, handle: Handle, sharpening: Sharpening) -> CallResult {
     let object = builder.object(handle)?;
     let Shape::Subdivision(cage) = &mut object.shape else {
         return Err(format!("{} is no subdivided polyhedron", object.name));

@@ -2,7 +2,7 @@
 
 use super::tests::{problem, run};
 use crate::mesh::Mesh;
-use crate::scene::{Shape, Sheet};
+use crate::scene::{Shape, SurfaceSheet};
 use crate::surface::{Surface, Tolerance};
 use glam::DVec2;
 
@@ -27,7 +27,7 @@ fn a_bbb_spline_without_bias_and_tension_is_the_b_spline_and_with_zeros_the_bezi
         let made = run(&format!("{NET} surface(net, {one}, {one}); surface(net, {two}, {two});"));
         let surfaces = made.scene.objects.iter().map(|object| match &object.shape {
             Shape::Sculpture(sculpture) => match &sculpture.sheets[0] {
-                Sheet::Spline { surface, .. } => (**surface).clone(),
+                SurfaceSheet::Spline { surface, .. } => (**surface).clone(),
                 filled => panic!("{filled:?}"),
             },
             other => panic!("{other:?}"),

@@ -2,16 +2,16 @@
 
 use super::builder::Builder;
 use super::function::{Function, function};
-use super::handle::Done;
+use super::handle::CallResult;
 use super::kinds::{
-    AnObject, Contours, Curve, Flag, Integer, Loops, Number, Numbers, Objects, Points, RowsOfNumbers, Sides, Spline,
+    ObjectKind, Contours, CurveKind, Flag, Integer, Loops, NumberKind, Numbers, Objects, PointsKind, RowsOfNumbers, SidesKind, Spline,
     Word,
 };
 use super::parameter::{Defaulted, Optional, optional, required, with_default};
 use super::sculpting::{array, on_curve};
 use super::shared::{OBJECT, TOLERANCE};
 use super::spline::{ControlMeaning, SIDES};
-use crate::scene::{Sculpture, Shape, Sheet};
+use crate::scene::{Sculpture, Shape, SurfaceSheet};
 use crate::surface::{Smoothness, SplineSurface, SurfaceSide, car_body, revolved};
 use glam::DVec2;
 use rhai::Dynamic;
@@ -20,7 +20,7 @@ const CLOSED: Defaulted<Flag, bool> = with_default(Flag, false, "whether the las
 const CLAMPED: Defaulted<Flag, bool> =
     with_default(Flag, true, "whether an open one passes through its first and last point");
 const WEIGHTS: Optional<RowsOfNumbers> = optional(RowsOfNumbers, "1 for all", "as many as points, each above 0");
-const FRACTION: Number = Number(0.0, 1.0);
+const FRACTION: NumberKind = NumberKind(0.0, 1.0);
 const USUAL: &str = "b_spline(), of a lower degree for less than four points";
 const SIDE: Word<SurfaceSide> = Word(&SIDES);
 const SMOOTHNESS: Word<Smoothness> = Word(&[("G0", Smoothness::G0), ("G1", Smoothness::G1), ("G2", Smoothness::G2)]);
@@ -53,8 +53,8 @@ pub(super) const FUNCTIONS: &[Function] = &[
     },
     function! {
         beta_spline(
-            bias: with_default(Number(1e-9, 1e9), 1.0, "above 1 the curve leans towards what comes later"),
-            tension: with_default(Number(0.0, 1e12), 0.0, "the more, the nearer to the control points"),
+            bias: with_default(NumberKind(1e-9, 1e9), 1.0, "above 1 the curve leans towards what comes later"),
+            tension: with_default(NumberKind(0.0, 1e12), 0.0, "the more, the nearer to the control points"),
             closed: CLOSED,
             clamped: CLAMPED,
         )
@@ -83,7 +83,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     },
     function! {
         curve(
-            points: required(Points, "control points [x, y, z]"),
+            points: required(PointsKind, "control points [x, y, z]"),
             kind: optional(Spline, USUAL, "what they mean"),
             weights: WEIGHTS,
         )
@@ -97,7 +97,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     },
     function! {
         curve_at(
-            curve: required(Curve, "the curve"),
+            curve: required(CurveKind, "the curve"),
             at: required(FRACTION, "the part of its parameters, from 0 to 1"),
         )
         "Returns #{ point, direction } of a curve, each [x, y, z]."
@@ -129,7 +129,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         }
     },
     function! {
-        revolved(profile: required(Curve, "the curve"), tolerance: TOLERANCE)
+        revolved(profile: required(CurveKind, "the curve"), tolerance: TOLERANCE)
         "Adds the surface of a curve in the plane of x and y that turned about the y axis, exactly, as a rational surface: u turns, v is along the curve; outside is on the right of a curve that goes up."
         "let bowl = revolved(curve([[0, 0, 0], [2, 0, 0], [2, 1, 0]], bezier()));"
         |builder| {
@@ -181,7 +181,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     function! {
         join(
             object: OBJECT,
-            other: required(AnObject, "the surface that is changed, a spline of the same kind along the side"),
+            other: required(ObjectKind, "the surface that is changed, a spline of the same kind along the side"),
             side: with_default(SIDE, SurfaceSide::HighU, "the side of this surface"),
             other_side: with_default(SIDE, SurfaceSide::LowU, "the side of the other"),
             smoothness: with_default(SMOOTHNESS, Smoothness::G1, "a common curve, tangent plane or curvature"),
@@ -198,7 +198,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     },
     function! {
         fill(
-            sides: required(Sides, "the surfaces around the hole, each with its side there"),
+            sides: required(SidesKind, "the surfaces around the hole, each with its side there"),
             around_vertex: with_default(Flag, false, "whether four-sided patches fill it, two sides to each"),
             tolerance: TOLERANCE,
         )
@@ -217,7 +217,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     },
 ];
 
-fn add(builder: &mut Builder, surface: SplineSurface, tolerance: Option<f64>) -> Done {
-    let sculpture = Sculpture::of(Sheet::Spline { surface: Box::new(surface), loops: Vec::new() });
+fn add(builder: &mut Builder, surface: SplineSurface, tolerance: Option<f64>) -> CallResult {
+    let sculpture = Sculpture::of(SurfaceSheet::Spline { surface: Box::new(surface), loops: Vec::new() });
     builder.add(Shape::Sculpture(Box::new(sculpture)), tolerance).map(Dynamic::from)
 }

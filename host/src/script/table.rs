@@ -2,7 +2,7 @@
 
 use super::function::{Function, function};
 use super::kinds::{
-    ANY_NUMBER, Axis, Factors, Flag, Integer, Length, NamedAxis, Number, Points, Scalar, Text, Vector, Word,
+    ANY_NUMBER, AxisKind, Factors, Flag, Integer, Length, NamedAxis, NumberKind, PointsKind, ScalarKind, TextKind, Vector, Word,
 };
 use super::parameter::{Defaulted, kept, optional, required, with_default};
 use super::shared::{OBJECT, TOLERANCE};
@@ -47,7 +47,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         }
     },
     function! {
-        mesh(file: required(Text, "its path; relative to the folder of the script"))
+        mesh(file: required(TextKind, "its path; relative to the folder of the script"))
         "Adds a mesh from an OBJ, STL, PLY or glTF file."
         "let bunny = mesh(\"bunny.ply\");"
         |builder| {
@@ -73,7 +73,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     function! {
         rotate(
             object: OBJECT,
-            axis: required(Axis, "what it turns about"),
+            axis: required(AxisKind, "what it turns about"),
             angle: required(ANY_NUMBER, "degrees; positive as a right-handed screw turns"),
         )
         "Turns an object about an axis through the origin, after all that was done to it before."
@@ -84,7 +84,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         moving(
             object: OBJECT,
             by: with_default(Vector, ORIGIN, "how far it moves until the time 1"),
-            axis: with_default(Axis, NamedAxis::Y, "what it turns about"),
+            axis: with_default(AxisKind, NamedAxis::Y, "what it turns about"),
             angle: with_default(ANY_NUMBER, 0.0, "how far it turns until the time 1, degrees"),
             through: with_default(Vector, ORIGIN, "a point of the axis at the time 0"),
         )
@@ -110,7 +110,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     function! {
         reflect(
             object: OBJECT,
-            normal: required(Axis, "what the plane is square to"),
+            normal: required(AxisKind, "what the plane is square to"),
             at: with_default(Vector, ORIGIN, "a point of the plane"),
         )
         "Mirrors an object in a plane, after all that was done to it before."
@@ -129,7 +129,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         |builder| builder.transform(object, DMat4::from_scale(by))
     },
     function! {
-        name(object: OBJECT, text: required(Text, "the name"))
+        name(object: OBJECT, text: required(TextKind, "the name"))
         "Names an object, for messages and tables."
         "pot.name(\"pot\");"
         |builder| builder.name(object, &text)
@@ -140,11 +140,11 @@ pub(super) const FUNCTIONS: &[Function] = &[
             at: with_default(Vector, ORIGIN, "what is in the middle of the picture"),
             up: with_default(Vector, [0.0, 1.0, 0.0], "what is up in the picture"),
             field_of_view: with_default(
-                Number(1e-6, 179.999_999),
+                NumberKind(1e-6, 179.999_999),
                 30.0,
                 "full angle across the shorter side of the picture, degrees",
             ),
-            near: with_default(Number(0.0, f64::INFINITY), 0.0, "depth before which nothing is seen"),
+            near: with_default(NumberKind(0.0, f64::INFINITY), 0.0, "depth before which nothing is seen"),
             far: optional(Length, "no end", "depth behind which nothing is seen"),
             lens: optional(Length, "a pinhole", "radius of a lens, which is sharp at one depth only"),
             focus: optional(Length, "the distance to at", "depth at which it is sharp"),
@@ -154,7 +154,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
                 "a parallel view that shows so much across the shorter side",
             ),
             oblique: optional(
-                Points,
+                PointsKind,
                 "orthographic",
                 "[[right, up]] by which a parallel view moves nearer points",
             ),
@@ -175,9 +175,9 @@ pub(super) const FUNCTIONS: &[Function] = &[
     },
     function! {
         parameter(
-            name: required(Text, "letters, digits and underscores"),
-            default: required(Scalar, "the value when none is given"),
-            meaning: optional(Text, "none", "what it means, for those who look for it"),
+            name: required(TextKind, "letters, digits and underscores"),
+            default: required(ScalarKind, "the value when none is given"),
+            meaning: optional(TextKind, "none", "what it means, for those who look for it"),
         )
         "Gives the value that the command line sets with -D NAME=VALUE, of the kind of the default; without one, the default."
         "let count = parameter(\"count\", 6, \"how many there are\");"
@@ -266,12 +266,12 @@ pub(super) const FUNCTIONS: &[Function] = &[
         radiosity(
             on: with_default(Flag, true, "whether ray tracing does"),
             error: kept(
-                Number(1e-6, 10.0),
+                NumberKind(1e-6, 10.0),
                 RadiositySettings::DEFAULT.error,
                 "of the light that one pair of patches brings, as a part of the mean irradiance",
             ),
             finest: kept(
-                Number(1e-5, 1.0),
+                NumberKind(1e-5, 1.0),
                 RadiositySettings::DEFAULT.finest,
                 "shortest edge of a patch that is divided, as a part of the diagonal of the scene",
             ),
@@ -281,7 +281,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
                 "in which each patch looks around",
             ),
             tolerance: kept(
-                Number(1e-12, 1.0),
+                NumberKind(1e-12, 1.0),
                 RadiositySettings::DEFAULT.tolerance,
                 "error of the solver, as a part of the greatest irradiance",
             ),
@@ -327,7 +327,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
                 "how many ways of light are followed for eight samples of each pixel",
             ),
             radius: optional(
-                Number(0.0, f64::INFINITY),
+                NumberKind(0.0, f64::INFINITY),
                 "a twentieth of the scene's diagonal",
                 "the largest over which caught light is spread, scene units",
             ),
@@ -387,7 +387,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         tolerance(
             length: required(Length, "largest distance, scene units"),
             angle: kept(
-                Number(0.01, 180.0),
+                NumberKind(0.01, 180.0),
                 GeometrySettings::DEFAULT.angle,
                 "largest turn of the normal along a triangle, degrees",
             ),

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::color::Color;
-use crate::illumination::light::{Patch, SkyDisc, SkyMap};
-use crate::illumination::material::{Body, Classic, Form, Index, Shaped, Transparent};
+use crate::illumination::light::{LightShape, SkyDisc, SkyMap};
+use crate::illumination::material::{MaterialKind, Classic, DistributionForm, RefractiveIndex, Distributed, Transparent};
 use crate::illumination::{Light, Material};
 use crate::scene::Shape;
 use crate::solid::Primitive;
@@ -64,7 +64,7 @@ fn a_parallel_light_may_come_from_a_disc_in_the_sky_and_that_of_a_sky_through_po
     assert_eq!(seen, &map);
     assert!((radiance.range()[1] - 3.0 / (0.25 * PI)).abs() < 1e-12, "{radiance:?}");
     let corner = DVec3::X;
-    assert_eq!(made.scene.portals, [Patch::Rectangle { corner, across: DVec3::Z * 2.0, up: DVec3::Y * 2.0 }]);
+    assert_eq!(made.scene.portals, [LightShape::Rectangle { corner, across: DVec3::Z * 2.0, up: DVec3::Y * 2.0 }]);
     assert!(problem("portal(#{ corner: [0, 0, 0], across: [1, 0, 0], up: [2, 0, 0] });").2.contains("no area"));
     assert!(problem("directional_light(#{ direction: [0, 0, 0], diameter: 1 });").2.contains("no length"));
 }
@@ -109,7 +109,7 @@ fn a_function_of_a_script_becomes_a_distribution_or_an_error_with_its_place() {
         sphere(1).shaped(0.5, user_distribution(#{ area: |angle| 1 }));
     ");
     for object in &made.scene.objects {
-        let Some(Material { body: Body::Shaped(Shaped { form: Form::Facets(table), .. }), .. }) = &object.material
+        let Some(Material { body: MaterialKind::Shaped(Distributed { form: DistributionForm::Facets(table), .. }), .. }) = &object.material
         else {
             panic!("it is {:?}", object.material)
         };
@@ -145,10 +145,10 @@ fn a_function_of_a_script_becomes_a_distribution_or_an_error_with_its_place() {
 #[test]
 fn a_material_of_defaults_is_the_default_of_its_kind() {
     let body = |call: &str| run(&format!("cube(1).{call};")).scene.objects[0].material.clone().map(|made| made.body);
-    assert_eq!(body("material(#{})"), Some(Body::Classic(Classic::default())));
-    assert_eq!(body("principled(#{})"), Some(Body::Principled(Box::default())));
-    let clear = Transparent::clear(Index::Constant(1.5));
-    assert_eq!(body("glass(#{})"), Some(Body::Transparent(clear)));
+    assert_eq!(body("material(#{})"), Some(MaterialKind::Classic(Classic::default())));
+    assert_eq!(body("principled(#{})"), Some(MaterialKind::Principled(Box::default())));
+    let clear = Transparent::clear(RefractiveIndex::Constant(1.5));
+    assert_eq!(body("glass(#{})"), Some(MaterialKind::Transparent(clear)));
 }
 
 #[test]
@@ -291,7 +291,7 @@ fn parameters_take_the_kind_of_their_default() {
         print(parameter(\"open\", false)); print(parameter(\"title\", \"none\"));
     ";
     let with = |given: &[&str]| {
-        let given: Vec<Definition> = given.iter().map(|text| text.parse().expect("a definition")).collect();
+        let given: Vec<ParameterAssignment> = given.iter().map(|text| text.parse().expect("a definition")).collect();
         evaluate(script, "door.rhai", Path::new(""), &Inputs { definitions: given, ..Inputs::default() })
     };
     assert_eq!(with(&[]).expect("defaults").printed, ["3", "2.5", "false", "none"]);

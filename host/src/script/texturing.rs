@@ -2,14 +2,14 @@
 
 use super::builder::Builder;
 use super::function::{Function, function};
-use super::handle::{Done, Handle};
-use super::kinds::{Flag, Integer, Lengths, Number, Reflectance, Text, Vector, Word};
+use super::handle::{CallResult, Handle};
+use super::kinds::{Flag, Integer, Lengths, NumberKind, Reflectance, TextKind, Vector, Word};
 use super::parameter::{Defaulted, Required, required, with_default};
 use super::shared::OBJECT;
 use crate::database::{self, Record};
 use crate::illumination::Paint;
 use crate::illumination::texture::{
-    Band, Content, Image, Laying, Motif, Number as PaintedNumber, Pattern, Relief, Varying,
+    Band, ImageContent, Image, TextureMapping, Motif, NumberTexture as PaintedNumber, Pattern, Relief, Varying,
 };
 use rhai::Dynamic;
 
@@ -20,9 +20,9 @@ const SIZE_ON_SURFACE: Defaulted<Lengths, f64> =
     with_default(Lengths, 1.0, "size of one repetition in parameters (u, v) of the surface, each 0 to 1");
 const AT: Defaulted<Vector, [f64; 3]> = with_default(Vector, [0.0; 3], "where it begins");
 const UP: Defaulted<Vector, [f64; 3]> = with_default(Vector, [0.0, 1.0, 0.0], "its y direction");
-const FILE: Required<Text> =
-    required(Text, "a PNG or EXR file, relative to the folder of the script; or a texture of a database");
-const ANY: Number = Number(f64::MIN, f64::MAX);
+const FILE: Required<TextKind> =
+    required(TextKind, "a PNG or EXR file, relative to the folder of the script; or a texture of a database");
+const ANY: NumberKind = NumberKind(f64::MIN, f64::MAX);
 
 /// The functions.
 pub(super) const FUNCTIONS: &[Function] = &[
@@ -41,9 +41,9 @@ pub(super) const FUNCTIONS: &[Function] = &[
         "Makes a pattern of an image that lies on the parameters (u, v) of surfaces, or the texture coordinates of a file. Give it where a reflectance is asked for."
         "pot.material(picture(\"tiles.png\", 0.25));"
         |builder| {
-            let content = if numbers { Content::Numbers } else { Content::Color };
+            let content = if numbers { ImageContent::Numbers } else { ImageContent::Color };
             let motif = Motif::Image { image: read(builder, &file, content)? };
-            pattern(motif, Laying { solid: false, size, at, up }, Vec::new())
+            pattern(motif, TextureMapping { solid: false, size, at, up }, Vec::new())
         }
     },
     function! {
@@ -57,7 +57,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         )
         "Makes a pattern of squares on the parameters (u, v) of surfaces, or of cubes in space, of two paints in turn. Give it where a reflectance is asked for."
         "ball.material(checker(0.8, [0.1, 0.05, 0.02], 0.125));"
-        |_| pattern(Motif::Checker, Laying { solid, size, at, up }, vec![one, two])
+        |_| pattern(Motif::Checker, TextureMapping { solid, size, at, up }, vec![one, two])
     },
     function! {
         noise(
@@ -69,35 +69,35 @@ pub(super) const FUNCTIONS: &[Function] = &[
         )
         "Makes a pattern of clouds of a second paint in the first, through the body. Give it where a reflectance is asked for."
         "ball.material(noise(0.6, 0.75, 0.3));"
-        |_| pattern(Motif::Noise { octaves }, Laying { solid: true, size, at, ..Laying::default() }, vec![one, two])
+        |_| pattern(Motif::Noise { octaves }, TextureMapping { solid: true, size, at, ..TextureMapping::default() }, vec![one, two])
     },
     function! {
         marble(
             one: ONE,
             two: TWO,
             size: SIZE,
-            turbulence: with_default(Number(0.0, 1000.0), 0.8, "how far veins stray, in their distances"),
-            sharpness: with_default(Number(0.01, 1000.0), 6.0, "how narrow they are; 1 is a wave"),
+            turbulence: with_default(NumberKind(0.0, 1000.0), 0.8, "how far veins stray, in their distances"),
+            sharpness: with_default(NumberKind(0.01, 1000.0), 6.0, "how narrow they are; 1 is a wave"),
             at: AT,
             up: UP,
         )
         "Makes a pattern of veins of a second paint in the first, through the body. Give it where a reflectance is asked for."
         "ball.material(marble([0.85, 0.83, 0.8], [0.2, 0.22, 0.25], 0.5));"
-        |_| pattern(Motif::Marble { turbulence, sharpness }, Laying { solid: true, size, at, up }, vec![one, two])
+        |_| pattern(Motif::Marble { turbulence, sharpness }, TextureMapping { solid: true, size, at, up }, vec![one, two])
     },
     function! {
         wood(
             one: ONE,
             two: TWO,
             size: with_default(Lengths, 1.0, "width of one ring, own units of the object"),
-            turbulence: with_default(Number(0.0, 1000.0), 0.6, "how far rings stray, in their widths"),
-            grain: with_default(Number(0.0, 1.0), 0.25, "how much of it is fibres"),
+            turbulence: with_default(NumberKind(0.0, 1000.0), 0.6, "how far rings stray, in their widths"),
+            grain: with_default(NumberKind(0.0, 1.0), 0.25, "how much of it is fibres"),
             at: AT,
             up: with_default(Vector, [0.0, 1.0, 0.0], "the axis of the tree"),
         )
         "Makes a pattern of rings of early and late wood about an axis, through the body. Give it where a reflectance is asked for."
         "ball.material(wood(#{ one: [0.55, 0.33, 0.16], two: [0.3, 0.15, 0.06], size: 0.08, up: [1, 0, 0] }));"
-        |_| pattern(Motif::Wood { turbulence, grain }, Laying { solid: true, size, at, up }, vec![one, two])
+        |_| pattern(Motif::Wood { turbulence, grain }, TextureMapping { solid: true, size, at, up }, vec![one, two])
     },
     function! {
         between(
@@ -140,12 +140,12 @@ pub(super) const FUNCTIONS: &[Function] = &[
         "Gives an object the normals of an image: red along u, green along v, blue outwards."
         "pot.normals(\"bricks_normal.png\", 0.5);"
         |builder| {
-            let image = read(builder, &file, Content::Numbers)?;
-            relieve(builder, object, Relief::Normals { image, laying: Laying { solid: false, size, at, up } })
+            let image = read(builder, &file, ImageContent::Numbers)?;
+            relieve(builder, object, Relief::Normals { image, laying: TextureMapping { solid: false, size, at, up } })
         }
     },
     function! {
-        texture_filter(part: required(Number(0.0, 1000.0), "1 is all of it, 0 a point"))
+        texture_filter(part: required(NumberKind(0.0, 1000.0), "1 is all of it, 0 a point"))
         "Sets over how much of what a sample stands for the mean of patterns is taken."
         "texture_filter(0.5);"
         |builder| {
@@ -156,23 +156,23 @@ pub(super) const FUNCTIONS: &[Function] = &[
 ];
 
 /// An image from a file or, if there is none of that name, from the databases.
-fn read(builder: &Builder, name: &str, content: Content) -> Result<Image, String> {
+fn read(builder: &Builder, name: &str, content: ImageContent) -> Result<Image, String> {
     let path = builder.folders.file(name)?;
-    match builder.library.record(database::Kind::Texture, name) {
-        Ok((Record { content: database::Content::Texture(picture), .. }, _)) if !path.exists() => {
+    match builder.library.record(database::RecordKind::Texture, name) {
+        Ok((Record { content: database::RecordContent::Texture(picture), .. }, _)) if !path.exists() => {
             Ok(Image::of_picture(name.to_owned(), &picture, content))
         }
         _ => Image::read(&path, content).map_err(|error| error.to_string()),
     }
 }
 
-fn pattern(motif: Motif, laying: Laying, paints: Vec<Paint>) -> Done {
+fn pattern(motif: Motif, laying: TextureMapping, paints: Vec<Paint>) -> CallResult {
     let paint = Paint::Pattern(Box::new(Pattern { motif, laying, paints }));
     paint.check().map_err(|error| error.to_string())?;
     Ok(Dynamic::from(paint))
 }
 
-fn relieve(builder: &mut Builder, handle: Handle, relief: Relief) -> Done {
+fn relieve(builder: &mut Builder, handle: Handle, relief: Relief) -> CallResult {
     relief.check().map_err(|error| error.to_string())?;
     let object = builder.object(handle)?;
     object.material.get_or_insert_default().relief = Some(relief);

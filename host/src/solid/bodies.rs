@@ -4,10 +4,10 @@ use super::boolean::passes;
 use super::union_find::UnionFind;
 use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
-use crate::numeric::exact::{Exact, cross, dot};
-use crate::numeric::implicit::{Definition, Point};
+use crate::numeric::exact::{ExactNumber, cross, dot};
+use crate::numeric::implicit::{PointDefinition, ImplicitPoint};
 use crate::numeric::triangle::nearest;
-use crate::octree::Sorted;
+use crate::octree::TriangleBvh;
 use glam::DVec3;
 
 /// Part of the size of a mesh within which a point counts as one on a surface, when it is asked what is around it.
@@ -17,7 +17,7 @@ const SAME_ANGLE: f64 = 1e-9;
 
 /// The bodies of a closed surface: triangles that hang together by edges. Where more than two share an edge, those belong
 /// together that have the inside of one body between them.
-pub(super) struct Bodies {
+pub(super) struct Shells {
     /// The body of each triangle.
     of: Vec<u32>,
     /// The triangles of each body.
@@ -26,11 +26,11 @@ pub(super) struct Bodies {
     volumes: Vec<f64>,
 }
 
-impl Bodies {
+impl Shells {
     /// The bodies of a mesh in which all edges are run through both ways alike, so that each body has a volume.
     ///
     /// Cost: n log n.
-    pub(super) fn of(mesh: &Mesh) -> Bodies {
+    pub(super) fn of(mesh: &Mesh) -> Shells {
         let mut joined = UnionFind::new(mesh.triangles.len());
         // An edge as one number, from its lower vertex to its higher, and the triangle and corner that are opposite to it.
         let mut sides: Vec<(u64, u32, u32)> = Vec::with_capacity(3 * mesh.triangles.len());
@@ -62,7 +62,7 @@ impl Bodies {
             .collect();
         let volume = |own: &Vec<u32>| certain_volume(mesh, own.iter().map(|&triangle| triangle as usize));
         let volumes = triangles.iter().map(volume).collect();
-        Bodies { of, triangles, volumes }
+        Shells { of, triangles, volumes }
     }
 
     /// Number of bodies.
@@ -86,7 +86,7 @@ impl Bodies {
     /// A body is a cavity if others wind around a corner or middle of one of its triangles that is not near their surface.
     ///
     /// Cost: a ray for each triangle of the bodies that face inwards.
-    pub(super) fn inside_out(&self, mesh: &Mesh, sorted: &Sorted) -> Vec<usize> {
+    pub(super) fn inside_out(&self, mesh: &Mesh, sorted: &TriangleBvh) -> Vec<usize> {
         if !self.volumes.iter().any(|volume| *volume < 0.0) {
             return Vec::new();
         }
@@ -123,13 +123,13 @@ impl Bodies {
     fn winding_of_others(
         &self,
         mesh: &Mesh,
-        sorted: &Sorted,
+        sorted: &TriangleBvh,
         body: usize,
         signs: &[i32],
         point: DVec3,
         near: f64,
     ) -> Option<i32> {
-        let at = Point::new(Definition::Given(point));
+        let at = ImplicitPoint::new(PointDefinition::Given(point));
         let (mut winding, mut is_near) = (0, false);
         let beside = Bounds { min: point - near, max: (point + near).with_x(f64::INFINITY) };
         sorted.touching(beside, |triangle| {
@@ -161,15 +161,15 @@ fn join_around(mesh: &Mesh, around: &[(u64, u32, u32)], joined: &mut UnionFind) 
         let angle = if triangle == first { 0.0 } else { (to.dot(up) * along.length()).atan2(to.dot(out)) };
         let angle = if angle < -SAME_ANGLE { angle + std::f64::consts::TAU } else { angle };
         let is_forth = (0..3).any(|k| [corners[k], corners[(k + 1) % 3]] == ends);
-        Blade { angle, is_forth, triangle }
+        RadialTriangle { angle, is_forth, triangle }
     };
-    let mut blades: Vec<Blade> = around.iter().map(fan).collect();
+    let mut blades: Vec<RadialTriangle> = around.iter().map(fan).collect();
     blades.sort_by(|one, two| one.angle.total_cmp(&two.angle).then(one.triangle.cmp(&two.triangle)));
-    let lies_on = |one: &Blade, two: &Blade| one.is_forth == two.is_forth && (one.angle - two.angle).abs() < SAME_ANGLE;
+    let lies_on = |one: &RadialTriangle, two: &RadialTriangle| one.is_forth == two.is_forth && (one.angle - two.angle).abs() < SAME_ANGLE;
     // The second time around, what was left open the first time is closed by what had nothing to close then.
-    let (mut open, mut left): (Vec<Blade>, Vec<Blade>) = (Vec::new(), blades);
+    let (mut open, mut left): (Vec<RadialTriangle>, Vec<RadialTriangle>) = (Vec::new(), blades);
     for _ in 0..2 {
-        let mut unmatched: Vec<Blade> = Vec::new();
+        let mut unmatched: Vec<RadialTriangle> = Vec::new();
         let mut next = 0;
         while let Some(&blade) = left.get(next) {
             let Some(&last) = open.last().filter(|_| blade.is_forth) else {
@@ -191,7 +191,7 @@ fn join_around(mesh: &Mesh, around: &[(u64, u32, u32)], joined: &mut UnionFind) 
 
 /// A triangle at an edge.
 #[derive(Clone, Copy)]
-struct Blade {
+struct RadialTriangle {
     /// Around the edge from the first triangle, radians.
     angle: f64,
     /// Whether it runs along the edge from its lower vertex to its higher.
@@ -215,9 +215,9 @@ pub fn certain_volume(mesh: &Mesh, triangles: impl Iterator<Item = usize> + Clon
     if sixfold.abs() > 600.0 * f64::EPSILON * reach.powi(3) * f64::from(count) {
         return sixfold / 6.0;
     }
-    let sixfold = triangles.fold(Exact::default(), |sum, triangle| {
-        let [a, b, c] = mesh.corners(triangle).map(|p| p.to_array().map(Exact::from));
+    let sixfold = triangles.fold(ExactNumber::default(), |sum, triangle| {
+        let [a, b, c] = mesh.corners(triangle).map(|p| p.to_array().map(ExactNumber::from));
         sum + dot(&a, &cross(&b, &c))
     });
-    sixfold.over(&Exact::from(6.0))
+    sixfold.over(&ExactNumber::from(6.0))
 }

@@ -8,7 +8,7 @@ use super::mass::Moments;
 use super::{ExactSolid, Mass, PrimitiveError};
 use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
-use crate::surface::{Parallelogram, Placed, Surface, TessellationError, Tolerance, tessellate};
+use crate::surface::{Parallelogram, TransformedSurface, Surface, TessellationError, Tolerance, tessellate};
 
 /// Each direction of a surface is divided so often for the integrals over it, with a rule of [`NODES`] points in each part.
 const PARTS: usize = 6;
@@ -86,7 +86,7 @@ impl Body {
 
     /// The body moved by an affine map that is not singular.
     pub fn placed(self, placement: DAffine3) -> Body {
-        let moved = |surface| Arc::new(Placed::new(surface, placement)) as Arc<dyn Surface>;
+        let moved = |surface| Arc::new(TransformedSurface::new(surface, placement)) as Arc<dyn Surface>;
         let is_mirrored = placement.matrix3.determinant() < 0.0;
         let face = |face: Face| {
             let corners = face.corners.iter().map(|corner| placement.transform_point3(*corner)).collect();

@@ -2,7 +2,7 @@
 
 use super::boolean::{Operand, mates};
 use crate::mesh::Mesh;
-use crate::octree::Sorted;
+use crate::octree::TriangleBvh;
 use std::sync::{Arc, OnceLock};
 
 /// What a closed surface bounds.
@@ -20,7 +20,7 @@ use std::sync::{Arc, OnceLock};
 pub struct Solid {
     pub(super) mesh: Mesh,
     /// Its triangles by place, once someone asked for them.
-    sorted: OnceLock<Arc<Sorted>>,
+    sorted: OnceLock<Arc<TriangleBvh>>,
     /// Those that make one face with another, once an operation asked for them.
     mates: OnceLock<Arc<Vec<u32>>>,
 }
@@ -48,8 +48,8 @@ impl Solid {
     }
 
     /// Its triangles by place.
-    pub fn sorted(&self) -> &Sorted {
-        self.sorted.get_or_init(|| Arc::new(Sorted::new(&self.mesh.vertices, &self.mesh.triangles)))
+    pub fn sorted(&self) -> &TriangleBvh {
+        self.sorted.get_or_init(|| Arc::new(TriangleBvh::new(&self.mesh.vertices, &self.mesh.triangles)))
     }
 
     pub(super) fn operand(&self) -> Operand<'_> {

@@ -2,7 +2,7 @@
 
 use super::{Expression, Outcome, Solid, SolidError};
 use crate::mesh::Mesh;
-use crate::surface::{Placed, Surface};
+use crate::surface::{TransformedSurface, Surface};
 use glam::{DAffine3, DVec2, DVec3};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -156,7 +156,7 @@ pub fn moved(
         }
     }
     let moved = |surface: &Option<Arc<dyn Surface>>| {
-        surface.clone().map(|surface| Arc::new(Placed::new(surface, *placement)) as Arc<dyn Surface>)
+        surface.clone().map(|surface| Arc::new(TransformedSurface::new(surface, *placement)) as Arc<dyn Surface>)
     };
     (mesh, surfaces.iter().map(moved).collect())
 }

@@ -35,7 +35,7 @@ impl ExactSolid {
     /// [`GlueError`] if there are no such faces or the solids overlap.
     pub fn glued(&self, other: &ExactSolid) -> Result<ExactSolid, GlueError> {
         let (one, two) = (self.solid().mesh(), other.solid().mesh());
-        let (one_faces, two_faces) = (Faces::of(one), Faces::of(two));
+        let (one_faces, two_faces) = (FlatFaces::of(one), FlatFaces::of(two));
         let borders: HashMap<&[Side], usize> = one_faces.borders.iter().map(Vec::as_slice).zip(0..).collect();
         let (mut one_goes, mut two_goes) = (vec![false; one_faces.borders.len()], vec![false; two_faces.borders.len()]);
         for (face, border) in two_faces.borders.iter().enumerate() {
@@ -60,15 +60,15 @@ impl ExactSolid {
 }
 
 /// The flat faces of a mesh.
-struct Faces {
+struct FlatFaces {
     /// The face of each triangle.
     of: Vec<usize>,
     /// The sides around each face, sorted.
     borders: Vec<Vec<Side>>,
 }
 
-impl Faces {
-    fn of(mesh: &Mesh) -> Faces {
+impl FlatFaces {
+    fn of(mesh: &Mesh) -> FlatFaces {
         let sides = |t: usize| [0, 1, 2].map(|k| [mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]]);
         let all = || (0..mesh.triangles.len()).flat_map(|t| sides(t).map(|side| (side, t)));
         let of_side: HashMap<[u32; 2], usize> = all().collect();
@@ -96,7 +96,7 @@ impl Faces {
             border.sort_unstable();
             borders.push(border);
         }
-        Faces { of, borders }
+        FlatFaces { of, borders }
     }
 
     /// The mesh without some faces.

@@ -1,6 +1,6 @@
 //! From meshes to solids: what must hold is checked, what does no harm is put right.
 
-use super::bodies::{Bodies, certain_volume};
+use super::bodies::{Shells, certain_volume};
 use super::boolean::{Lattice, Resolution, resolve};
 use super::cleaning::{check_edges, dissolve, without_collapsed};
 use super::tangle::overlaps;
@@ -80,7 +80,7 @@ pub fn imported_on_lattice(mesh: Mesh) -> Result<(Solid, Option<SolidError>), So
 /// The error of a solid of which bodies face inwards, if some do.
 fn inside_out(solid: &Solid) -> Option<SolidError> {
     let mesh = solid.mesh();
-    let bodies = Bodies::of(mesh);
+    let bodies = Shells::of(mesh);
     let turned = bodies.inside_out(mesh, solid.sorted());
     let largest = turned.iter().copied().min_by(|&one, &two| bodies.volume(one).total_cmp(&bodies.volume(two)))?;
     let near = mesh.corners(bodies.triangles(largest)[0] as usize)[0];

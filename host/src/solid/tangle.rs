@@ -3,7 +3,7 @@
 use super::SolidError;
 use super::boolean::overlapping_up_to;
 use crate::mesh::Mesh;
-use crate::octree::Sorted;
+use crate::octree::TriangleBvh;
 
 /// Most places where three triangles cross each other. Putting a surface right takes about 50 us for each, and 1 kB.
 const MOST_TRIPLES: usize = 1_000_000;
@@ -14,7 +14,7 @@ const MOST_PAIRS: usize = 500_000;
 ///
 /// # Errors
 /// [`SolidError::Tangled`] where there are too many, or three of them cross each other too often.
-pub(super) fn overlaps(mesh: &Mesh, sorted: &Sorted) -> Result<Vec<[u32; 2]>, SolidError> {
+pub(super) fn overlaps(mesh: &Mesh, sorted: &TriangleBvh) -> Result<Vec<[u32; 2]>, SolidError> {
     let pairs = overlapping_up_to(mesh, sorted, MOST_PAIRS);
     let too_many = |what, count, most| if count > most { Err(SolidError::Tangled { what, most }) } else { Ok(()) };
     too_many("pairs of triangles cross", pairs.len(), MOST_PAIRS)?;

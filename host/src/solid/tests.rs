@@ -3,8 +3,8 @@
 use super::boolean::{self, Expression, Outcome, overlapping_up_to, resolve};
 use super::{Solid, SolidError};
 use crate::mesh::{Mesh, bunny};
-use crate::numeric::exact::{Exact, cross, dot};
-use crate::octree::Sorted;
+use crate::numeric::exact::{ExactNumber, cross, dot};
+use crate::octree::TriangleBvh;
 use crate::surface::{Sphere, Surface, Tolerance, box_faces, tessellate};
 use glam::{DAffine3, DVec3};
 use rand::{RngExt, SeedableRng};
@@ -36,7 +36,7 @@ fn balanced(mesh: &Mesh) -> bool {
 }
 
 fn evaluate(meshes: Vec<&Mesh>, expression: &Expression) -> Outcome {
-    let sorted: Vec<Sorted> = meshes.iter().map(|mesh| Sorted::new(&mesh.vertices, &mesh.triangles)).collect();
+    let sorted: Vec<TriangleBvh> = meshes.iter().map(|mesh| TriangleBvh::new(&mesh.vertices, &mesh.triangles)).collect();
     let mates: Vec<Vec<u32>> = meshes.iter().map(|mesh| boolean::mates(mesh)).collect();
     let operand = |k: usize| boolean::Operand { mesh: meshes[k], sorted: &sorted[k], mates: &mates[k], overlaps: &[] };
     boolean::evaluate((0..meshes.len()).map(operand).collect(), expression).unwrap()
@@ -141,12 +141,12 @@ fn spheres_and_bunnies_that_overlap() {
 
 /// The volume inside a mesh, without rounding but for the last.
 fn exact_volume(mesh: &Mesh) -> f64 {
-    let mut sum = Exact::default();
+    let mut sum = ExactNumber::default();
     for triangle in 0..mesh.triangles.len() {
-        let [a, b, c] = mesh.corners(triangle).map(|p| p.to_array().map(Exact::from));
+        let [a, b, c] = mesh.corners(triangle).map(|p| p.to_array().map(ExactNumber::from));
         sum = sum + dot(&a, &cross(&b, &c));
     }
-    sum.over(&Exact::from(6.0))
+    sum.over(&ExactNumber::from(6.0))
 }
 
 #[test]
@@ -367,7 +367,7 @@ fn surfaces_that_cross_themselves_are_refused_or_made_simple() {
             Err(SolidError::Crossing { winding: found, .. }) => assert_eq!(found, winding, "{name}"),
             other => panic!("{name}: {other:?}"),
         }
-        let overlaps = overlapping_up_to(&mesh, &Sorted::new(&mesh.vertices, &mesh.triangles), usize::MAX);
+        let overlaps = overlapping_up_to(&mesh, &TriangleBvh::new(&mesh.vertices, &mesh.triangles), usize::MAX);
         let simple = resolve(&mesh, &overlaps).unwrap().outcome.mesh;
         assert!((simple.signed_volume() - volume).abs() < 1e-15, "{name}: {} {volume}", simple.signed_volume());
         assert_eq!(Solid::new(simple.clone()).map(Solid::into_mesh), Ok(simple), "{name}");

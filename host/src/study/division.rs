@@ -2,7 +2,7 @@
 
 use super::{Knob, Options, Study, StudyError, Trial, sweep};
 use crate::mesh::Mesh;
-use crate::octree::{Sorted, hausdorff};
+use crate::octree::{TriangleBvh, hausdorff};
 use crate::render::Watch;
 use crate::scene::{Prepared, Scene};
 use crate::subdivision::Polyhedron;
@@ -82,7 +82,7 @@ impl Knob for Steps {
 
 /// The angles, degrees, and the distances between corners of `fine`, with their normals, and `mesh`, with its planes.
 fn differences(mesh: &Mesh, fine: &Mesh) -> Vec<[f64; 2]> {
-    let sorted = Sorted::new(&mesh.vertices, &mesh.triangles);
+    let sorted = TriangleBvh::new(&mesh.vertices, &mesh.triangles);
     let corners = |triangle: u32| mesh.corners(triangle as usize);
     let step = (fine.triangles.len() / MOST_SAMPLES).max(1);
     let of_triangle = |triangle: usize| {

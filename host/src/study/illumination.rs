@@ -3,12 +3,12 @@
 //! It needs no scene. It walks the table of the family and knows no member by name.
 
 use super::StudyError;
-use super::plot::{Axis, Plot, Point, Series};
+use super::plot::{Axis, Plot, PlotPoint, Series};
 use super::sweep::short;
 use crate::illumination::distribution::measure::{emitted_share, light_at, reciprocity_residual, seen_share};
 use crate::illumination::distribution::{Distribution, FAMILY};
-use crate::numeric::sampling::{Stream, even};
-use crate::render::{Amount, Memo, Watch};
+use crate::numeric::sampling::{RandomStream, even};
+use crate::render::{Progress, Memo, Watch};
 use serde::{Deserialize, Serialize};
 use std::hint::black_box;
 use std::sync::atomic::Ordering;
@@ -78,7 +78,7 @@ pub fn illumination(roughness: &[f64], watch: &Watch<'_>) -> Result<Illumination
             }
             let make = || Ok::<_, StudyError>(row(member.name, m, (member.make)(m)?.as_ref()));
             rows.push(Memo::next(watch.memo, make)?);
-            (watch.progress)(Amount::of(rows.len() as u64, steps, "distributions"));
+            (watch.progress)(Progress::of(rows.len() as u64, steps, "distributions"));
         }
     }
     Ok(IlluminationStudy { incidences: INCIDENCES.to_vec(), rows })
@@ -96,7 +96,7 @@ fn row(name: &str, roughness: f64, distribution: &dyn Distribution) -> Illuminat
     let sum: f64 = views.iter().map(|view| distribution.density(black_box(light), *view)).sum();
     black_box(sum);
     let evaluation = start.elapsed().as_secs_f64() * 1e9 / views.len().max(1) as f64;
-    let mut stream = Stream::new(SEED, 0);
+    let mut stream = RandomStream::new(SEED, 0);
     let points: Vec<[f64; 2]> = (0..TIMED).map(|_| stream.point()).collect();
     let start = Instant::now();
     let found = points.iter().filter_map(|point| distribution.sample(black_box(light), *point)).count();
@@ -176,7 +176,7 @@ impl IlluminationStudy {
                     .zip(shares)
                     // A member that leaves the picture would make the others flat.
                     .map(|(x, y)| (x, if (LOWEST..HIGHEST).contains(y) { *y } else { f64::NAN }))
-                    .map(|(x, y)| Point { x: *x, y, label: String::new() })
+                    .map(|(x, y)| PlotPoint { x: *x, y, label: String::new() })
                     .collect(),
             };
             let of_row = |row: &IlluminationRow| {

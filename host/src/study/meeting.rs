@@ -2,7 +2,7 @@
 //! iteration goes on.
 
 use super::{Knob, Options, Study, StudyError, Trial, sweep};
-use crate::intersection::{Intersection, Precision};
+use crate::intersection::{Intersection, CurvePrecision};
 use crate::render::Watch;
 use crate::scene::{Prepared, Scene, meetings};
 use glam::DVec3;
@@ -21,54 +21,54 @@ const MIDDLE: f64 = 1.0 / 500.0;
 
 /// What is set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum What {
+enum IntersectionParameter {
     Triangles,
     Newton,
 }
 
 /// The objects of a scene.
-struct Meetings {
+struct IntersectionStudy {
     scene: Scene,
     diagonal: f64,
     settings: u32,
-    what: What,
+    what: IntersectionParameter,
 }
 
 /// Makes the study of the tolerance of triangles.
 pub(super) fn triangles(scene: &Scene, options: &Options, watch: &Watch<'_>) -> Result<Study, StudyError> {
-    study(scene, options, watch, What::Triangles)
+    study(scene, options, watch, IntersectionParameter::Triangles)
 }
 
 /// Makes the study of the tolerance of Newton's iteration.
 pub(super) fn newton(scene: &Scene, options: &Options, watch: &Watch<'_>) -> Result<Study, StudyError> {
-    study(scene, options, watch, What::Newton)
+    study(scene, options, watch, IntersectionParameter::Newton)
 }
 
-fn study(scene: &Scene, options: &Options, watch: &Watch<'_>, what: What) -> Result<Study, StudyError> {
+fn study(scene: &Scene, options: &Options, watch: &Watch<'_>, what: IntersectionParameter) -> Result<Study, StudyError> {
     let mut scene = scene.clone();
     scene.objects.iter_mut().for_each(|object| object.tolerance = None);
-    if meetings(&scene, &Precision::default())?.iter().all(|m| m.intersection.branches.is_empty()) {
+    if meetings(&scene, &CurvePrecision::default())?.iter().all(|m| m.intersection.branches.is_empty()) {
         return Err(StudyError::Nothing("no two objects of the scene meet in a curve"));
     }
     let diagonal = Prepared::new(&scene)?.bounds.diagonal();
-    sweep(&Meetings { scene, diagonal, settings: options.settings.clamp(1, 7), what }, watch)
+    sweep(&IntersectionStudy { scene, diagonal, settings: options.settings.clamp(1, 7), what }, watch)
 }
 
-impl Knob for Meetings {
+impl Knob for IntersectionStudy {
     type Answer = Vec<Intersection>;
 
     fn setting(&self) -> &'static str {
         match self.what {
-            What::Triangles => "tolerance of the triangles (scene units)",
-            What::Newton => "Newton tolerance (part of the size)",
+            IntersectionParameter::Triangles => "tolerance of the triangles (scene units)",
+            IntersectionParameter::Newton => "Newton tolerance (part of the size)",
         }
     }
 
     /// The reference of either is nine times finer than the finest, or what rounding allows.
     fn settings(&self) -> (Vec<f64>, f64) {
         let setting = |i: u32| match self.what {
-            What::Triangles => self.diagonal * COARSEST / STEP.powi(i as i32),
-            What::Newton => LOOSEST * NEWTON_STEP.powi(i as i32),
+            IntersectionParameter::Triangles => self.diagonal * COARSEST / STEP.powi(i as i32),
+            IntersectionParameter::Newton => LOOSEST * NEWTON_STEP.powi(i as i32),
         };
         ((0..self.settings).map(setting).collect(), setting(self.settings + 1))
     }
@@ -76,12 +76,12 @@ impl Knob for Meetings {
     fn run(&self, setting: f64, _: &Watch<'_>) -> Result<Trial<Vec<Intersection>>, StudyError> {
         let mut scene = self.scene.clone();
         let (tolerance, newton) = match self.what {
-            What::Triangles => (setting, Precision::default().newton),
-            What::Newton => (self.diagonal * MIDDLE, setting),
+            IntersectionParameter::Triangles => (setting, CurvePrecision::default().newton),
+            IntersectionParameter::Newton => (self.diagonal * MIDDLE, setting),
         };
         scene.settings.geometry.tolerance = Some(tolerance);
         let start = Instant::now();
-        let found = meetings(&scene, &Precision { newton, chord: None })?;
+        let found = meetings(&scene, &CurvePrecision { newton, chord: None })?;
         let seconds = start.elapsed().as_secs_f64();
         let answer: Vec<Intersection> = found.into_iter().map(|meeting| meeting.intersection).collect();
         let count = |of: fn(&Intersection) -> usize| answer.iter().map(of).sum::<usize>() as f64;

@@ -24,9 +24,9 @@ pub use error::StudyError;
 pub use illumination::{IlluminationRow, IlluminationStudy, illumination};
 pub use knobs::{KNOBS, KnobRow};
 pub use options::Options;
-pub use plot::{Axis, Plot, PlotError, Point, Series};
+pub use plot::{Axis, Plot, PlotError, PlotPoint, Series};
 pub use rendering::{
-    Bend, KnobStudy, Measures, RENDER_KNOBS, RENDER_OPTIONS, RenderKnob, RenderRow, RenderStudy, renderers, studied,
+    ErrorFloor, KnobStudy, ErrorMeasures, RENDER_KNOBS, RENDER_OPTIONS, RenderKnob, RenderRow, RenderStudy, renderers, studied,
     usual,
 };
-pub use sweep::{Knob, Row, Study, Trial, sweep};
+pub use sweep::{Knob, StudyRow, Study, Trial, sweep};

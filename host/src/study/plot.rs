@@ -80,12 +80,12 @@ impl Axis {
 }
 
 /// The places along an axis, and those of its ticks.
-struct Places {
+struct AxisTicks {
     range: Range<f64>,
     ticks: Vec<f64>,
 }
 
-impl Ranged for Places {
+impl Ranged for AxisTicks {
     type FormatOption = DefaultFormatting;
     type ValueType = f64;
 
@@ -129,12 +129,12 @@ pub struct Series {
     pub name: String,
     /// Its points; those that are no numbers, or not above 0 on a logarithmic axis, have no place there, and no line leads
     /// past them.
-    pub points: Vec<Point>,
+    pub points: Vec<PlotPoint>,
 }
 
 /// A point of a curve.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Point {
+pub struct PlotPoint {
     /// On the horizontal axis.
     pub x: f64,
     /// On the vertical axis.
@@ -194,18 +194,18 @@ impl Plot {
     }
 
     /// Whether a point has a place on the axes.
-    fn has_place(&self, point: &Point) -> bool {
+    fn has_place(&self, point: &PlotPoint) -> bool {
         let has_place = |axis: Axis, x: f64| x.is_finite() && (axis == Axis::Linear || x > 0.0);
         has_place(self.x_axis, point.x) && has_place(self.y_axis, point.y)
     }
 
     /// The points that have a place on the axes.
-    fn visible<'a>(&self, series: &'a Series) -> impl Iterator<Item = &'a Point> {
+    fn visible<'a>(&self, series: &'a Series) -> impl Iterator<Item = &'a PlotPoint> {
         series.points.iter().filter(|point| self.has_place(point))
     }
 
     /// Least and greatest place on an axis, with a small margin; on a logarithmic one at least a factor of four apart.
-    fn range(&self, axis: Axis, of: impl Fn(&Point) -> f64) -> Option<(f64, f64)> {
+    fn range(&self, axis: Axis, of: impl Fn(&PlotPoint) -> f64) -> Option<(f64, f64)> {
         let values = self.series.iter().flat_map(|series| self.visible(series)).map(of);
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         if low > high {
@@ -240,7 +240,7 @@ impl Plot {
         let points = |n: u32| f64::from(n * scale);
         let (x_ticks, y_ticks) = (self.x_axis.ticks(x0, x1), self.y_axis.ticks(y0, y1));
         let (x_axis, y_axis) = (self.x_axis, self.y_axis);
-        let place = |p: &Point| (x_axis.place(p.x), y_axis.place(p.y));
+        let place = |p: &PlotPoint| (x_axis.place(p.x), y_axis.place(p.y));
         area.fill(&WHITE).map_err(|e| failed(&e))?;
         let (head, body) = area.split_vertically(54 * scale);
         let dark = RGBColor(30, 30, 30);
@@ -256,7 +256,7 @@ impl Plot {
             .margin_right(12 * scale)
             .x_label_area_size(46 * scale)
             .y_label_area_size(74 * scale)
-            .build_cartesian_2d(Places { range: x0..x1, ticks: x_ticks }, Places { range: y0..y1, ticks: y_ticks })
+            .build_cartesian_2d(AxisTicks { range: x0..x1, ticks: x_ticks }, AxisTicks { range: y0..y1, ticks: y_ticks })
             .map_err(|e| failed(&e))?;
         chart
             .configure_mesh()
@@ -298,7 +298,7 @@ impl Plot {
             let small = TextStyle::from((FONT, points(12))).color(&color).pos(corner);
             let beside_point = (-6 * scale as i32, 3 * scale as i32);
             let beside =
-                |p: &Point| EmptyElement::at(place(p)) + Text::new(p.label.clone(), beside_point, small.clone());
+                |p: &PlotPoint| EmptyElement::at(place(p)) + Text::new(p.label.clone(), beside_point, small.clone());
             chart.draw_series(self.visible(series).map(beside)).map_err(|e| failed(&e))?;
             let middle = 20 + row * index as u32;
             let (on, off) = strokes;
@@ -352,7 +352,7 @@ mod tests {
     use super::*;
 
     fn sample() -> Plot {
-        let point = |i: i32| Point { x: 0.01 * 2f64.powi(i), y: 0.1 * 0.6f64.powi(i), label: (1 << i).to_string() };
+        let point = |i: i32| PlotPoint { x: 0.01 * 2f64.powi(i), y: 0.1 * 0.6f64.powi(i), label: (1 << i).to_string() };
         Plot {
             title: "A title".into(),
             x_label: "run time (s)".into(),

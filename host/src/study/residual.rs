@@ -24,7 +24,7 @@ const MEASURED_STEPS: usize = 4;
 type Surfaces = Vec<Arc<dyn Surface>>;
 
 /// A shape of exact surfaces, in its own coordinates.
-struct Exact<'a> {
+struct ExactShape<'a> {
     shape: &'a Shape,
     /// Its surfaces, if it has each as a whole: then their triangles are adaptive.
     whole: Option<Surfaces>,
@@ -32,7 +32,7 @@ struct Exact<'a> {
 
 /// Exact surfaces of a scene.
 struct Residual<'a> {
-    shapes: Vec<Exact<'a>>,
+    shapes: Vec<ExactShape<'a>>,
     coarsest: f64,
     angle: f64,
     settings: u32,
@@ -51,12 +51,12 @@ pub(super) fn study(scene: &Scene, options: &Options, watch: &Watch<'_>) -> Resu
 }
 
 /// Adds a shape if its surfaces are known, or else the operands that it is made of.
-fn collect<'a>(shape: &'a Shape, tolerance: Tolerance, shapes: &mut Vec<Exact<'a>>) -> Result<(), StudyError> {
+fn collect<'a>(shape: &'a Shape, tolerance: Tolerance, shapes: &mut Vec<ExactShape<'a>>) -> Result<(), StudyError> {
     match shape {
         Shape::Composite(composite) => composite.operands.iter().try_for_each(|o| collect(&o.shape, tolerance, shapes)),
         Shape::Subdivision(_) => Ok(()),
         _ if shape.is_exact_and_curved() => {
-            shapes.push(Exact { shape, whole: whole(shape, tolerance)? });
+            shapes.push(ExactShape { shape, whole: whole(shape, tolerance)? });
             Ok(())
         }
         _ => Ok(()),
@@ -97,7 +97,7 @@ impl Knob for Residual<'_> {
             return Ok(Trial { answer: Vec::new(), seconds: 0.0, counts: Vec::new() });
         }
         let start = Instant::now();
-        let triangles = |exact: &Exact<'_>| match &exact.whole {
+        let triangles = |exact: &ExactShape<'_>| match &exact.whole {
             Some(whole) => Ok((tessellate_adaptively(whole, Tolerance::new(setting, 180.0))?, whole.clone())),
             None => {
                 let made = exact.shape.made(Tolerance::new(setting, self.angle))?;

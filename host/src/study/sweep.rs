@@ -1,8 +1,8 @@
 //! One knob through all its settings: run time, errors, table, CSV and plot.
 
 use super::StudyError;
-use super::plot::{Axis, Plot, Point, Series};
-use crate::render::{Amount, Memo, Watch};
+use super::plot::{Axis, Plot, PlotPoint, Series};
+use crate::render::{Progress, Memo, Watch};
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::Ordering;
 
@@ -61,12 +61,12 @@ pub struct Study {
     /// Names of the counts.
     pub count_names: Vec<String>,
     /// One row for each setting.
-    pub rows: Vec<Row>,
+    pub rows: Vec<StudyRow>,
 }
 
 /// One setting of a study.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Row {
+pub struct StudyRow {
     /// The setting.
     pub setting: f64,
     /// Its run time, seconds.
@@ -79,8 +79,8 @@ pub struct Row {
 
 /// A setting that was tried.
 #[derive(Serialize, Deserialize)]
-struct Tried {
-    row: Row,
+struct TriedSetting {
+    row: StudyRow,
     count_names: Vec<String>,
 }
 
@@ -99,8 +99,8 @@ pub fn sweep<K: Knob>(knob: &K, watch: &Watch<'_>) -> Result<Study, StudyError> 
     let mut rows = Vec::new();
     // The first run warms the machine; its time is not kept.
     let reference = run(finest)?;
-    (watch.progress)(Amount::of(1, steps, "measurements"));
-    let tried = |setting| -> Result<Tried, StudyError> {
+    (watch.progress)(Progress::of(1, steps, "measurements"));
+    let tried = |setting| -> Result<TriedSetting, StudyError> {
         let mut trial = run(setting)?;
         let mut spent = trial.seconds;
         for _ in 1..MOST_TRIALS {
@@ -117,14 +117,14 @@ pub fn sweep<K: Knob>(knob: &K, watch: &Watch<'_>) -> Result<Study, StudyError> 
         let errors = knob.errors(&trial, &reference)?;
         let count_names = trial.counts.iter().map(|c| c.0.to_owned()).collect();
         let counts = trial.counts.iter().map(|c| c.1).collect();
-        Ok(Tried { row: Row { setting, seconds: trial.seconds, errors, counts }, count_names })
+        Ok(TriedSetting { row: StudyRow { setting, seconds: trial.seconds, errors, counts }, count_names })
     };
     let mut count_names = Vec::new();
     for (index, &setting) in settings.iter().enumerate() {
         let tried = Memo::next(watch.memo, || tried(setting))?;
         count_names = tried.count_names;
         rows.push(tried.row);
-        (watch.progress)(Amount::of(index as u64 + 2, steps, "measurements"));
+        (watch.progress)(Progress::of(index as u64 + 2, steps, "measurements"));
     }
     Ok(Study {
         setting: knob.setting().to_owned(),
@@ -144,7 +144,7 @@ impl Study {
         names
     }
 
-    fn cells(row: &Row) -> Vec<f64> {
+    fn cells(row: &StudyRow) -> Vec<f64> {
         let mut cells = vec![row.setting, row.seconds];
         cells.extend(&row.errors);
         cells.push(row.errors.last().copied().unwrap_or(0.0) * row.seconds);
@@ -188,13 +188,13 @@ impl Study {
         }
         // All curves have their points at the same run times: one row of labels serves them all.
         let label =
-            |i: usize, row: &Row| if i + 1 == self.error_names.len() { short(row.setting) } else { String::new() };
+            |i: usize, row: &StudyRow| if i + 1 == self.error_names.len() { short(row.setting) } else { String::new() };
         let series = self.error_names.iter().enumerate().map(|(i, name)| Series {
             name: name.clone(),
             points: self
                 .rows
                 .iter()
-                .map(|row| Point { x: row.seconds, y: row.errors[i], label: label(i, row) })
+                .map(|row| PlotPoint { x: row.seconds, y: row.errors[i], label: label(i, row) })
                 .collect(),
         });
         Plot {
@@ -216,7 +216,7 @@ impl Study {
             points: self
                 .rows
                 .iter()
-                .map(|row| Point { x: row.setting, y: row.counts[i], label: String::new() })
+                .map(|row| PlotPoint { x: row.setting, y: row.counts[i], label: String::new() })
                 .collect(),
         });
         Plot {

@@ -5,7 +5,7 @@ use super::{Knob, Options, Study, StudyError, Trial, sweep};
 use crate::picture::{Picture, difference};
 use crate::plan::Plan;
 use crate::render::ray_tracer;
-use crate::render::{Order, Renderer, Watch};
+use crate::render::{RenderOrder, Renderer, Watch};
 use crate::scene::{Prepared, Scene};
 use std::time::Instant;
 
@@ -73,7 +73,7 @@ impl Knob for Tessellation {
         let plan = Plan::new(&prepared, &prepared.view());
         let tracer = ray_tracer(&prepared, &plan)?;
         let build = start.elapsed().as_secs_f64();
-        let order = Order { threads: self.options.threads, ..Order::of(&scene.settings) };
+        let order = RenderOrder { threads: self.options.threads, ..RenderOrder::of(&scene.settings) };
         let rendering = tracer.render(&prepared.view(), &order, watch)?;
         let chord_error = scene.chord_error()?;
         let counts = vec![

@@ -6,7 +6,7 @@ use crate::illumination::Light;
 use crate::illumination::Paint;
 use crate::illumination::material::Classic;
 use crate::render::Watch;
-use crate::scene::{Cage, Composite, Object, Operation, Scene, Sculpture, Settings, Shape, Sheet};
+use crate::scene::{Cage, Composite, Object, Operation, Scene, Sculpture, Settings, Shape, SurfaceSheet};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec3};
 
@@ -96,7 +96,7 @@ fn adaptive_triangles_keep_their_tolerance() {
 fn the_residual_of_any_exact_surface_falls_with_its_tolerance() {
     let torus = Shape::from(Primitive::Torus { ring: 2.0, tube: 0.5 });
     let surface = Box::new(crate::surface::rational_torus(2.0, 0.5).expect("a torus"));
-    let sculpture = Sculpture { sheets: vec![Sheet::Spline { surface, loops: Vec::new() }] };
+    let sculpture = Sculpture { sheets: vec![SurfaceSheet::Spline { surface, loops: Vec::new() }] };
     let tube = Shape::from(Primitive::Cylinder { radius: 0.5, height: 4.0 });
     let operands = vec![scene(torus.clone()).objects.remove(0), scene(tube.clone()).objects.remove(0)];
     let both = Composite { operation: Operation::Union, operands, nesting: 1 };

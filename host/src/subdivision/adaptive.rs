@@ -13,7 +13,7 @@ use glam::{DVec2, DVec3};
 
 use super::creases::Creases;
 use super::error::SubdivisionError;
-use super::limit::{Limit, Limits, Rim, distinct};
+use super::limit::{Limit, Limits, SharpRim, distinct};
 use super::polyhedron::{NONE, Polyhedron};
 use crate::mesh::Mesh;
 
@@ -39,12 +39,12 @@ pub(super) fn mesh(polyhedron: &Polyhedron, tolerance: f64) -> Result<Mesh, Subd
 /// A face of the polyhedron, or of what steps made of it.
 struct Face {
     corners: Vec<DVec3>,
-    rim: Rc<Rim>,
+    rim: Rc<SharpRim>,
     refined: OnceCell<Rc<Face>>,
 }
 
 impl Face {
-    fn new(corners: Vec<DVec3>, rim: Rim) -> Rc<Face> {
+    fn new(corners: Vec<DVec3>, rim: SharpRim) -> Rc<Face> {
         Rc::new(Face { corners, rim: Rc::new(rim), refined: OnceCell::new() })
     }
 
@@ -57,14 +57,14 @@ impl Face {
 
 /// A face as one of those around a vertex, and which of its corners is that vertex.
 #[derive(Clone)]
-struct Place {
+struct FanCorner {
     face: Rc<Face>,
     corner: usize,
 }
 
-impl Place {
-    fn new(face: &Rc<Face>, corner: usize) -> Place {
-        Place { face: face.clone(), corner }
+impl FanCorner {
+    fn new(face: &Rc<Face>, corner: usize) -> FanCorner {
+        FanCorner { face: face.clone(), corner }
     }
 
     /// The number of the corner so many corners behind.
@@ -90,7 +90,7 @@ impl Place {
 /// The part of the surface between the limit points of the faces around a vertex.
 struct Patch {
     /// The faces, counter-clockwise; empty for a flat patch, which is not divided.
-    fan: Vec<Place>,
+    fan: Vec<FanCorner>,
     /// Whether the faces go all around the vertex; else the last side lies on a crease or a border.
     is_closed: bool,
     /// The limit points: vertices of the surface, the normals there on this side of a crease, and the parameters.
@@ -146,12 +146,12 @@ impl Surface {
     fn patches(&mut self, creases: &Creases<'_>, limits: &Limits) -> Vec<Patch> {
         let mesh = creases.mesh;
         let faces: Vec<Rc<Face>> = (0..mesh.face_count())
-            .map(|face| Face::new(mesh.face_points(face).collect(), Rim::of(creases, face)))
+            .map(|face| Face::new(mesh.face_points(face).collect(), SharpRim::of(creases, face)))
             .collect();
         let face_of = mesh.face_of();
         let mut known = HashMap::new();
         let mut patches = Vec::new();
-        let mut add = |run: Vec<(u32, u32)>, fan: Vec<Place>, is_closed| {
+        let mut add = |run: Vec<(u32, u32)>, fan: Vec<FanCorner>, is_closed| {
             let normal = |owner: u32| limits.of_corners[owner as usize].normal;
             let points = run.iter().zip(domain(run.len())).map(|(&(name, owner), uv)| (name, normal(owner), uv));
             let points: Vec<Point> = points.collect();
@@ -173,9 +173,9 @@ impl Surface {
             }
             let place = |&corner: &u32| {
                 let face = face_of[corner as usize];
-                Place::new(&faces[face as usize], (corner - mesh.starts[face as usize]) as usize)
+                FanCorner::new(&faces[face as usize], (corner - mesh.starts[face as usize]) as usize)
             };
-            let fan: Vec<Place> = run.iter().map(place).collect();
+            let fan: Vec<FanCorner> = run.iter().map(place).collect();
             let has_limits = fan.iter().all(|place| place.face.rim.limit(&place.face.corners).is_some());
             let run: Vec<(u32, u32)> = run.iter().map(|&corner| (limits.names[corner as usize], corner)).collect();
             // At the end of a crease the first and the last face shrink to one point.
@@ -290,18 +290,18 @@ impl Surface {
         let inner: Vec<u32> = middles.iter().map(|middle| self.new_side([middle.0, center], false)).collect();
         for k in 0..count {
             let end = patch.points[k].0;
-            let own = (Place::new(&division.refined[k], patch.fan[k].corner), patch.points[k], 0);
-            let vertex = (Place::new(&division.vertex, k), (center, division.center.normal, in_the_middle), 0);
+            let own = (FanCorner::new(&division.refined[k], patch.fan[k].corner), patch.points[k], 0);
+            let vertex = (FanCorner::new(&division.vertex, k), (center, division.center.normal, in_the_middle), 0);
             let side_part = |this: &Surface, edge: usize| this.half(patch.sides[edge], middles[edge].1, end);
             // Face, its limit point, and the side from there to the next.
             let behind = (k < edges).then(|| {
-                let place = Place::new(&division.edges[k], 0);
+                let place = FanCorner::new(&division.edges[k], 0);
                 (place, (middles[k].0, division.middles[k].normal, halfway(k)), inner[k])
             });
             let before = (k > 0 || patch.is_closed).then(|| {
                 let edge = (k + count - 1) % count;
                 let face = &division.edges[edge];
-                let place = Place::new(face, face.corners.len() - 1);
+                let place = FanCorner::new(face, face.corners.len() - 1);
                 (place, (middles[edge].0, division.middles[edge].normal, halfway(edge)), side_part(self, edge))
             });
             let run = match (behind, before, outer) {
@@ -440,18 +440,18 @@ impl Division {
     fn of(patch: &Patch) -> Division {
         let count = patch.fan.len();
         let refined: Vec<Rc<Face>> = patch.fan.iter().map(|place| place.face.refined().clone()).collect();
-        let places: Vec<Place> =
-            refined.iter().zip(&patch.fan).map(|(face, place)| Place::new(face, place.corner)).collect();
+        let places: Vec<FanCorner> =
+            refined.iter().zip(&patch.fan).map(|(face, place)| FanCorner::new(face, place.corner)).collect();
         let edges = if patch.is_closed { count } else { count - 1 };
         let edges: Vec<Rc<Face>> = (0..edges).map(|k| edge_face(&places[k], &places[(k + 1) % count])).collect();
-        let corners: Vec<DVec3> = places.iter().map(Place::here).collect();
+        let corners: Vec<DVec3> = places.iter().map(FanCorner::here).collect();
         let rim = if patch.is_closed {
-            Rim::default()
+            SharpRim::default()
         } else {
-            Rim { creases: (0..count).map(|k| k + 1 == count).collect(), held: vec![false; count] }
+            SharpRim { creases: (0..count).map(|k| k + 1 == count).collect(), held: vec![false; count] }
         };
         let vertex = Face::new(corners, rim);
-        let limit = |face: &Rc<Face>| Place::new(face, 0).limit();
+        let limit = |face: &Rc<Face>| FanCorner::new(face, 0).limit();
         let middles = edges.iter().map(limit).collect();
         Division { center: limit(&vertex), refined, edges, vertex, middles }
     }
@@ -459,21 +459,21 @@ impl Division {
 
 /// The face that a step makes of the edge between two faces around a vertex, from its corner within the first one. Its
 /// last corner lies within the second.
-fn edge_face(first: &Place, second: &Place) -> Rc<Face> {
+fn edge_face(first: &FanCorner, second: &FanCorner) -> Rc<Face> {
     let (end, end_beyond) = (first.last(), second.at(1));
     let rims = [&first.face.rim, &second.face.rim];
     let is_held = rims[0].held.get(end).copied().unwrap_or(false);
     let [a, b, c, d] = [first.here(), first.face.corners[end], second.face.corners[end_beyond], second.here()];
     if is_held {
-        return Face::new(vec![a, b, d], Rim { creases: vec![false; 3], held: vec![false, true, false] });
+        return Face::new(vec![a, b, d], SharpRim { creases: vec![false; 3], held: vec![false, true, false] });
     }
     // The edge ends at a crease if both faces have a side on it.
     let before_end = first.at(first.face.corners.len() - 2);
-    let is_crease = |rim: &Rim, side: usize| rim.creases.get(side).copied().unwrap_or(false);
+    let is_crease = |rim: &SharpRim, side: usize| rim.creases.get(side).copied().unwrap_or(false);
     if is_crease(rims[0], before_end) && is_crease(rims[1], end_beyond) {
-        return Face::new(vec![a, b, c, d], Rim { creases: vec![false, true, false, false], held: vec![false; 4] });
+        return Face::new(vec![a, b, c, d], SharpRim { creases: vec![false, true, false, false], held: vec![false; 4] });
     }
-    Face::new(vec![a, b, c, d], Rim::default())
+    Face::new(vec![a, b, c, d], SharpRim::default())
 }
 
 /// The distance of a point from a triangle, which may have shrunk to a side.

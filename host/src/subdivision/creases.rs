@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::polyhedron::{NONE, Polyhedron};
 use super::rings::by_face;
-use super::weights::{Held, held, hold, step};
+use super::weights::{Pinning, held, hold, step};
 
 /// What a polyhedron looks like to one step of the sharp rules.
 pub(super) struct Creases<'a> {
@@ -108,13 +108,13 @@ impl<'a> Creases<'a> {
     }
 
     /// How a corner of a face is held.
-    pub fn held(&self, corner: u32) -> Held {
+    pub fn held(&self, corner: u32) -> Pinning {
         let next = self.mesh.next[corner as usize];
         let last = self.last[corner as usize];
         let before_last = self.last[last as usize];
         let hold = |corner: u32| self.vertex_hold[self.mesh.corners[corner as usize] as usize];
         let sides = [before_last, last, corner, next].map(|side| self.mesh.sharpness(side));
-        Held::by(sides, [last, corner, next].map(hold))
+        Pinning::by(sides, [last, corner, next].map(hold))
     }
 
     /// The new positions of all corners.
@@ -131,7 +131,7 @@ impl<'a> Creases<'a> {
     }
 
     /// Joins the corners that coincide after this step: across creases, and around held vertices.
-    pub fn join(&self, joined: &mut Joined) {
+    pub fn join(&self, joined: &mut CornerSets) {
         for side in 0..self.mesh.corners.len() as u32 {
             let twin = self.mesh.twins[side as usize];
             if twin != NONE && self.is_crease(side) {
@@ -222,13 +222,13 @@ impl<'a> Creases<'a> {
 }
 
 /// Sets of corners that become one vertex.
-pub(super) struct Joined {
+pub(super) struct CornerSets {
     lower: Vec<u32>,
 }
 
-impl Joined {
-    pub fn new(count: usize) -> Joined {
-        Joined { lower: (0..count as u32).collect() }
+impl CornerSets {
+    pub fn new(count: usize) -> CornerSets {
+        CornerSets { lower: (0..count as u32).collect() }
     }
 
     /// The lowest corner of a set.

@@ -7,10 +7,10 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::creases::{Creases, Joined};
+use super::creases::{Creases, CornerSets};
 use super::polyhedron::{NONE, Polyhedron};
 use super::rings::{Rings, by_face};
-use super::weights::{Held, held, step, waves};
+use super::weights::{Pinning, held, step, waves};
 use crate::mesh::Mesh;
 
 /// So many steps bring the corners of a face that is held in several places to the limit within rounding.
@@ -97,9 +97,9 @@ pub(super) struct Limits {
 impl Limits {
     pub fn of(creases: &Creases<'_>) -> Limits {
         let mesh = creases.mesh;
-        let mut joined = Joined::new(mesh.corners.len());
+        let mut joined = CornerSets::new(mesh.corners.len());
         creases.join(&mut joined);
-        let rims: Vec<Rim> = (0..mesh.face_count()).map(|face| Rim::of(creases, face)).collect();
+        let rims: Vec<SharpRim> = (0..mesh.face_count()).map(|face| SharpRim::of(creases, face)).collect();
         for (face, rim) in rims.iter().enumerate() {
             let first = mesh.starts[face];
             if rim.is_smooth() {
@@ -131,22 +131,22 @@ impl Limits {
 
 /// What is sharp for ever around a face; both empty for a smooth face.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Rim {
+pub(super) struct SharpRim {
     /// Whether the side behind each corner is a crease or a border.
     pub creases: Vec<bool>,
     /// Whether each corner is held.
     pub held: Vec<bool>,
 }
 
-impl Rim {
-    pub fn of(creases: &Creases<'_>, face: usize) -> Rim {
+impl SharpRim {
+    pub fn of(creases: &Creases<'_>, face: usize) -> SharpRim {
         let sides = creases.mesh.starts[face]..creases.mesh.starts[face + 1];
         let vertex = |corner: u32| creases.mesh.corners[corner as usize] as usize;
-        let rim = Rim {
+        let rim = SharpRim {
             creases: sides.clone().map(|side| creases.is_crease(side)).collect(),
             held: sides.map(|corner| creases.vertex_hold[vertex(corner)] == 1.0).collect(),
         };
-        if rim.creases.contains(&true) || rim.held.contains(&true) { rim } else { Rim::default() }
+        if rim.creases.contains(&true) || rim.held.contains(&true) { rim } else { SharpRim::default() }
     }
 
     /// Whether nothing is sharp.
@@ -166,7 +166,7 @@ impl Rim {
             let [before_last, last, next] = [count - 2, count - 1, 1].map(|shift| (k + shift) % count);
             let one = |is: bool| f64::from(u8::from(is));
             let sides = [before_last, last, k, next].map(|side| one(self.creases[side]));
-            let hold = Held::by(sides, [last, k, next].map(|corner| one(self.held[corner])));
+            let hold = Pinning::by(sides, [last, k, next].map(|corner| one(self.held[corner])));
             *new = held(corners, k, hold, *new);
         }
         new

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use super::creases::{Creases, Joined};
+use super::creases::{Creases, CornerSets};
 use super::error::SubdivisionError;
 use super::polyhedron::Polyhedron;
 use super::strips;
@@ -24,7 +24,7 @@ pub(super) fn refined(mesh: &Polyhedron) -> Result<Polyhedron, SubdivisionError>
 /// Cuts corners and grinds edges, except where they are sharp. Creases keep their sharpness.
 fn ground(mesh: &Polyhedron) -> Result<Polyhedron, SubdivisionError> {
     let creases = Creases::of(mesh);
-    let mut joined = Joined::new(mesh.corners.len());
+    let mut joined = CornerSets::new(mesh.corners.len());
     creases.join(&mut joined);
     let (names, count) = joined.names(&creases.cut);
     let mut points = vec![DVec3::ZERO; count];

@@ -6,7 +6,7 @@
 
 use super::creases::Creases;
 use super::error::SubdivisionError;
-use super::limit::{Rim, Target};
+use super::limit::{SharpRim, Target};
 use super::polyhedron::{NONE, Polyhedron};
 
 /// How a face is divided.
@@ -53,7 +53,7 @@ impl Cut {
         if !sides.clone().any(|h| is_used_up(mesh.sharpness(h)) || is_used_up(of_vertex(h))) {
             return None;
         }
-        let attractors = Rim::of(creases, face).attractors();
+        let attractors = SharpRim::of(creases, face).attractors();
         if attractors.is_one {
             return None;
         }

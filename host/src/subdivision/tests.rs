@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use glam::{DMat3, DVec3};
 
 use super::*;
-use crate::numeric::sampling::Stream;
+use crate::numeric::sampling::RandomStream;
 
 mod creases;
 
@@ -19,7 +19,7 @@ fn cube() -> Polyhedron {
 
 /// A torus of `m` by `n` quadrangles with random positions: regular everywhere.
 fn torus(m: u32, n: u32) -> Polyhedron {
-    let mut stream = Stream::new(5, 0);
+    let mut stream = RandomStream::new(5, 0);
     let points = (0..m * n).map(|_| DVec3::new(stream.uniform(), stream.uniform(), stream.uniform())).collect();
     let at = |i: u32, j: u32| i % m + m * (j % n);
     let faces: Vec<[u32; 4]> = (0..m * n)
@@ -31,7 +31,7 @@ fn torus(m: u32, n: u32) -> Polyhedron {
 
 /// A sheet of `m` by `n` vertices with random heights.
 fn sheet(m: u32, n: u32) -> Polyhedron {
-    let mut stream = Stream::new(6, 0);
+    let mut stream = RandomStream::new(6, 0);
     let points = (0..m * n).map(|k| DVec3::new(f64::from(k % m), f64::from(k / m), stream.uniform())).collect();
     let faces: Vec<[u32; 4]> =
         (0..(m - 1) * (n - 1)).map(|k| k % (m - 1) + m * (k / (m - 1))).map(|k| [k, k + 1, k + 1 + m, k + m]).collect();
@@ -246,7 +246,7 @@ fn all_weights_are_positive_and_sum_to_one() {
     for n in 3..=64 {
         for bits in 0..81 {
             let part = |k: u32| f64::from(bits / 3_u32.pow(k) % 3) * 0.5;
-            let hold = weights::Held {
+            let hold = weights::Pinning {
                 here_forward: part(0),
                 there_forward: part(1),
                 here_backward: part(2),
@@ -460,7 +460,7 @@ fn a_tolerance_must_be_positive_and_may_be_refused() {
 
 #[test]
 fn any_sharpness_and_any_holes_keep_the_surface_whole() {
-    let mut stream = Stream::new(9, 0);
+    let mut stream = RandomStream::new(9, 0);
     for round in 0..120 {
         let whole = match round % 3 {
             0 => cube().subdivided(1).unwrap(),

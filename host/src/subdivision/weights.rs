@@ -15,7 +15,7 @@ pub(super) fn hold(sharpness: f64) -> f64 {
 /// A value of 1 at the beginning or end of a side holds that end: the curve along the side begins there, as a B-spline
 /// with a double knot at its end does.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Held {
+pub(super) struct Pinning {
     /// Here, along the side to the next corner.
     pub here_forward: f64,
     /// At the next corner, along the side from here.
@@ -26,9 +26,9 @@ pub(super) struct Held {
     pub there_backward: f64,
 }
 
-impl Held {
+impl Pinning {
     /// Nowhere.
-    pub const NOT: Held = Held { here_forward: 0.0, there_forward: 0.0, here_backward: 0.0, there_backward: 0.0 };
+    pub const NOT: Pinning = Pinning { here_forward: 0.0, there_forward: 0.0, here_backward: 0.0, there_backward: 0.0 };
 
     /// How a corner is held by the sides and corners around it.
     ///
@@ -38,13 +38,13 @@ impl Held {
     /// - `sides`: sharpness of the second side before the corner, of the one before it, of the one behind it, and of the
     ///   next.
     /// - `vertices`: how much the corner before, this one and the next one are held.
-    pub fn by(sides: [f64; 4], vertices: [f64; 3]) -> Held {
+    pub fn by(sides: [f64; 4], vertices: [f64; 3]) -> Pinning {
         let [before_last, last, here, next] = sides;
         let along = |side: f64, vertex: f64, other: f64| {
             // Between two sides that are nearly creases the corner is nearly cut: half as much is held.
             if side >= 1.0 { vertex } else { vertex.max(hold(other) * (1.0 - 0.5 * side)) }
         };
-        Held {
+        Pinning {
             here_forward: along(here, vertices[1], last),
             there_forward: along(here, vertices[2], next),
             here_backward: along(last, vertices[1], here),
@@ -106,8 +106,8 @@ pub(super) fn waves(corners: &[DVec3]) -> [DVec3; 2] {
 /// and goes over into the smooth rule as nothing is held. All weights are positive and their sum is 1.
 ///
 /// - `smooth`: the new position by [`step`].
-pub(super) fn held(corners: &[DVec3], index: usize, held: Held, smooth: DVec3) -> DVec3 {
-    if held == Held::NOT {
+pub(super) fn held(corners: &[DVec3], index: usize, held: Pinning, smooth: DVec3) -> DVec3 {
+    if held == Pinning::NOT {
         return smooth;
     }
     let count = corners.len();

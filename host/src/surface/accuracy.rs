@@ -9,7 +9,7 @@ use crate::mesh::Mesh;
 
 /// Distances between points of a mesh and the exact surface, model units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Accuracy {
+pub struct ChordError {
     /// The largest.
     pub maximum: f64,
     /// The root of their mean square, each triangle weighted by its area.
@@ -26,7 +26,7 @@ pub struct Accuracy {
 ///
 /// # Errors
 /// If the mesh lacks corner parameters or surface indices, or names a surface that is not there.
-pub fn chord_error<S: Surface>(mesh: &Mesh, surfaces: &[S], density: usize) -> Result<Accuracy, TessellationError> {
+pub fn chord_error<S: Surface>(mesh: &Mesh, surfaces: &[S], density: usize) -> Result<ChordError, TessellationError> {
     let count = mesh.triangles.len();
     if mesh.corner_parameters.len() != count || mesh.surfaces.len() != count {
         return Err(TessellationError::NoParameters);
@@ -43,7 +43,7 @@ pub fn chord_error<S: Surface>(mesh: &Mesh, surfaces: &[S], density: usize) -> R
     let measured: Vec<(f64, f64, f64)> = (0..count).into_par_iter().map(measure).collect();
     let area: f64 = measured.iter().map(|(.., area)| area).sum();
     let weighted: f64 = measured.iter().map(|(_, mean, area)| mean * area).sum();
-    Ok(Accuracy {
+    Ok(ChordError {
         maximum: measured.iter().map(|(maximum, ..)| *maximum).fold(0.0, f64::max),
         rms: if area > 0.0 { (weighted / area).sqrt() } else { 0.0 },
         samples: count * lattice(density.max(1)).len(),

@@ -9,7 +9,7 @@ use crate::mesh::bits;
 
 /// A side of a surface.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Side {
+pub(super) struct CurveUse {
     /// The curve; sides of neighbours have the same.
     pub curve: usize,
     /// Whether the side runs against the direction in which its curve was found first.
@@ -19,9 +19,9 @@ pub(super) struct Side {
 }
 
 /// All curves: their number, where each was found first (surface and side), and the four sides of each surface.
-pub(super) struct Borders {
+pub(super) struct SharedCurves {
     pub first: Vec<(usize, usize)>,
-    pub sides: Vec<[Side; 4]>,
+    pub sides: Vec<[CurveUse; 4]>,
 }
 
 /// The parameters at `fraction` of side `side`: 0 is v lowest, 1 is v highest (u rises along both), 2 is u lowest, 3 is u
@@ -35,10 +35,10 @@ pub(super) fn along_side([low, high]: [DVec2; 2], side: usize, fraction: f64) ->
     }
 }
 
-impl Borders {
+impl SharedCurves {
     /// Compares all sides by five points each, bit by bit.
-    pub fn of<S: Surface>(surfaces: &[S]) -> Borders {
-        let mut borders = Borders { first: Vec::new(), sides: Vec::with_capacity(surfaces.len()) };
+    pub fn of<S: Surface>(surfaces: &[S]) -> SharedCurves {
+        let mut borders = SharedCurves { first: Vec::new(), sides: Vec::with_capacity(surfaces.len()) };
         let mut curve_of: HashMap<[[u64; 3]; 5], usize> = HashMap::new();
         for (index, surface) in surfaces.iter().enumerate() {
             let domain = surface.domain();
@@ -50,15 +50,15 @@ impl Borders {
                 let is_point = key.iter().all(|point| *point == key[0]);
                 let known = |key| curve_of.get(key).copied().filter(|_| !is_point);
                 if let Some(curve) = known(&key) {
-                    return Side { curve, is_reversed: false, is_point };
+                    return CurveUse { curve, is_reversed: false, is_point };
                 }
                 if let Some(curve) = known(&turned) {
-                    return Side { curve, is_reversed: true, is_point };
+                    return CurveUse { curve, is_reversed: true, is_point };
                 }
                 let curve = borders.first.len();
                 borders.first.push((index, side));
                 curve_of.insert(key, curve);
-                Side { curve, is_reversed: false, is_point }
+                CurveUse { curve, is_reversed: false, is_point }
             });
             borders.sides.push(sides);
         }

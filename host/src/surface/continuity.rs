@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::border::{Borders, along_side};
+use super::border::{SharedCurves, along_side};
 use super::curvature::{Curved, normal_curvature};
 
 /// A side of the rectangle of parameters.
@@ -89,7 +89,7 @@ pub fn joint<A: Curved + ?Sized, B: Curved + ?Sized>(a: &A, b: &B, sides: [Surfa
 /// Sides are shared if they agree as [`super::tessellate`] asks. Where more than two surfaces meet in a side, each is
 /// compared with the next. The order is that of the surfaces.
 pub fn continuity<S: Curved>(surfaces: &[S], samples: usize) -> Vec<Joint> {
-    let borders = Borders::of(surfaces);
+    let borders = SharedCurves::of(surfaces);
     let mut last: Vec<Option<(usize, SurfaceSide)>> = vec![None; borders.first.len()];
     let mut pairs = Vec::new();
     for (surface, sides) in borders.sides.iter().enumerate() {

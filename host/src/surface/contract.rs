@@ -11,8 +11,8 @@ fn members() -> Vec<(&'static str, Box<dyn Surface>)> {
     let mirrored = DAffine3::from_scale(DVec3::new(-1.0, 1.0, 2.0));
     let mut members: Vec<(&'static str, Box<dyn Surface>)> = vec![
         ("sphere", Box::new(sphere.clone())),
-        ("skewed sphere", Box::new(Placed::new(sphere.clone(), skewed))),
-        ("mirrored sphere", Box::new(Placed::new(sphere, mirrored))),
+        ("skewed sphere", Box::new(TransformedSurface::new(sphere.clone(), skewed))),
+        ("mirrored sphere", Box::new(TransformedSurface::new(sphere, mirrored))),
         (
             "parallelogram",
             Box::new(Parallelogram::new(DVec3::ONE, DVec3::new(2.0, 0.1, 0.0), DVec3::new(0.3, 1.0, 0.4))),
@@ -46,12 +46,12 @@ fn turned() -> Vec<(&'static str, Box<dyn Surface>)> {
     ];
     let mut members: Vec<(&'static str, Box<dyn Surface>)> = Vec::new();
     for (name, profile) in profiles {
-        members.push((name, Box::new(Turned::whole(profile.clone()))));
-        members.push((name, Box::new(Turned::part(profile.reversed(), [-0.3, 0.35]))));
+        members.push((name, Box::new(SurfaceOfRevolution::whole(profile.clone()))));
+        members.push((name, Box::new(SurfaceOfRevolution::part(profile.reversed(), [-0.3, 0.35]))));
     }
-    members.push(("mirrored torus", Box::new(Placed::new(Turned::whole(torus.clone()), turn))));
+    members.push(("mirrored torus", Box::new(TransformedSurface::new(SurfaceOfRevolution::whole(torus.clone()), turn))));
     let flat = DAffine3::from_scale(DVec3::new(1.0, 0.5, 2.0));
-    members.push(("stretched torus", Box::new(Placed::new(Turned::whole(torus), flat))));
+    members.push(("stretched torus", Box::new(TransformedSurface::new(SurfaceOfRevolution::whole(torus), flat))));
     members
 }
 
@@ -61,10 +61,10 @@ fn swept() -> Vec<(&'static str, Box<dyn Surface>)> {
     let path = SplineCurve::new(Basis::clamped(3, 5).unwrap(), &path.map(DVec3::from_array), &[]).unwrap();
     let spine = Arc::new(Spine::new(path).unwrap());
     let edge = [DVec2::new(-0.4, 0.1), DVec2::new(0.3, -0.2)];
-    let part = |widening: Widening| Box::new(Swept::new(Arc::clone(&spine), widening, edge, [0.0, 1.0]));
+    let part = |widening: TwistAndTaper| Box::new(Swept::new(Arc::clone(&spine), widening, edge, [0.0, 1.0]));
     vec![
-        ("swept edge", part(Widening { turns: 0.0, scale: 1.0 }) as Box<dyn Surface>),
-        ("twisted and tapered edge", part(Widening { turns: 0.4, scale: 0.0 })),
+        ("swept edge", part(TwistAndTaper { turns: 0.0, scale: 1.0 }) as Box<dyn Surface>),
+        ("twisted and tapered edge", part(TwistAndTaper { turns: 0.4, scale: 0.0 })),
     ]
 }
 
@@ -181,11 +181,11 @@ fn second_derivatives_agree_with_differences_of_first_ones() {
     let mirror = DAffine3::from_scale(DVec3::new(-1.0, 1.0, 2.0));
     let members: Vec<Box<dyn Curved>> = vec![
         Box::new(Sphere::new(DVec3::ONE, 2.0)),
-        Box::new(Placed::new(Sphere::new(DVec3::ONE, 2.0), mirror)),
-        Box::new(Turned::whole(arc)),
-        Box::new(Turned::whole(Profile::Waist { across: 0.8, along: 1.2, reach: [-1.0, 1.0] })),
-        Box::new(Turned::whole(Profile::Bowl { across: 0.8, along: 1.2, reach: [-1.0, 1.0] })),
-        Box::new(Turned::whole(Profile::Parabola { apex: 1.0, rise: 0.4, reach: [0.0, 1.5] })),
+        Box::new(TransformedSurface::new(Sphere::new(DVec3::ONE, 2.0), mirror)),
+        Box::new(SurfaceOfRevolution::whole(arc)),
+        Box::new(SurfaceOfRevolution::whole(Profile::Waist { across: 0.8, along: 1.2, reach: [-1.0, 1.0] })),
+        Box::new(SurfaceOfRevolution::whole(Profile::Bowl { across: 0.8, along: 1.2, reach: [-1.0, 1.0] })),
+        Box::new(SurfaceOfRevolution::whole(Profile::Parabola { apex: 1.0, rise: 0.4, reach: [0.0, 1.5] })),
         Box::new(Parallelogram::new(DVec3::ONE, DVec3::X, DVec3::Y)),
         Box::new(teapot()[7].clone()),
     ];

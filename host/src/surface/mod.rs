@@ -32,7 +32,7 @@ mod tessellation;
 mod trim;
 mod turned;
 
-pub use accuracy::{Accuracy, chord_error};
+pub use accuracy::{ChordError, chord_error};
 pub use bezier::BezierPatch;
 pub use car_body::car_body;
 pub use continuity::{Joint, SurfaceSide, continuity, joint};
@@ -42,18 +42,18 @@ pub use join::{JoinError, Smoothness, joined};
 pub use nearest::nearest_from;
 pub use parallelogram::{Parallelogram, box_faces, ground};
 pub use patches::{PatchError, PatchProblem, PatchSet};
-pub use pierced::{Line, Pierced, pierced};
-pub use placed::Placed;
+pub use pierced::{PiercingLine, PiercingPoint, pierced};
+pub use placed::TransformedSurface;
 pub use profile::Profile;
 pub use revolution::{rational_sphere, rational_torus, revolved};
 pub use sphere::Sphere;
 pub use spline::{Direction, SplineSurface};
-pub use swept::{Spine, Swept, Widening};
+pub use swept::{Spine, Swept, TwistAndTaper};
 pub use teapot::{teapot, teapot_parts};
 pub use tensor::TensorPatch;
 pub use tessellation::{TessellationError, Tolerance, tessellate};
 pub use trim::{TrimEdge, TrimError, TrimmedSurface, tessellate_adaptively, tessellate_trimmed};
-pub use turned::Turned;
+pub use turned::SurfaceOfRevolution;
 
 use std::sync::Arc;
 

@@ -15,7 +15,7 @@ const CLEAR: f64 = 1e-3;
 
 /// Where a line goes through a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pierced {
+pub struct PiercingPoint {
     /// The parameters, within the domain.
     pub uv: DVec2,
     /// The outward unit normal.
@@ -26,7 +26,7 @@ pub struct Pierced {
 
 /// A line through a point near a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Line {
+pub struct PiercingLine {
     /// The point.
     pub from: DVec3,
     /// Any length but 0.
@@ -44,7 +44,7 @@ pub struct Line {
 /// # Source
 /// Newton's method, as for patches in Toth 1985, "On ray tracing parametric surfaces": each step meets the tangent plane.
 /// Ours: that borders hold, and that poles and seams are left by way of the nearest point.
-pub fn pierced<S: Surface + ?Sized>(surface: &S, line: &Line, guess: DVec2, reach: f64) -> Option<Pierced> {
+pub fn pierced<S: Surface + ?Sized>(surface: &S, line: &PiercingLine, guess: DVec2, reach: f64) -> Option<PiercingPoint> {
     let [low, high] = surface.domain();
     let guess = guess.clamp(low, high);
     settled(surface, line, guess, reach).or_else(|| {
@@ -54,8 +54,8 @@ pub fn pierced<S: Surface + ?Sized>(surface: &S, line: &Line, guess: DVec2, reac
     })
 }
 
-fn settled<S: Surface + ?Sized>(surface: &S, line: &Line, mut uv: DVec2, reach: f64) -> Option<Pierced> {
-    let Line { from, direction, outward } = *line;
+fn settled<S: Surface + ?Sized>(surface: &S, line: &PiercingLine, mut uv: DVec2, reach: f64) -> Option<PiercingPoint> {
+    let PiercingLine { from, direction, outward } = *line;
     let domain = surface.domain();
     for _ in 0..MAX_STEPS {
         let [point, du, dv] = surface.point_and_derivatives(uv);
@@ -85,7 +85,7 @@ fn settled<S: Surface + ?Sized>(surface: &S, line: &Line, mut uv: DVec2, reach: 
         if is_last {
             let normal = normal_at(surface, uv);
             let is_met = offset.length() <= reach && (normal.dot(direction) > 0.0) == outward;
-            return is_met.then_some(Pierced { uv, normal, t });
+            return is_met.then_some(PiercingPoint { uv, normal, t });
         }
     }
     None
@@ -122,7 +122,7 @@ fn held([du, dv]: [DVec3; 2], across: DVec3, offset: DVec3, uv: DVec2, [low, hig
 
 #[cfg(test)]
 mod tests {
-    use super::super::{BezierPatch, Placed, Profile, Sphere, Turned, teapot};
+    use super::super::{BezierPatch, TransformedSurface, Profile, Sphere, SurfaceOfRevolution, teapot};
     use super::*;
     use glam::DAffine3;
 
@@ -138,7 +138,7 @@ mod tests {
                 let expected = DVec3::new(0.1, 0.2, 0.3) + right * at.x + up * at.y + axis * height;
                 let from = expected + axis * 0.13;
                 let guess = sphere.nearest(from + right * 0.2 - up * 0.15, DVec2::new(0.5, 0.0));
-                let line = Line { from, direction: axis * -3.0, outward: false };
+                let line = PiercingLine { from, direction: axis * -3.0, outward: false };
                 let found = pierced(&sphere, &line, guess, 1.0).expect("it meets the sphere");
                 assert!((found.t - 0.13 / 3.0).abs() < 1e-12, "{k} {axis}: {}", found.t);
                 assert!((found.normal - (expected - DVec3::new(0.1, 0.2, 0.3)) / 2.0).length() < 1e-12, "{k} {axis}");
@@ -148,11 +148,11 @@ mod tests {
 
     #[test]
     fn lines_through_known_points_of_surfaces_find_them() {
-        let torus = Turned::whole(Profile::Arc { center: DVec2::X * 2.0, radius: 0.7, turns: [0.0, 1.0] });
+        let torus = SurfaceOfRevolution::whole(Profile::Arc { center: DVec2::X * 2.0, radius: 0.7, turns: [0.0, 1.0] });
         let skewed = DAffine3::from_cols_array(&[1.0, 0.2, 0.0, -0.3, 0.8, 0.1, 0.0, 0.5, 1.3, 4.0, 5.0, 6.0]);
         let patch: BezierPatch = teapot()[9].clone();
         let surfaces: [Box<dyn Surface>; 3] =
-            [Box::new(torus.clone()), Box::new(Placed::new(torus, skewed)), Box::new(patch)];
+            [Box::new(torus.clone()), Box::new(TransformedSurface::new(torus, skewed)), Box::new(patch)];
         for (member, surface) in surfaces.iter().enumerate() {
             let [low, high] = surface.domain();
             for k in 0..100 {
@@ -161,7 +161,7 @@ mod tests {
                 let (point, normal) = (surface.point(uv), surface.normal(uv));
                 let direction = normal * -1.0 + surface.derivatives(uv)[0].normalize() * 0.8;
                 let guess = (uv + (high - low) * DVec2::new(0.02, -0.015)).clamp(low, high);
-                let line = Line { from: point - direction * 0.02, direction, outward: false };
+                let line = PiercingLine { from: point - direction * 0.02, direction, outward: false };
                 let found = pierced(surface, &line, guess, 0.3).expect("near");
                 assert!((found.t - 0.02).abs() < 1e-11, "{member} {k}: {}", found.t);
                 assert!((found.normal - normal).length() < 1e-9, "{member} {k}");
@@ -171,15 +171,15 @@ mod tests {
 
     #[test]
     fn beyond_a_border_the_tangent_plane_goes_on_and_beyond_reach_there_is_nothing() {
-        let can = Turned::whole(Profile::line(DVec2::new(1.0, 0.0), DVec2::new(1.0, 2.0)));
+        let can = SurfaceOfRevolution::whole(Profile::line(DVec2::new(1.0, 0.0), DVec2::new(1.0, 2.0)));
         let guess = DVec2::new(0.25, 0.95);
-        let line = |from: DVec3, direction: DVec3| Line { from, direction, outward: false };
+        let line = |from: DVec3, direction: DVec3| PiercingLine { from, direction, outward: false };
         let beside = line(DVec3::new(1.2, 2.1, 0.0), DVec3::NEG_X);
         let found = pierced(&can, &beside, guess, 0.5).expect("beside it");
         assert!((found.t - 0.2).abs() < 1e-15 && found.uv.y == 1.0);
         assert!((found.normal - DVec3::X).length() < 1e-15);
         assert_eq!(pierced(&can, &beside, guess, 0.05), None, "out of reach");
-        assert_eq!(pierced(&can, &Line { outward: true, ..beside }, guess, 0.5), None, "from outside");
+        assert_eq!(pierced(&can, &PiercingLine { outward: true, ..beside }, guess, 0.5), None, "from outside");
         let along = DVec3::new(1.1, 1.0, 0.0);
         assert_eq!(pierced(&can, &line(along, DVec3::Y), guess, 0.5), None, "along the surface");
         assert_eq!(pierced(&can, &line(along, DVec3::ZERO), guess, 0.5), None, "no direction");
@@ -195,7 +195,7 @@ mod tests {
             let guess = sphere.nearest(DVec3::new(0.1, height, 0.05), DVec2::splat(0.1));
             for outward in [false, true] {
                 let from = DVec3::new(0.0, height, if outward { -0.1 } else { 0.1 });
-                let found = pierced(&sphere, &Line { from, direction: DVec3::NEG_Z, outward }, guess, 1.2);
+                let found = pierced(&sphere, &PiercingLine { from, direction: DVec3::NEG_Z, outward }, guess, 1.2);
                 let expected = if outward { from.z + half } else { from.z - half };
                 assert!((found.expect("both are near").t - expected).abs() < 1e-9, "{k} {outward}: {found:?}");
             }

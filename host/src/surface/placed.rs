@@ -8,7 +8,7 @@ use crate::mesh::normal_matrix;
 
 /// A surface as an affine map places it: turned, moved, scaled, sheared or mirrored.
 #[derive(Clone, Debug)]
-pub struct Placed<S> {
+pub struct TransformedSurface<S> {
     surface: S,
     placement: DAffine3,
     normals: DMat3,
@@ -20,16 +20,16 @@ pub struct Placed<S> {
 /// Columns of equal length and at right angles to this part of their length make a map that keeps angles.
 const ALIKE: f64 = 1e-14;
 
-impl<S: Surface> Placed<S> {
+impl<S: Surface> TransformedSurface<S> {
     /// `surface` moved by `placement`. A mirrored surface is run through with u reversed, so that outside stays outside.
-    pub fn new(surface: S, placement: DAffine3) -> Placed<S> {
+    pub fn new(surface: S, placement: DAffine3) -> TransformedSurface<S> {
         let is_mirrored = placement.matrix3.determinant() < 0.0;
         let DMat3 { x_axis: x, y_axis: y, z_axis: z } = placement.matrix3;
         let squared = x.length_squared();
         let gaps = [y.length_squared() - squared, z.length_squared() - squared, x.dot(y), y.dot(z), z.dot(x)];
         let keeps_angles = squared > 0.0 && gaps.iter().all(|gap| gap.abs() <= ALIKE * squared);
         let back = keeps_angles.then(|| placement.inverse());
-        Placed { surface, placement, normals: normal_matrix(placement.matrix3), is_mirrored, back }
+        TransformedSurface { surface, placement, normals: normal_matrix(placement.matrix3), is_mirrored, back }
     }
 
     /// The parameters of the inner surface for `uv`, or the other way round.
@@ -39,7 +39,7 @@ impl<S: Surface> Placed<S> {
     }
 }
 
-impl<S: Surface> Surface for Placed<S> {
+impl<S: Surface> Surface for TransformedSurface<S> {
     fn domain(&self) -> [DVec2; 2] {
         self.surface.domain()
     }
@@ -71,7 +71,7 @@ impl<S: Surface> Surface for Placed<S> {
     }
 }
 
-impl<S: Curved> Curved for Placed<S> {
+impl<S: Curved> Curved for TransformedSurface<S> {
     fn second_derivatives(&self, uv: DVec2) -> [DVec3; 3] {
         let [uu, both, vv] = self.surface.second_derivatives(self.inner(uv));
         let both = if self.is_mirrored { -both } else { both };

@@ -32,7 +32,7 @@ impl Direction {
 /// A parameter of one direction holds along the whole joint, from side to side; it changes the surface in the strip of
 /// patches beside that joint and nowhere else.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Plain", into = "Plain")]
+#[serde(try_from = "SplineSurfaceData", into = "SplineSurfaceData")]
 pub struct SplineSurface {
     bases: [Basis; 2],
     /// Row by row; v changes within a row.
@@ -43,15 +43,15 @@ pub struct SplineSurface {
 
 /// What a surface is made of.
 #[derive(Serialize, Deserialize)]
-struct Plain {
+struct SplineSurfaceData {
     bases: [Basis; 2],
     control: Vec<ControlPoint>,
 }
 
-impl TryFrom<Plain> for SplineSurface {
+impl TryFrom<SplineSurfaceData> for SplineSurface {
     type Error = SplineError;
 
-    fn try_from(Plain { bases, control }: Plain) -> Result<SplineSurface, SplineError> {
+    fn try_from(SplineSurfaceData { bases, control }: SplineSurfaceData) -> Result<SplineSurface, SplineError> {
         let needed = bases.iter().map(Basis::control_count).product();
         if control.len() != needed {
             return Err(SplineError::Count { what: "control points", found: control.len(), needed });
@@ -61,9 +61,9 @@ impl TryFrom<Plain> for SplineSurface {
     }
 }
 
-impl From<SplineSurface> for Plain {
-    fn from(surface: SplineSurface) -> Plain {
-        Plain { bases: surface.bases, control: surface.control }
+impl From<SplineSurface> for SplineSurfaceData {
+    fn from(surface: SplineSurface) -> SplineSurfaceData {
+        SplineSurfaceData { bases: surface.bases, control: surface.control }
     }
 }
 

@@ -14,7 +14,7 @@ const STATIONS: usize = 32;
 
 /// How a section changes along a curve, evenly in its parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Widening {
+pub struct TwistAndTaper {
     /// How far it has turned about the curve at the end, from x towards y; turns.
     pub turns: f64,
     /// How much wider it is at the end than at the beginning, 0 or more.
@@ -77,12 +77,12 @@ impl Spine {
     }
 
     /// The point of the section `point` at the parameter `t`.
-    pub fn place(&self, point: DVec2, widening: Widening, t: f64) -> DVec3 {
+    pub fn place(&self, point: DVec2, widening: TwistAndTaper, t: f64) -> DVec3 {
         self.jet(point, widening, t)[0]
     }
 
     /// The curvature of the curve at `t` as a vector of the section, 1 / model unit: towards the inside of the bend.
-    pub fn bend(&self, widening: Widening, t: f64) -> DVec2 {
+    pub fn bend(&self, widening: TwistAndTaper, t: f64) -> DVec2 {
         let bend = self.bend_in_space(t);
         let [x, y] = self.axes(widening, t);
         DVec2::new(bend.dot(x), bend.dot(y))
@@ -113,7 +113,7 @@ impl Spine {
     }
 
     /// Where x and y of the section point.
-    fn axes(&self, widening: Widening, t: f64) -> [DVec3; 2] {
+    fn axes(&self, widening: TwistAndTaper, t: f64) -> [DVec3; 2] {
         let Frame { along, x, .. } = self.frame(t);
         let y = along.cross(x);
         let [sine, cosine] = sine_and_cosine((widening.turns + self.closing) * self.fraction(t));
@@ -121,7 +121,7 @@ impl Spine {
     }
 
     /// The place of a point of the section, its derivative by t, and the axes of the section.
-    fn jet(&self, point: DVec2, widening: Widening, t: f64) -> [DVec3; 4] {
+    fn jet(&self, point: DVec2, widening: TwistAndTaper, t: f64) -> [DVec3; 4] {
         let [low, high] = self.curve.domain();
         // A closed curve ends where it begins, to the bit.
         let t = if t == high && self.curve.basis().is_closed() { low } else { t };
@@ -168,14 +168,14 @@ fn direction(curve: &SplineCurve, t: f64) -> Option<DVec3> {
 #[derive(Clone, Debug)]
 pub struct Swept {
     spine: Arc<Spine>,
-    widening: Widening,
+    widening: TwistAndTaper,
     edge: [DVec2; 2],
     part: [f64; 2],
 }
 
 impl Swept {
     /// The surface over a part of the parameters of the curve.
-    pub fn new(spine: Arc<Spine>, widening: Widening, edge: [DVec2; 2], part: [f64; 2]) -> Swept {
+    pub fn new(spine: Arc<Spine>, widening: TwistAndTaper, edge: [DVec2; 2], part: [f64; 2]) -> Swept {
         Swept { spine, widening, edge, part }
     }
 

@@ -10,7 +10,7 @@ use std::collections::HashMap;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-use super::border::{Borders, along_side};
+use super::border::{SharedCurves, along_side};
 use super::{Surface, between};
 use crate::mesh::{Mesh, bits};
 
@@ -106,7 +106,7 @@ pub fn tessellate<S: Surface>(surfaces: &[S], tolerance: Tolerance) -> Result<Me
     if !(chord > 0.0 && angle > 0.0) {
         return Err(TessellationError::Tolerance { chord, angle });
     }
-    let borders = Borders::of(surfaces);
+    let borders = SharedCurves::of(surfaces);
     let grids = Grids::fitted(surfaces, &borders, tolerance)?;
     Ok(Builder::new(surfaces, &borders, &grids).into_mesh())
 }
@@ -121,14 +121,14 @@ struct Grids {
 
 /// What a first look at a surface says of one of its two directions.
 #[derive(Clone, Copy)]
-struct Look {
+struct SegmentEstimate {
     /// Sagitta of a single segment over the whole domain, extrapolated; model units.
     sagitta: f64,
     /// Turn of the normal over the whole domain, extrapolated; degrees.
     turn: f64,
 }
 
-impl Look {
+impl SegmentEstimate {
     /// The segments that the direction takes, not rounded.
     fn segments(&self, tolerance: Tolerance) -> f64 {
         // The sagittas of both directions add up, so each gets half of the chord.
@@ -144,12 +144,12 @@ pub(super) fn wanted_segments<S: Surface>(surface: &S, tolerance: Tolerance) -> 
 }
 
 impl Grids {
-    fn fitted<S: Surface>(surfaces: &[S], borders: &Borders, tolerance: Tolerance) -> Result<Grids, TessellationError> {
-        let looks: Vec<Option<[Look; 2]>> = surfaces.par_iter().map(look).collect();
+    fn fitted<S: Surface>(surfaces: &[S], borders: &SharedCurves, tolerance: Tolerance) -> Result<Grids, TessellationError> {
+        let looks: Vec<Option<[SegmentEstimate; 2]>> = surfaces.par_iter().map(look).collect();
         if let Some(surface) = looks.iter().position(Option::is_none) {
             return Err(TessellationError::NotFinite { surface });
         }
-        let looks: Vec<[Look; 2]> = looks.into_iter().flatten().collect();
+        let looks: Vec<[SegmentEstimate; 2]> = looks.into_iter().flatten().collect();
         let mut grids = Grids { strips: borders.strips(), segments: vec![1; borders.first.len()] };
         for (surface, looks) in looks.iter().enumerate() {
             for (axis, look) in looks.iter().enumerate() {
@@ -166,8 +166,8 @@ impl Grids {
     fn raise_until_measured<S: Surface>(
         &mut self,
         surfaces: &[S],
-        borders: &Borders,
-        looks: &[[Look; 2]],
+        borders: &SharedCurves,
+        looks: &[[SegmentEstimate; 2]],
         chord: f64,
     ) -> Result<(), TessellationError> {
         let mut known: Vec<([usize; 2], f64)> = vec![([0; 2], 0.0); surfaces.len()];
@@ -201,11 +201,11 @@ impl Grids {
     }
 
     /// The segments of a surface along u and v.
-    fn of(&self, borders: &Borders, surface: usize) -> [usize; 2] {
+    fn of(&self, borders: &SharedCurves, surface: usize) -> [usize; 2] {
         [0, 2].map(|side| self.segments[self.strips[borders.sides[surface][side].curve]])
     }
 
-    fn raise(&mut self, borders: &Borders, surface: usize, axis: usize, wanted: f64) -> Result<(), TessellationError> {
+    fn raise(&mut self, borders: &SharedCurves, surface: usize, axis: usize, wanted: f64) -> Result<(), TessellationError> {
         let segments = wanted.min(usize::MAX as f64) as usize;
         let strip = self.strips[borders.sides[surface][2 * axis].curve];
         self.segments[strip] = self.segments[strip].max(segments.min(MAX_SEGMENTS + 1));
@@ -225,9 +225,9 @@ fn grid_uv([low, high]: [DVec2; 2], counts: [usize; 2], i: usize, j: usize) -> D
 }
 
 /// A first look at both directions; `None` if a point is not finite.
-fn look<S: Surface>(surface: &S) -> Option<[Look; 2]> {
+fn look<S: Surface>(surface: &S) -> Option<[SegmentEstimate; 2]> {
     let domain = surface.domain();
-    let mut looks = [Look { sagitta: 0.0, turn: 0.0 }; 2];
+    let mut looks = [SegmentEstimate { sagitta: 0.0, turn: 0.0 }; 2];
     for (axis, look) in looks.iter_mut().enumerate() {
         for line in 0..LOOK_LINES {
             // Points at the ends and middles of the segments of one parameter line.
@@ -306,7 +306,7 @@ fn measured_error<S: Surface>(surface: &S, counts: [usize; 2]) -> f64 {
 /// The mesh in the making.
 struct Builder<'a, S> {
     surfaces: &'a [S],
-    borders: &'a Borders,
+    borders: &'a SharedCurves,
     grids: &'a Grids,
     mesh: Mesh,
     corner_at: HashMap<[u64; 3], u32>,
@@ -315,7 +315,7 @@ struct Builder<'a, S> {
 }
 
 impl<'a, S: Surface> Builder<'a, S> {
-    fn new(surfaces: &'a [S], borders: &'a Borders, grids: &'a Grids) -> Self {
+    fn new(surfaces: &'a [S], borders: &'a SharedCurves, grids: &'a Grids) -> Self {
         Builder { surfaces, borders, grids, mesh: Mesh::default(), corner_at: HashMap::new(), curves: Vec::new() }
     }
 

@@ -13,20 +13,20 @@ use super::{Profile, Surface, between};
 /// u is the angle from the z axis towards the x axis in turns; v is the parameter of the profile, 0..=1. The outside is on
 /// the right of a profile that is followed upwards.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Turned {
+pub struct SurfaceOfRevolution {
     profile: Profile,
     turns: [f64; 2],
 }
 
-impl Turned {
+impl SurfaceOfRevolution {
     /// The surface of a whole turn.
-    pub fn whole(profile: Profile) -> Turned {
-        Turned { profile, turns: [0.0, 1.0] }
+    pub fn whole(profile: Profile) -> SurfaceOfRevolution {
+        SurfaceOfRevolution { profile, turns: [0.0, 1.0] }
     }
 
     /// The surface from the first angle to the second, turns; the second is greater by at most 1.
-    pub fn part(profile: Profile, turns: [f64; 2]) -> Turned {
-        Turned { profile, turns }
+    pub fn part(profile: Profile, turns: [f64; 2]) -> SurfaceOfRevolution {
+        SurfaceOfRevolution { profile, turns }
     }
 
     /// What turns.
@@ -47,18 +47,18 @@ fn ahead(turns: f64) -> DVec3 {
     DVec3::new(cosine, 0.0, -sine)
 }
 
-impl Surface for Turned {
+impl Surface for SurfaceOfRevolution {
     fn domain(&self) -> [DVec2; 2] {
         [DVec2::new(self.turns[0], 0.0), DVec2::new(self.turns[1], 1.0)]
     }
 
     fn point(&self, uv: DVec2) -> DVec3 {
-        Turned::turned(self.profile.point(uv.y), uv.x)
+        SurfaceOfRevolution::turned(self.profile.point(uv.y), uv.x)
     }
 
     fn derivatives(&self, uv: DVec2) -> [DVec3; 2] {
         let radius = self.profile.point(uv.y).x;
-        [ahead(uv.x) * (TAU * radius), Turned::turned(self.profile.derivatives(uv.y)[0], uv.x)]
+        [ahead(uv.x) * (TAU * radius), SurfaceOfRevolution::turned(self.profile.derivatives(uv.y)[0], uv.x)]
     }
 
     fn point_and_derivatives(&self, uv: DVec2) -> [DVec3; 3] {
@@ -71,7 +71,7 @@ impl Surface for Turned {
     /// Also on the axis, where every angle has its own limit.
     fn normal(&self, uv: DVec2) -> DVec3 {
         let along = self.profile.direction(uv.y);
-        Turned::turned(DVec2::new(along.y, -along.x), uv.x)
+        SurfaceOfRevolution::turned(DVec2::new(along.y, -along.x), uv.x)
     }
 
     fn nearest(&self, point: DVec3, guess: DVec2) -> DVec2 {
@@ -94,12 +94,12 @@ impl Surface for Turned {
     }
 }
 
-impl Curved for Turned {
+impl Curved for SurfaceOfRevolution {
     fn second_derivatives(&self, uv: DVec2) -> [DVec3; 3] {
         let radius = self.profile.point(uv.y).x;
         let [first, second] = self.profile.derivatives(uv.y);
-        let out = Turned::turned(DVec2::X, uv.x);
-        [out * (-TAU * TAU * radius), ahead(uv.x) * (TAU * first.x), Turned::turned(second, uv.x)]
+        let out = SurfaceOfRevolution::turned(DVec2::X, uv.x);
+        [out * (-TAU * TAU * radius), ahead(uv.x) * (TAU * first.x), SurfaceOfRevolution::turned(second, uv.x)]
     }
 }
 
@@ -110,7 +110,7 @@ mod tests {
 
     #[test]
     fn the_seam_and_the_poles_agree_to_the_bit() {
-        let dome = Turned::whole(Profile::Arc { center: DVec2::new(0.0, 0.3), radius: 0.7, turns: [-0.25, 0.25] });
+        let dome = SurfaceOfRevolution::whole(Profile::Arc { center: DVec2::new(0.0, 0.3), radius: 0.7, turns: [-0.25, 0.25] });
         for k in 0..=64 {
             let t = f64::from(k) / 64.0;
             assert_eq!(dome.point(DVec2::new(0.0, t)), dome.point(DVec2::new(1.0, t)));
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn tori_have_the_curvatures_of_the_book() {
-        let torus = Turned::whole(Profile::Arc { center: DVec2::X * 3.0, radius: 1.0, turns: [0.0, 1.0] });
+        let torus = SurfaceOfRevolution::whole(Profile::Arc { center: DVec2::X * 3.0, radius: 1.0, turns: [0.0, 1.0] });
         for k in 0..16 {
             let v = f64::from(k) / 16.0;
             let uv = DVec2::new(0.3, v);
@@ -137,7 +137,7 @@ mod tests {
     #[test]
     fn quadrics_fulfil_their_equations() {
         let on = |profile: Profile, equation: fn(DVec3) -> f64| {
-            let surface = Turned::whole(profile);
+            let surface = SurfaceOfRevolution::whole(profile);
             for k in 0..=400 {
                 let uv = DVec2::new(f64::from(k % 20) / 19.0, f64::from(k / 20) / 20.0);
                 assert!(equation(surface.point(uv)).abs() < 1e-14, "{uv} {}", equation(surface.point(uv)));

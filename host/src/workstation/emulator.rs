@@ -1,6 +1,6 @@
 //! A PS 340 process of our own: started when no line is given, and ended with us.
 
-use super::{Patience, WorkstationError};
+use super::{Timeouts, WorkstationError};
 use protocol::address::Address;
 use std::{
     env,
@@ -22,7 +22,7 @@ const QUIT_TIME: Duration = Duration::from_secs(2);
 pub struct Emulator {
     child: Child,
     orders: mpsc::Sender<String>,
-    patience: Patience,
+    patience: Timeouts,
     replies: mpsc::Receiver<String>,
     line: Address,
     has_window: bool,
@@ -39,7 +39,7 @@ impl Emulator {
     ///
     /// # Errors
     /// [`WorkstationError::Start`] names the program.
-    pub fn start(patience: Patience, files: &Path, window: bool) -> Result<Emulator, WorkstationError> {
+    pub fn start(patience: Timeouts, files: &Path, window: bool) -> Result<Emulator, WorkstationError> {
         let program = program();
         let error = |e: std::io::Error| WorkstationError::Start { program: program.clone(), reason: e.to_string() };
         let mut child = Command::new(&program)

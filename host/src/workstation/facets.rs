@@ -7,9 +7,9 @@
 
 use super::names::name;
 use crate::{
-    color::Wavelengths,
-    illumination::{Bands, Light, Material, light::Source, material::Appearance},
-    mesh::{Mesh, Selection, edges::EdgeTable},
+    color::WavelengthSets,
+    illumination::{RgbPower, Light, Material, light::LightSource, material::MaterialPreview},
+    mesh::{Mesh, EdgeSelection, edges::EdgeTable},
 };
 use glam::DVec3;
 use protocol::command::{Attributes, Illumination, Polygon, PolygonVertex, SurfaceColor};
@@ -36,7 +36,7 @@ pub fn mirrored(p: DVec3) -> DVec3 {
 /// A corner is too far away for single precision.
 pub fn polygons(
     mesh: &Mesh,
-    hard: &Selection,
+    hard: &EdgeSelection,
     group_of: &[u32],
     attributes: &[String],
 ) -> Result<Vec<Vec<Polygon>>, String> {
@@ -72,16 +72,16 @@ pub fn polygons(
 }
 
 /// The color by which a material is known, linear light: its body's, or without one that of what it reflects.
-pub fn main_color(material: &Material) -> Bands {
-    let Appearance { diffuse, specular, mirror, .. } = material.appearance();
+pub fn main_color(material: &Material) -> RgbPower {
+    let MaterialPreview { diffuse, specular, mirror, .. } = material.appearance();
     let body = diffuse + mirror;
-    if body == Bands::ZERO { specular } else { body }
+    if body == RgbPower::ZERO { specular } else { body }
 }
 
 /// What a material looks like to the machine, from both sides.
 pub fn attributes(material: &Material) -> Attributes {
-    let sum = |bands: Bands| bands.max(DVec3::ZERO).element_sum();
-    let Appearance { diffuse, specular, exponent, mirror } = material.appearance();
+    let sum = |bands: RgbPower| bands.max(DVec3::ZERO).element_sum();
+    let MaterialPreview { diffuse, specular, exponent, mirror } = material.appearance();
     let body = sum(diffuse);
     let share = body / (body + sum(specular) + sum(mirror)).max(f64::MIN_POSITIVE);
     let front = SurfaceColor {
@@ -95,15 +95,15 @@ pub fn attributes(material: &Material) -> Attributes {
 
 /// The lights of a scene as they arrive at a point of it; the brightest is 1, unless all together are too bright.
 pub fn illumination(lights: &[Light], at: DVec3) -> Vec<Illumination> {
-    let bands = Wavelengths::bands();
+    let bands = WavelengthSets::bands();
     // Of a light that has a size, the middle counts; the machine knows no light from all around.
     let beam = |light: &Light| {
-        let source = Source::new(light, &bands);
+        let source = LightSource::new(light, &bands);
         let beam = if source.is_sky() { None } else { source.beam(at, None, [0.5; 2], 0) }?;
         let [red, green, blue, ..] = beam.irradiance.0;
-        Some((beam.towards, Bands::new(red, green, blue)))
+        Some((beam.towards, RgbPower::new(red, green, blue)))
     };
-    let beams: Vec<(DVec3, Bands)> = lights.iter().filter_map(beam).collect();
+    let beams: Vec<(DVec3, RgbPower)> = lights.iter().filter_map(beam).collect();
     let brightest = beams.iter().map(|(_, irradiance)| irradiance.max_element()).fold(0.0, f64::max);
     if brightest <= 0.0 || !brightest.is_finite() {
         return Vec::new();
@@ -111,7 +111,7 @@ pub fn illumination(lights: &[Light], at: DVec3) -> Vec<Illumination> {
     let colors: Vec<[f64; 3]> =
         beams.iter().map(|(_, irradiance)| hue_saturation_intensity(*irradiance / brightest)).collect();
     let gain = (MOST_LIGHT / colors.iter().map(|[_, _, i]| i).sum::<f64>()).min(1.0);
-    let lamp = |((towards, _), [hue, saturation, intensity]): (&(DVec3, Bands), [f64; 3])| Illumination {
+    let lamp = |((towards, _), [hue, saturation, intensity]): (&(DVec3, RgbPower), [f64; 3])| Illumination {
         direction: -mirrored(*towards),
         color: [hue, saturation, intensity * gain],
         ambient: 1.0,
@@ -120,14 +120,14 @@ pub fn illumination(lights: &[Light], at: DVec3) -> Vec<Illumination> {
 }
 
 /// Hue in degrees (0 is blue), saturation and intensity, 0..=1, of linear light.
-fn hue_saturation_intensity(linear: Bands) -> [f64; 3] {
+fn hue_saturation_intensity(linear: RgbPower) -> [f64; 3] {
     let color = linear.clamp(DVec3::ZERO, DVec3::ONE).powf(DISPLAY_EXPONENT);
     let [hue, saturation] = hue_saturation(color);
     [hue, saturation, color.max_element()]
 }
 
 /// Hue in degrees (0 is blue) and saturation of a colour.
-pub fn hue_saturation(color: Bands) -> [f64; 2] {
+pub fn hue_saturation(color: RgbPower) -> [f64; 2] {
     let (high, low) = (color.max_element(), color.min_element());
     if high <= 0.0 || high == low {
         return [0.0, 0.0];
@@ -153,7 +153,7 @@ mod tests {
 
     #[test]
     fn hues_start_at_blue() {
-        let of = |r, g, b| hue_saturation(Bands::new(r, g, b));
+        let of = |r, g, b| hue_saturation(RgbPower::new(r, g, b));
         assert_eq!(of(0.0, 0.0, 1.0), [0.0, 1.0]);
         assert_eq!(of(1.0, 0.0, 0.0), [120.0, 1.0]);
         assert_eq!(of(0.5, 0.5, 0.0), [180.0, 1.0]);
@@ -171,7 +171,7 @@ mod tests {
             corner_normals: vec![[DVec3::Z; 3]; 3],
             ..Mesh::default()
         };
-        let polygons = polygons(&square, &Selection::creases(25.0), &[], &["PERIS_A1".into()]).unwrap().concat();
+        let polygons = polygons(&square, &EdgeSelection::creases(25.0), &[], &["PERIS_A1".into()]).unwrap().concat();
         assert_eq!(polygons.len(), 2, "a triangle without area is left out");
         assert_eq!(polygons.iter().filter(|polygon| polygon.attributes.is_some()).count(), 1);
         for polygon in &polygons {
@@ -184,17 +184,17 @@ mod tests {
             assert!(soft[0][0] == soft[0][1], "the diagonal ends at one of its corners");
         }
         let named = ["PERIS_A1".to_owned(), "PERIS_A1_2".to_owned()];
-        let all = super::polygons(&square, &Selection::ALL, &[], &named[..1]).unwrap().concat();
-        let groups = super::polygons(&square, &Selection::ALL, &[1, 0, 0], &named).unwrap();
+        let all = super::polygons(&square, &EdgeSelection::ALL, &[], &named[..1]).unwrap().concat();
+        let groups = super::polygons(&square, &EdgeSelection::ALL, &[1, 0, 0], &named).unwrap();
         assert!(groups.iter().zip(&named).all(|(group, name)| {
             let attributes = group[0].attributes.as_ref();
             group.len() == 1 && attributes.is_some_and(|given| given.to_string() == *name)
         }));
         assert!(all.iter().flat_map(|polygon| &polygon.vertices).all(|vertex| !vertex.soft));
         let far = Mesh { vertices: vec![DVec3::splat(1e40), DVec3::X, DVec3::Y], triangles: vec![[0, 1, 2]], ..square };
-        assert!(super::polygons(&far, &Selection::ALL, &[], &named).unwrap_err().contains("too far away"));
+        assert!(super::polygons(&far, &EdgeSelection::ALL, &[], &named).unwrap_err().contains("too far away"));
         assert_eq!(
-            super::polygons(&mesh::bunny().expect("it ships"), &Selection::ALL, &[], &named).unwrap()[0].len(),
+            super::polygons(&mesh::bunny().expect("it ships"), &EdgeSelection::ALL, &[], &named).unwrap()[0].len(),
             69_666
         );
     }
@@ -209,7 +209,7 @@ mod tests {
         assert!((matt.color[2] - 0.5_f64.powf(1.0 / 2.2)).abs() < 1e-12 && matt.diffuse == 1.0);
         let at = DVec3::new(0.0, 1.0, 0.0);
         let lamp =
-            Light::Point { at: at + DVec3::new(0.0, 0.0, 2.0), intensity: Color::Bands(Bands::new(4.0, 0.0, 0.0)) };
+            Light::Point { at: at + DVec3::new(0.0, 0.0, 2.0), intensity: Color::Bands(RgbPower::new(4.0, 0.0, 0.0)) };
         let sun = Light::Directional { direction: DVec3::new(0.0, -3.0, 0.0), irradiance: Color::grey(1.0) };
         let [lamp, sun] = <[Illumination; 2]>::try_from(illumination(&[lamp, sun], at)).unwrap();
         assert_eq!((lamp.direction, &lamp.color[..2]), (DVec3::Z, &[120.0, 1.0][..]));

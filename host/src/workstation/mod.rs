@@ -16,6 +16,6 @@ pub use emulator::Emulator;
 pub use error::WorkstationError;
 pub use initial_view::InitialView;
 pub use names::ROOT;
-pub use patience::Patience;
+pub use patience::Timeouts;
 pub use session::Session;
-pub use structure::{Drawing, Lines, Shown};
+pub use structure::{Drawing, DrawnEdges, StructureCommands};

@@ -30,7 +30,7 @@ const WASH_SHADED: i32 = 5;
 
 /// What the function keys do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Key {
+pub enum FunctionKey {
     /// The host renders the view that is set, and shows the image on the raster screen.
     Render,
     /// The dials go back to where they began.
@@ -44,12 +44,12 @@ pub enum Key {
 }
 
 /// Number, label and meaning of each function key in use.
-pub const KEYS: [(i32, &str, Key); 5] = [
-    (1, "RENDER", Key::Render),
-    (2, "RESET", Key::Reset),
-    (3, "CAMERA", Key::Camera),
-    (4, "CANCEL", Key::Cancel),
-    (12, "END", Key::End),
+pub const KEYS: [(i32, &str, FunctionKey); 5] = [
+    (1, "RENDER", FunctionKey::Render),
+    (2, "RESET", FunctionKey::Reset),
+    (3, "CAMERA", FunctionKey::Camera),
+    (4, "CANCEL", FunctionKey::Cancel),
+    (12, "END", FunctionKey::End),
 ];
 
 /// Labels over the dials.

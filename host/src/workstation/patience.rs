@@ -4,7 +4,7 @@ use std::time::Duration;
 
 /// How long the workstation may take before the host gives up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Patience {
+pub struct Timeouts {
     /// Until the line is open, or until a PS 340 of our own is ready.
     pub attach: Duration,
     /// Until it answers, or reads more of what is sent.
@@ -13,19 +13,19 @@ pub struct Patience {
     pub order: Duration,
 }
 
-impl Patience {
+impl Timeouts {
     /// One time for everything.
     ///
     /// - `seconds`: 1 and above.
-    pub fn of(seconds: u32) -> Patience {
+    pub fn of(seconds: u32) -> Timeouts {
         let time = Duration::from_secs(seconds.into());
-        Patience { attach: time, answer: time, order: time }
+        Timeouts { attach: time, answer: time, order: time }
     }
 }
 
-impl Default for Patience {
-    fn default() -> Patience {
+impl Default for Timeouts {
+    fn default() -> Timeouts {
         let [attach, answer, order] = [30, 30, 120].map(Duration::from_secs);
-        Patience { attach, answer, order }
+        Timeouts { attach, answer, order }
     }
 }

@@ -1,6 +1,6 @@
 //! A session with a workstation over its host line.
 
-use super::{Patience, WorkstationError, network, structure};
+use super::{Timeouts, WorkstationError, network, structure};
 use glam::DMat4;
 use protocol::{
     Value,
@@ -73,7 +73,7 @@ impl<'a> Wait<'a> {
 /// An attached workstation.
 pub struct Session {
     line: Box<dyn Line>,
-    patience: Patience,
+    patience: Timeouts,
     out: Vec<u8>,
     reader: MessageReader,
     messages: VecDeque<Vec<u8>>,
@@ -94,7 +94,7 @@ impl Session {
     ///
     /// # Errors
     /// [`WorkstationError::Attach`], [`WorkstationError::Closed`].
-    pub fn attach(address: &Address, patience: Patience) -> Result<Session, WorkstationError> {
+    pub fn attach(address: &Address, patience: Timeouts) -> Result<Session, WorkstationError> {
         let failed = |reason: String| WorkstationError::Attach { line: address.clone(), reason };
         let (sender, opened) = mpsc::channel();
         let target = address.clone();
@@ -121,7 +121,7 @@ impl Session {
     }
 
     /// How long the workstation may take.
-    pub fn patience(&self) -> Patience {
+    pub fn patience(&self) -> Timeouts {
         self.patience
     }
 
@@ -267,7 +267,7 @@ impl Session {
     ///
     /// # Errors
     /// [`WorkstationError`].
-    pub fn show(&mut self, shown: &structure::Shown, movement: f64) -> Result<(), WorkstationError> {
+    pub fn show(&mut self, shown: &structure::StructureCommands, movement: f64) -> Result<(), WorkstationError> {
         self.commands(&[structure::delete()])?;
         self.commands(&shown.commands)?;
         self.commands(&network::commands(movement))?;
@@ -280,7 +280,7 @@ impl Session {
     ///
     /// # Errors
     /// [`WorkstationError`].
-    pub fn replace(&mut self, shown: &structure::Shown, movement: f64) -> Result<(), WorkstationError> {
+    pub fn replace(&mut self, shown: &structure::StructureCommands, movement: f64) -> Result<(), WorkstationError> {
         self.commands(&[Command::Begin, structure::delete_objects()])?;
         self.commands(&shown.commands)?;
         self.commands(&network::settle(movement))?;
@@ -328,7 +328,7 @@ mod tests {
     fn a_partner_that_does_not_read_is_given_up() {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
         let address = Address::Tcp(listener.local_addr().expect("an address").to_string());
-        let mut session = Session::attach(&address, Patience::of(1)).expect("it is taken in");
+        let mut session = Session::attach(&address, Timeouts::of(1)).expect("it is taken in");
         let partner = listener.accept();
         session.text(&"A := F:NOP; ".repeat(2_000_000)).expect("it waits here");
         let error = session.flush().expect_err("nobody reads");
@@ -352,7 +352,7 @@ mod tests {
     fn a_partner_that_talks_of_other_things_is_given_up() {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
         let address = Address::Tcp(listener.local_addr().expect("an address").to_string());
-        let mut session = Session::attach(&address, Patience::of(1)).expect("it is taken in");
+        let mut session = Session::attach(&address, Timeouts::of(1)).expect("it is taken in");
         std::thread::spawn(move || talk(listener.accept()?.0));
         let error = session.synchronize().expect_err("it never comes to the point");
         assert!(matches!(error, WorkstationError::Silent { seconds: 1, .. }), "{error}");

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     illumination::Material,
-    mesh::{Eye, Polylines, Selection, polylines_of_groups},
+    mesh::{Viewer, Polylines, EdgeSelection, polylines_of_groups},
     numeric::bounds::Bounds,
     render::tiles::Tiling,
     scene::{Camera, Object, Scene},
@@ -36,7 +36,7 @@ const BACK_INTENSITY: f64 = 0.25;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drawing {
     /// The edges of the objects that are sent.
-    pub lines: Lines,
+    pub lines: DrawnEdges,
     /// Edges at which two triangles meet at more than this angle are sent whatever `lines` says, degrees.
     pub crease_degrees: f64,
     /// Largest distance between a curved surface and its triangles, as a part of the object's diagonal.
@@ -48,7 +48,7 @@ pub struct Drawing {
 
 /// The edges of objects that are sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum Lines {
+pub enum DrawnEdges {
     /// Creases, boundaries, and the parameter lines of curved surfaces; all edges of a mesh that has none.
     Grid,
     /// Creases and boundaries, and the outline that the camera sees.
@@ -59,13 +59,13 @@ pub enum Lines {
 
 impl Default for Drawing {
     fn default() -> Drawing {
-        Drawing { lines: Lines::Grid, crease_degrees: 25.0, tolerance: 1.0 / 400.0, facets: false }
+        Drawing { lines: DrawnEdges::Grid, crease_degrees: 25.0, tolerance: 1.0 / 400.0, facets: false }
     }
 }
 
 /// What was made of a scene.
 #[derive(Clone, Debug, Default)]
-pub struct Shown {
+pub struct StructureCommands {
     /// The commands, to be sent in order.
     pub commands: Vec<Command>,
     /// Vectors drawn.
@@ -100,7 +100,7 @@ pub fn commands(
     initial: &InitialView,
     bounds: &Bounds,
     drawing: &Drawing,
-) -> Result<Shown, WorkstationError> {
+) -> Result<StructureCommands, WorkstationError> {
     with_light(scene, initial, bounds, drawing, None)
 }
 
@@ -115,11 +115,11 @@ pub fn with_light(
     bounds: &Bounds,
     drawing: &Drawing,
     light: Option<&Tiling>,
-) -> Result<Shown, WorkstationError> {
+) -> Result<StructureCommands, WorkstationError> {
     let camera = &initial.camera;
-    let mut shown = Shown { depth_clipping: camera.far.is_some() || camera.near > 0.0, ..Shown::default() };
+    let mut shown = StructureCommands { depth_clipping: camera.far.is_some() || camera.near > 0.0, ..StructureCommands::default() };
     let angle = scene.settings.geometry.angle;
-    let objects: Result<Vec<Vec<Part>>, WorkstationError> = (1..)
+    let objects: Result<Vec<Vec<MaterialPart>>, WorkstationError> = (1..)
         .zip(&scene.objects)
         .map(|(number, object)| data(number, object, angle, camera, drawing, &mut shown))
         .collect();
@@ -138,7 +138,7 @@ pub fn with_light(
     }
     for (number, parts) in (1..).zip(objects?) {
         begin(&mut shown.commands, &format!("O{number}"));
-        for (k, Part { material, data }) in (1..).zip(parts) {
+        for (k, MaterialPart { material, data }) in (1..).zip(parts) {
             // The colour of vectors has no value: brightness comes from the intensity.
             let [hue, saturation] = facets::hue_saturation(facets::main_color(&material));
             operate(&mut shown.commands, None, Operate::SetColor { hue, saturation });
@@ -224,7 +224,7 @@ fn boundaries(camera: &Camera, depth: f64, radius: f64) -> Boundaries {
 }
 
 /// What an object has of one material.
-struct Part {
+struct MaterialPart {
     material: Material,
     data: Node,
 }
@@ -237,19 +237,19 @@ fn data(
     angle: f64,
     camera: &Camera,
     drawing: &Drawing,
-    shown: &mut Shown,
-) -> Result<Vec<Part>, WorkstationError> {
+    shown: &mut StructureCommands,
+) -> Result<Vec<MaterialPart>, WorkstationError> {
     let failed = |e: String| WorkstationError::Scene(format!("{}: {e}", object.name));
     let chord = drawing.tolerance * object.shape.extent().unwrap_or(1.0);
     let coarse = object.shape.made(Tolerance::new(chord, angle)).map_err(|e| failed(e.to_string()))?;
     let mesh = coarse.mesh.transformed(&DAffine3::from_mat4(object.transform));
     let (materials, material_of) = object.materials(&coarse.operand_of);
     let selection = match drawing.lines {
-        Lines::Grid => Selection::grid(drawing.crease_degrees),
+        DrawnEdges::Grid => EdgeSelection::grid(drawing.crease_degrees),
         // The machine finds the outline of polygons itself, from wherever they are seen.
-        Lines::Outline if drawing.facets => Selection::creases(drawing.crease_degrees),
-        Lines::Outline => Selection::drawing(drawing.crease_degrees, Eye::Point(camera.from)),
-        Lines::All => Selection::ALL,
+        DrawnEdges::Outline if drawing.facets => EdgeSelection::creases(drawing.crease_degrees),
+        DrawnEdges::Outline => EdgeSelection::drawing(drawing.crease_degrees, Viewer::Point(camera.from)),
+        DrawnEdges::All => EdgeSelection::ALL,
     };
     let mut lines = coarse.lines;
     if !drawing.facets || !lines.points.is_empty() {
@@ -261,7 +261,7 @@ fn data(
         }
         let part = |(material, runs): (Material, &Polylines)| {
             let data = vectors(runs, shown).map(Node::VectorList).map_err(failed)?;
-            Ok(Part { material, data })
+            Ok(MaterialPart { material, data })
         };
         return materials.into_iter().zip(&runs).map(part).collect();
     }
@@ -278,12 +278,12 @@ fn data(
     Ok(materials
         .into_iter()
         .zip(groups)
-        .map(|(material, group)| Part { material, data: Node::Polygons(group) })
+        .map(|(material, group)| MaterialPart { material, data: Node::Polygons(group) })
         .collect())
 }
 
 /// Runs of lines in scene coordinates.
-fn vectors(runs: &Polylines, shown: &mut Shown) -> Result<VectorList, String> {
+fn vectors(runs: &Polylines, shown: &mut StructureCommands) -> Result<VectorList, String> {
     let mut list = VectorList {
         block_normalized: false,
         fourth: protocol::command::Fourth::Intensity,
@@ -360,7 +360,7 @@ mod tests {
 
     #[test]
     fn each_material_of_a_composite_has_its_color() {
-        let vectors = colored(&Drawing { lines: Lines::Outline, ..Drawing::default() });
+        let vectors = colored(&Drawing { lines: DrawnEdges::Outline, ..Drawing::default() });
         let [(red, first, edges), (blue, second, rims)] = &vectors[..] else { panic!("{vectors:?}") };
         assert_eq!((*red, first.as_str(), *edges), (120.0, "D", 12));
         assert!((*blue, second.as_str()) == (0.0, "D2") && *rims > 2 * 12, "the rims belong to the hole: {vectors:?}");

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     color::srgb,
-    render::tiles::{Tile, Tiling},
+    render::tiles::{ColorTile, Tiling},
 };
 use glam::DVec3;
 use protocol::{
@@ -34,7 +34,7 @@ pub fn polygons(tiling: &Tiling) -> Result<Vec<Object>, WorkstationError> {
     Ok(polygons.chunks(POLYGONS).map(|part| Object::Polygons(part.to_vec())).collect())
 }
 
-fn polygon(tile: &Tile) -> Result<Polygon, WorkstationError> {
+fn polygon(tile: &ColorTile) -> Result<Polygon, WorkstationError> {
     let vertex = |(corner, [front, back]): (&DVec3, &[DVec3; 2])| {
         let position = mirrored(*corner).as_vec3();
         if !position.is_finite() {
@@ -104,7 +104,7 @@ mod tests {
     fn tiles_become_polygons_that_run_clockwise_with_the_reverse_where_it_differs() {
         let corners = vec![DVec3::ZERO, DVec3::X, DVec3::new(0.0, 1.0, 3.0)];
         let (red, green) = (DVec3::X, DVec3::Y);
-        let tile = Tile { corners, colors: vec![[red, red], [red, green], [green, DVec3::ZERO]] };
+        let tile = ColorTile { corners, colors: vec![[red, red], [red, green], [green, DVec3::ZERO]] };
         let found = polygon(&tile).unwrap();
         let positions: Vec<[f32; 3]> = found.vertices.iter().map(|vertex| vertex.position).collect();
         assert_eq!(positions, [[0.0, 1.0, -3.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]);
@@ -112,7 +112,7 @@ mod tests {
         let colors: Vec<CornerColor> = found.vertices.iter().filter_map(|vertex| vertex.color).collect();
         let expected = [(green, Some([0.0; 3])), (red, Some(green)), (red, None)];
         assert_eq!(colors, expected.map(|(front, back)| CornerColor { front, back }));
-        let far = Tile { corners: vec![DVec3::splat(1e40), DVec3::X, DVec3::Y], ..tile };
+        let far = ColorTile { corners: vec![DVec3::splat(1e40), DVec3::X, DVec3::Y], ..tile };
         assert!(polygon(&far).unwrap_err().to_string().contains("too far away"));
     }
 }

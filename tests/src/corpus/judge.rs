@@ -3,7 +3,7 @@
 use super::{Case, Class, Score, points};
 use crate::simple;
 use host::mesh::Mesh;
-use host::numeric::exact::{Exact, cross, dot};
+use host::numeric::exact::{ExactNumber, cross, dot};
 use host::solid::{Expression, Outcome, Solid};
 use std::{panic::catch_unwind, sync::mpsc, time::Duration};
 
@@ -53,11 +53,11 @@ pub fn evaluated(operands: &[&Solid], expression: &Expression) -> Result<Mesh, S
 
 /// The volume inside a mesh, without rounding but for the last.
 fn volume(mesh: &Mesh) -> f64 {
-    let sixfold = (0..mesh.triangles.len()).fold(Exact::default(), |sum, triangle| {
-        let [a, b, c] = mesh.corners(triangle).map(|p| p.to_array().map(Exact::from));
+    let sixfold = (0..mesh.triangles.len()).fold(ExactNumber::default(), |sum, triangle| {
+        let [a, b, c] = mesh.corners(triangle).map(|p| p.to_array().map(ExactNumber::from));
         sum + dot(&a, &cross(&b, &c))
     });
-    sixfold.over(&Exact::from(6.0))
+    sixfold.over(&ExactNumber::from(6.0))
 }
 
 /// What rounding each vertex by some units in its last place can make of a volume.

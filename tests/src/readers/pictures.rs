@@ -2,7 +2,7 @@
 
 use super::place::with_file;
 use glam::DVec3;
-use host::color::{Color, Wavelengths};
+use host::color::{Color, WavelengthSets};
 use host::illumination::light::{Panorama, Sky, SkyMap};
 use host::picture::{Deep, Picture};
 use std::sync::Arc;
@@ -33,7 +33,7 @@ pub fn layers(bytes: &[u8]) {
 pub fn environment(bytes: &[u8]) {
     let Ok(panorama) = with_file("a.exr", bytes, Panorama::read) else { return };
     let map = SkyMap { file: "a.exr".into(), panorama: Some(Arc::new(panorama)), ..SkyMap::default() };
-    let sky = Sky::new(Some(&map), &Color::Bands(DVec3::ONE), 30.0, &Wavelengths::bands());
+    let sky = Sky::new(Some(&map), &Color::Bands(DVec3::ONE), 30.0, &WavelengthSets::bands());
     for towards in [DVec3::Y, DVec3::NEG_Y, DVec3::X, DVec3::new(0.6, 0.0, -0.8)] {
         let radiance = sky.radiance(towards, 0);
         assert!(radiance.max() >= 0.0, "{radiance:?}");

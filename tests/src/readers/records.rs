@@ -3,7 +3,7 @@
 use super::place::with_file;
 use super::sums;
 use glam::DVec3;
-use host::database::{Kind, Record, Report, Store, read, shipped};
+use host::database::{RecordKind, Record, DatabaseReport, Store, read, shipped};
 use host::illumination::light::Goniometry;
 use std::path::Path;
 
@@ -37,7 +37,7 @@ fn exchanged(name: &str, bytes: &[u8]) {
 /// The first byte is the number of the kind, what follows the bytes of the record.
 pub fn record(bytes: &[u8]) {
     let Some((number, bytes)) = bytes.split_first() else { return };
-    let kind = Kind::ALL[usize::from(*number) % Kind::ALL.len()];
+    let kind = RecordKind::ALL[usize::from(*number) % RecordKind::ALL.len()];
     let Ok(record) = Record::of_bytes(kind, "a", &sums::record(kind, "a", bytes)) else { return };
     let written = record.to_bytes().expect("what is read can be written");
     let again = Record::of_bytes(kind, "a", &written).expect("what was written is read");
@@ -47,7 +47,7 @@ pub fn record(bytes: &[u8]) {
 /// A file is looked at as `db check` does, every record is read, and one is added.
 pub fn database(bytes: &[u8]) {
     with_file("a.redb", bytes, |path| {
-        let _ = Report::of(path);
+        let _ = DatabaseReport::of(path);
         let Ok(store) = Store::open(path) else { return };
         let _ = store.entries(None);
         drop(store);
@@ -56,11 +56,11 @@ pub fn database(bytes: &[u8]) {
 }
 
 fn add(path: &Path) {
-    let record = shipped::record(Kind::Spectrum, "cobalt_blue").expect("it ships");
+    let record = shipped::record(RecordKind::Spectrum, "cobalt_blue").expect("it ships");
     if let Ok(store) = Store::open_existing(path)
         && store.add(std::slice::from_ref(&record), true).is_ok()
     {
-        let found = store.find(Kind::Spectrum, "cobalt_blue").expect("what was acknowledged is read");
+        let found = store.find(RecordKind::Spectrum, "cobalt_blue").expect("what was acknowledged is read");
         assert_eq!(found, Some(record));
     }
 }

@@ -1,6 +1,6 @@
 //! Checksums made right, so that a change of bytes reaches what lies behind them.
 
-use host::database::Kind;
+use host::database::RecordKind;
 
 /// Bytes of an octree before its fields: name, version, checksum.
 const OCTREE_HEAD: usize = 16;
@@ -21,7 +21,7 @@ pub fn octree(bytes: &[u8]) -> Vec<u8> {
 }
 
 /// The bytes of a record of a database with the checksum for its kind and name.
-pub fn record(kind: Kind, name: &str, bytes: &[u8]) -> Vec<u8> {
+pub fn record(kind: RecordKind, name: &str, bytes: &[u8]) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     if let Some((head, rest)) = bytes.split_at_mut_checked(RECORD_HEAD) {
         let summed = [kind.word().as_bytes(), &[0], name.as_bytes(), &[0], &head[..4], rest].concat();

@@ -2,7 +2,7 @@
 
 use super::place::with_file;
 use super::sums;
-use host::render::{Fingerprint, Memo, Order, State};
+use host::render::{Fingerprint, Memo, RenderOrder, RenderState};
 use host::scene::Settings;
 use host::script;
 use std::convert::Infallible;
@@ -17,12 +17,12 @@ const RESULTS: usize = 4;
 
 /// The film of three by two pixels is read, if it is one of them.
 pub fn state(bytes: &[u8]) {
-    let order = Order::of(&Settings::of_size(3, 2, 16));
+    let order = RenderOrder::of(&Settings::of_size(3, 2, 16));
     let fingerprint = r#"{"scene": 1, "geometry": 2, "order": 3}"#;
     let fingerprint: Fingerprint = serde_json::from_str(fingerprint).expect("three numbers");
     let beginning: Vec<u8> = [1_u32, 2, 3].iter().flat_map(|part| part.to_le_bytes()).collect();
     let bytes = sums::state(&[&STATE[..], &beginning].concat(), bytes);
-    if let Ok(state) = with_file("a.state", &bytes, |path| State::read(path, &order, fingerprint)) {
+    if let Ok(state) = with_file("a.state", &bytes, |path| RenderState::read(path, &order, fingerprint)) {
         assert_eq!((state.film.width(), state.film.height()), (3, 2));
     }
 }

@@ -4,17 +4,17 @@ mod place;
 mod plot;
 mod show;
 
-use super::{Definitions, Exit, Failure, Row};
+use super::{ScriptArguments, Exit, CommandFailure, SubcommandRow};
 use crate::database::{
-    self, Content, DatabaseError, Entry, Kind, Quantity, Record, Report, Store, check_name, shipped,
+    self, RecordContent, DatabaseError, RecordEntry, RecordKind, ColumnQuantity, Record, DatabaseReport, Store, check_name, shipped,
 };
 use crate::scene::{Object, Scene, Shape};
 use clap::{ArgMatches, Args, Command, FromArgMatches, Subcommand};
 use files::{Destination, Folder};
-use place::{Place, SHIPPED, kind_of};
+use place::{RecordAddress, SHIPPED, kind_of};
 use std::path::{Path, PathBuf};
 
-pub(super) const ROW: Row = Row {
+pub(super) const ROW: SubcommandRow = SubcommandRow {
     name: "db",
     summary: "Lists, shows, plots, adds, removes, exports and checks records of databases: geometry, textures, \
               materials, lights, spectra, caught light.",
@@ -35,7 +35,7 @@ enum Commands {
         database: Option<PathBuf>,
         /// Only records of this kind
         #[arg(long, value_enum, value_name = "KIND")]
-        kind: Option<Kind>,
+        kind: Option<RecordKind>,
         /// Reports as JSON on standard output
         #[arg(long)]
         json: bool,
@@ -43,7 +43,7 @@ enum Commands {
     /// Prints a record: spectra as columns, materials and lights as JSON, counts and bounds of meshes and pictures
     Show {
         #[command(flatten)]
-        place: Place,
+        place: RecordAddress,
         /// Reports as JSON on standard output
         #[arg(long)]
         json: bool,
@@ -51,7 +51,7 @@ enum Commands {
     /// Draws a record: spectra as curves (SVG and PNG), materials and geometry as a picture (PNG)
     Plot {
         #[command(flatten)]
-        place: Place,
+        place: RecordAddress,
         /// Folder for the files; it is made if need be
         #[arg(short, long, value_name = "DIR", default_value = ".")]
         output: PathBuf,
@@ -68,12 +68,12 @@ enum Commands {
         name: String,
         /// Its kind, if there are several of that name
         #[arg(long, value_enum, value_name = "KIND")]
-        kind: Option<Kind>,
+        kind: Option<RecordKind>,
     },
     /// Writes a record into a file, whose ending names the format, as it can be added again
     Export {
         #[command(flatten)]
-        place: Place,
+        place: RecordAddress,
         /// The file: a mesh (.obj, .ply, .stl, .gltf, .glb, .cmesh), a picture (.exr, .png), a spectrum (.txt, .json), a
         /// material or a light (.json)
         #[arg(value_name = "FILE")]
@@ -100,13 +100,13 @@ struct Addition {
     #[arg(value_name = "FILE")]
     file: PathBuf,
     #[command(flatten)]
-    definitions: Definitions,
+    definitions: ScriptArguments,
     /// What the record is called [default: what the file says, or its name]
     #[arg(long, value_name = "NAME")]
     name: Option<String>,
     /// What the columns of a text are [default: reflectance, or metal where they are called n and k]
     #[arg(long = "as", value_enum, value_name = "QUANTITY")]
-    quantity: Option<Quantity>,
+    quantity: Option<ColumnQuantity>,
     /// Who made or measured it [default: what the file says]
     #[arg(long, value_name = "TEXT")]
     source: Option<String>,
@@ -118,7 +118,7 @@ struct Addition {
     replace: bool,
 }
 
-fn run(matches: &ArgMatches) -> Result<(), Failure> {
+fn run(matches: &ArgMatches) -> Result<(), CommandFailure> {
     match Commands::from_arg_matches(matches)? {
         Commands::List { database, kind, json } => list(database.as_deref(), kind, json),
         Commands::Show { place, json } => show::show(&place.record()?, json),
@@ -128,7 +128,7 @@ fn run(matches: &ArgMatches) -> Result<(), Failure> {
         }
         Commands::Add(addition) => add(&addition),
         Commands::Remove { database, name, kind } => {
-            let kind = kind_of(&Place { database: database.clone(), name: name.clone(), kind })?;
+            let kind = kind_of(&RecordAddress { database: database.clone(), name: name.clone(), kind })?;
             Store::open_existing(&database)?.remove(&[(kind, &name)])?;
             say!("{}: removed {kind} \"{name}\"", database.display());
             Ok(())
@@ -143,21 +143,21 @@ fn run(matches: &ArgMatches) -> Result<(), Failure> {
     }
 }
 
-fn list(database: Option<&Path>, kind: Option<Kind>, json: bool) -> Result<(), Failure> {
-    let mut groups: Vec<(String, Vec<Entry>)> = Vec::new();
+fn list(database: Option<&Path>, kind: Option<RecordKind>, json: bool) -> Result<(), CommandFailure> {
+    let mut groups: Vec<(String, Vec<RecordEntry>)> = Vec::new();
     if let Some(path) = database.filter(|path| *path != Path::new(SHIPPED)) {
         groups.push((path.display().to_string(), Store::open(path)?.entries(kind)?));
     }
     groups.push((SHIPPED.into(), shipped::entries(kind)));
     if json {
-        let group = |(database, records): &(String, Vec<Entry>)| serde_json::json!({ "database": database, "records": records });
+        let group = |(database, records): &(String, Vec<RecordEntry>)| serde_json::json!({ "database": database, "records": records });
         say!("{:#}", serde_json::Value::Array(groups.iter().map(group).collect()));
         return Ok(());
     }
     for (database, entries) in groups {
         say!("{database}: {} records", entries.len());
         let width = entries.iter().map(|entry| entry.name.chars().count()).max().unwrap_or(0).min(40);
-        for Entry { kind, name, summary, .. } in &entries {
+        for RecordEntry { kind, name, summary, .. } in &entries {
             say!("  {:<8}  {name:<width$}  {summary}", kind.word());
         }
         say_on!("{}", sources(&entries));
@@ -166,9 +166,9 @@ fn list(database: Option<&Path>, kind: Option<Kind>, json: bool) -> Result<(), F
 }
 
 /// Each source once, with its terms and the names of its records.
-fn sources(entries: &[Entry]) -> String {
+fn sources(entries: &[RecordEntry]) -> String {
     let mut groups: Vec<(&str, &str, Vec<&str>)> = Vec::new();
-    for Entry { name, source, terms, .. } in entries.iter().filter(|entry| !entry.source.is_empty()) {
+    for RecordEntry { name, source, terms, .. } in entries.iter().filter(|entry| !entry.source.is_empty()) {
         match groups.iter_mut().find(|group| (group.0, group.1) == (source, terms)) {
             Some((_, _, names)) if names.last() != Some(&name.as_str()) => names.push(name),
             Some(_) => {}
@@ -185,7 +185,7 @@ fn sources(entries: &[Entry]) -> String {
     text
 }
 
-fn add(addition: &Addition) -> Result<(), Failure> {
+fn add(addition: &Addition) -> Result<(), CommandFailure> {
     Destination::of(&addition.database)?;
     let file = &addition.file;
     let is_script = file.extension().is_some_and(|ending| ending == "rhai");
@@ -196,13 +196,13 @@ fn add(addition: &Addition) -> Result<(), Failure> {
         database::read(file, addition.name.as_deref(), addition.quantity)?
     } else {
         let message = format!("-D sets parameters of a script, and {} is none", file.display());
-        return Err(Failure::new(Exit::Usage, anyhow::anyhow!(message)));
+        return Err(CommandFailure::new(Exit::Usage, anyhow::anyhow!(message)));
     };
     if let [record] = &mut records[..] {
         record.name = addition.name.clone().unwrap_or_else(|| record.name.clone());
     } else if addition.name.is_some() {
         let message = format!("{} gives {} records, which --name cannot name", file.display(), records.len());
-        return Err(Failure::new(Exit::Usage, anyhow::anyhow!(message)));
+        return Err(CommandFailure::new(Exit::Usage, anyhow::anyhow!(message)));
     }
     for record in &mut records {
         check_name(&record.name)?;
@@ -211,7 +211,7 @@ fn add(addition: &Addition) -> Result<(), Failure> {
     }
     Store::open_to_write(&addition.database)?.add(&records, addition.replace).map_err(|error| match error {
         DatabaseError::Exists { .. } => {
-            Failure::new(Exit::Usage, anyhow::anyhow!("{error}; --replace lets it give way"))
+            CommandFailure::new(Exit::Usage, anyhow::anyhow!("{error}; --replace lets it give way"))
         }
         other => other.into(),
     })?;
@@ -223,16 +223,16 @@ fn add(addition: &Addition) -> Result<(), Failure> {
 }
 
 /// The materials of a scene under the names of its objects; equal ones of a name once.
-fn materials(scene: &Scene, source: &str) -> Result<Vec<Record>, Failure> {
-    fn walk(object: &Object, source: &str, records: &mut Vec<Record>) -> Result<(), Failure> {
+fn materials(scene: &Scene, source: &str) -> Result<Vec<Record>, CommandFailure> {
+    fn walk(object: &Object, source: &str, records: &mut Vec<Record>) -> Result<(), CommandFailure> {
         if let Some(material) = &object.material {
-            let content = Content::Material(Box::new(material.clone()));
+            let content = RecordContent::Material(Box::new(material.clone()));
             let origin = crate::color::Origin { source: source.into(), ..Default::default() };
             match records.iter().find(|record| record.name == object.name) {
                 Some(record) if record.content == content => {}
                 Some(_) => {
                     let message = format!("two objects called \"{}\" are of different materials", object.name);
-                    return Err(Failure::new(Exit::Scene, anyhow::anyhow!(message)));
+                    return Err(CommandFailure::new(Exit::Scene, anyhow::anyhow!(message)));
                 }
                 None => records.push(Record { name: object.name.clone(), origin, content }),
             }
@@ -246,13 +246,13 @@ fn materials(scene: &Scene, source: &str) -> Result<Vec<Record>, Failure> {
     let mut records = Vec::new();
     scene.objects.iter().try_for_each(|object| walk(object, source, &mut records))?;
     if records.is_empty() {
-        return Err(Failure::new(Exit::Scene, anyhow::anyhow!("no object of the scene has a material")));
+        return Err(CommandFailure::new(Exit::Scene, anyhow::anyhow!("no object of the scene has a material")));
     }
     Ok(records)
 }
 
-fn check(database: &Path, json: bool) -> Result<(), Failure> {
-    let report = Report::of(database)?;
+fn check(database: &Path, json: bool) -> Result<(), CommandFailure> {
+    let report = DatabaseReport::of(database)?;
     if json {
         say!("{}", serde_json::to_string_pretty(&report)?);
     } else {
@@ -267,5 +267,5 @@ fn check(database: &Path, json: bool) -> Result<(), Failure> {
     if report.is_whole() {
         return Ok(());
     }
-    Err(Failure::new(Exit::Failed, anyhow::anyhow!("{} is damaged", database.display())))
+    Err(CommandFailure::new(Exit::Failed, anyhow::anyhow!("{} is damaged", database.display())))
 }

@@ -1,7 +1,7 @@
 //! Where a record of a database is.
 
-use crate::cli::{Exit, Failure};
-use crate::database::{DatabaseError, Kind, Library, Record, Store, shipped};
+use crate::cli::{Exit, CommandFailure};
+use crate::database::{DatabaseError, RecordKind, Library, Record, Store, shipped};
 use crate::spelling;
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ pub(super) const SHIPPED: &str = "shipped";
 
 /// Where a record is.
 #[derive(Args, Debug)]
-pub(super) struct Place {
+pub(super) struct RecordAddress {
     /// The database (.redb), or "shipped" for what ships with the program
     #[arg(value_name = "DATABASE")]
     pub(super) database: PathBuf,
@@ -20,17 +20,17 @@ pub(super) struct Place {
     pub(super) name: String,
     /// Its kind, if there are several of that name
     #[arg(long, value_enum, value_name = "KIND")]
-    pub(super) kind: Option<Kind>,
+    pub(super) kind: Option<RecordKind>,
 }
 
-impl Place {
+impl RecordAddress {
     /// The file; none for what ships.
     pub(super) fn file(&self) -> Option<&Path> {
         Some(&*self.database).filter(|path| *path != Path::new(SHIPPED))
     }
 
     /// The record.
-    pub(super) fn record(&self) -> Result<Record, Failure> {
+    pub(super) fn record(&self) -> Result<Record, CommandFailure> {
         let kind = kind_of(self)?;
         match self.file() {
             Some(file) => Ok(Store::open(file)?.record(kind, &self.name)?),
@@ -39,25 +39,25 @@ impl Place {
     }
 
     /// Records of the file, and those that ship.
-    pub(super) fn library(&self) -> Result<Library, Failure> {
+    pub(super) fn library(&self) -> Result<Library, CommandFailure> {
         Ok(Library::of(self.file())?)
     }
 }
 
 /// The kind of a record; an error that lists the kinds, if there are several, or the names, if there is none.
-pub(super) fn kind_of(place: &Place) -> Result<Kind, Failure> {
+pub(super) fn kind_of(place: &RecordAddress) -> Result<RecordKind, CommandFailure> {
     if let Some(kind) = place.kind {
         return Ok(kind);
     }
     let names = match place.file() {
         Some(file) => {
             let store = Store::open(file)?;
-            Kind::ALL.map(|kind| store.names(kind))
+            RecordKind::ALL.map(|kind| store.names(kind))
         }
-        None => Kind::ALL.map(|kind| Ok(shipped::names(kind).into_iter().map(str::to_owned).collect())),
+        None => RecordKind::ALL.map(|kind| Ok(shipped::names(kind).into_iter().map(str::to_owned).collect())),
     };
     let (mut kinds, mut known) = (Vec::new(), Vec::new());
-    for (kind, names) in Kind::ALL.into_iter().zip(names) {
+    for (kind, names) in RecordKind::ALL.into_iter().zip(names) {
         let names: Vec<String> = names?;
         if names.contains(&place.name) {
             kinds.push(kind);
@@ -76,7 +76,7 @@ pub(super) fn kind_of(place: &Place) -> Result<Kind, Failure> {
         _ => {
             let kinds: Vec<String> = kinds.iter().map(|kind| format!("--kind {kind}")).collect();
             let message = format!("there are several records \"{}\"; say {}", place.name, kinds.join(" or "));
-            Err(Failure::new(Exit::Usage, anyhow::anyhow!(message)))
+            Err(CommandFailure::new(Exit::Usage, anyhow::anyhow!(message)))
         }
     }
 }

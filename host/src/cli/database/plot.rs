@@ -1,17 +1,17 @@
 //! Records drawn: spectra as curves, materials and geometry as pictures.
 
-use super::place::Place;
-use crate::cli::{Failure, progress};
+use super::place::RecordAddress;
+use crate::cli::{CommandFailure, progress};
 use crate::color::Color;
-use crate::database::{Content, Curves, Record};
+use crate::database::{RecordContent, Curves, Record};
 use crate::illumination::material::Material;
 use crate::picture::Picture;
 use crate::plan::Plan;
 use crate::render::ray_tracer;
-use crate::render::{Order, Renderer};
+use crate::render::{RenderOrder, Renderer};
 use crate::scene::{Object, Prepared, Scene, Shape, Studio};
 use crate::solid::Primitive;
-use crate::study::{Axis, Plot, Point, Series};
+use crate::study::{Axis, Plot, PlotPoint, Series};
 use files::{Destination, Folder};
 use glam::{DMat4, DVec3};
 use std::path::PathBuf;
@@ -20,26 +20,26 @@ use std::path::PathBuf;
 const SEEN: (f64, f64) = (360.0, 830.0);
 
 /// Writes the files of a record, and says which.
-pub(super) fn plot(record: &Record, place: &Place, folder: &Folder) -> Result<(), Failure> {
+pub(super) fn plot(record: &Record, place: &RecordAddress, folder: &Folder) -> Result<(), CommandFailure> {
     let is_plain = |c: char| c.is_alphanumeric() || "-_.".contains(c);
     let name: String = record.name.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
     let written = match &record.content {
-        Content::Spectrum(curves) => curve(record, curves).write(folder, &name)?.to_vec(),
-        Content::Light(light) => match light.strength().1 {
+        RecordContent::Spectrum(curves) => curve(record, curves).write(folder, &name)?.to_vec(),
+        RecordContent::Light(light) => match light.strength().1 {
             Color::Spectrum(spectrum) => curve(record, &Curves::Light(spectrum.clone())).write(folder, &name)?.to_vec(),
             Color::Bands(bands) => {
                 return Err(anyhow::anyhow!("the light \"{}\" has no spectrum, but {bands}", record.name).into());
             }
         },
-        Content::CaughtLight(_) => {
+        RecordContent::CaughtLight(_) => {
             return Err(anyhow::anyhow!("caught light is seen in its scene only: render that with --light").into());
         }
-        Content::Texture(picture) => {
+        RecordContent::Texture(picture) => {
             let file = picture_file(folder, &name)?;
             picture.write(&file)?;
             vec![file.path().into()]
         }
-        Content::Material(material) => {
+        RecordContent::Material(material) => {
             let ball = Object {
                 name: name.clone(),
                 shape: Shape::from(Primitive::Sphere { radius: 1.0 }),
@@ -49,7 +49,7 @@ pub(super) fn plot(record: &Record, place: &Place, folder: &Folder) -> Result<()
             };
             vec![render(ball, &picture_file(folder, &name)?)?]
         }
-        Content::Geometry(grouped) => {
+        RecordContent::Geometry(grouped) => {
             if grouped.mesh.triangles.is_empty() {
                 return Err(anyhow::anyhow!("the mesh is empty").into());
             }
@@ -70,7 +70,7 @@ pub(super) fn plot(record: &Record, place: &Place, folder: &Folder) -> Result<()
 }
 
 /// Where the picture of a record will be.
-fn picture_file(folder: &Folder, name: &str) -> Result<Destination, Failure> {
+fn picture_file(folder: &Folder, name: &str) -> Result<Destination, CommandFailure> {
     Ok(Picture::destination(&folder.path().join(format!("{name}.png")))?)
 }
 
@@ -78,7 +78,7 @@ fn picture_file(folder: &Folder, name: &str) -> Result<Destination, Failure> {
 fn curve(record: &Record, curves: &Curves) -> Plot {
     let of = |(name, spectrum): (&str, &crate::color::Spectrum)| {
         let within = spectrum.samples().filter(|(wavelength, _)| (SEEN.0..=SEEN.1).contains(wavelength));
-        let points = within.map(|(x, y)| Point { x, y, label: String::new() }).collect();
+        let points = within.map(|(x, y)| PlotPoint { x, y, label: String::new() }).collect();
         Series { name: name.to_owned(), points }
     };
     let y_label = match curves {
@@ -101,13 +101,13 @@ fn curve(record: &Record, curves: &Curves) -> Plot {
 }
 
 /// A picture of an object in the studio.
-fn render(object: Object, file: &Destination) -> Result<PathBuf, Failure> {
+fn render(object: Object, file: &Destination) -> Result<PathBuf, CommandFailure> {
     let mut scene = Scene { objects: vec![object], studio: Some(Studio::Lit), ..Scene::default() }.lit()?;
     (scene.settings.image.width, scene.settings.image.height, scene.settings.image.samples) = (360, 360, 48);
     let prepared = Prepared::new(&scene)?;
     let view = prepared.view();
     let plan = Plan::new(&prepared, &view);
-    let order = Order::of(&prepared.settings);
+    let order = RenderOrder::of(&prepared.settings);
     let rendering = ray_tracer(&prepared, &plan)?.render(&view, &order, &progress::watch())?;
     rendering.picture.write(file)?;
     Ok(file.path().to_owned())

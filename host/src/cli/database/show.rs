@@ -1,21 +1,21 @@
 //! A record in full, as text.
 
-use crate::cli::Failure;
+use crate::cli::CommandFailure;
 use crate::color::columns;
-use crate::database::{Content, Record};
+use crate::database::{RecordContent, Record};
 use crate::mesh::Grouped;
 use crate::picture::Picture;
 
 /// Prints a record.
-pub(super) fn show(record: &Record, json: bool) -> Result<(), Failure> {
+pub(super) fn show(record: &Record, json: bool) -> Result<(), CommandFailure> {
     if json {
         let mut all = record.json().unwrap_or_else(|| serde_json::to_value(record.entry(0)).unwrap_or_default());
         let more = match &record.content {
-            Content::Geometry(grouped) => geometry_json(grouped),
-            Content::Texture(picture) => {
+            RecordContent::Geometry(grouped) => geometry_json(grouped),
+            RecordContent::Texture(picture) => {
                 serde_json::json!({ "width": picture.width(), "height": picture.height(), "mean": mean(picture) })
             }
-            Content::CaughtLight(caught) => {
+            RecordContent::CaughtLight(caught) => {
                 let bounds = caught.bounds().map(|corners| corners.map(|corner| corner.to_array()));
                 serde_json::json!({ "ways": caught.ways(), "caught": caught.len(), "bounds": bounds })
             }
@@ -35,12 +35,12 @@ pub(super) fn show(record: &Record, json: bool) -> Result<(), Failure> {
         }
     }
     match &record.content {
-        Content::Geometry(grouped) => show_geometry(grouped),
-        Content::Texture(picture) => {
+        RecordContent::Geometry(grouped) => show_geometry(grouped),
+        RecordContent::Texture(picture) => {
             let [red, green, blue] = mean(picture);
             say!("mean      {red} {green} {blue} (linear)");
         }
-        Content::Spectrum(curves) => match columns::print(&Default::default(), &curves.named()) {
+        RecordContent::Spectrum(curves) => match columns::print(&Default::default(), &curves.named()) {
             Some(text) => say_on!("{text}"),
             None => {
                 for curve in curves.named() {
@@ -48,13 +48,13 @@ pub(super) fn show(record: &Record, json: bool) -> Result<(), Failure> {
                 }
             }
         },
-        Content::Material(material) => say!("{}", serde_json::to_string_pretty(material)?),
-        Content::CaughtLight(caught) => {
+        RecordContent::Material(material) => say!("{}", serde_json::to_string_pretty(material)?),
+        RecordContent::CaughtLight(caught) => {
             if let Some([low, high]) = caught.bounds() {
                 say!("bounds    {low} to {high}");
             }
         }
-        Content::Light(light) => say!("{}", serde_json::to_string_pretty(light)?),
+        RecordContent::Light(light) => say!("{}", serde_json::to_string_pretty(light)?),
     }
     Ok(())
 }

@@ -2,9 +2,9 @@
 
 use crate::cli::display::DisplayArguments;
 use crate::cli::source::stem;
-use crate::cli::{Definitions, Exit, Failure, SCRIPT_HELP};
+use crate::cli::{ScriptArguments, Exit, CommandFailure, SCRIPT_HELP};
 use crate::picture::{Filter, Picture};
-use crate::render::{Order, RENDERERS, Technique};
+use crate::render::{RenderOrder, RENDERERS, Technique};
 use crate::scene::{Camera, MAX_SAMPLES, Prepared, Settings, View};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -16,11 +16,11 @@ use std::path::{Path, PathBuf};
 const MOST_VIEWS: i64 = 10_000;
 
 #[derive(Args, Debug)]
-pub(super) struct Arguments {
+pub(super) struct RenderArguments {
     #[arg(help = SCRIPT_HELP, default_value = "teapot", value_name = "SCRIPT")]
     pub(super) script: String,
     #[command(flatten)]
-    pub(super) definitions: Definitions,
+    pub(super) definitions: ScriptArguments,
     /// Picture file, .png (sRGB) or .exr (linear, coverage as alpha); may be given more than once [default: NAME.png]
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Vec<PathBuf>,
@@ -106,7 +106,7 @@ pub(super) struct Arguments {
     pub(super) json: bool,
 }
 
-impl Arguments {
+impl RenderArguments {
     /// Sets what the command line says of the scene's settings.
     pub(super) fn set(&self, settings: &mut Settings) {
         (settings.image.width, settings.image.height) =
@@ -119,21 +119,21 @@ impl Arguments {
     }
 
     /// How pictures are to be made. Where errors or the clock decide about samples, the scene does not.
-    pub(super) fn order(&self, settings: &Settings) -> Order {
+    pub(super) fn order(&self, settings: &Settings) -> RenderOrder {
         let is_open = self.error.is_some() || self.seconds.is_some();
-        Order {
+        RenderOrder {
             samples: self.samples.unwrap_or(if is_open { MAX_SAMPLES } else { settings.image.samples }),
             threads: self.threads,
             target: self.error,
             seconds: self.seconds,
             matte: self.matte,
             denoise: self.denoise,
-            ..Order::of(settings)
+            ..RenderOrder::of(settings)
         }
     }
 
     /// The files of each view, tested; none for a single pixel.
-    pub(super) fn destinations(&self) -> Result<Vec<Vec<Destination>>, Failure> {
+    pub(super) fn destinations(&self) -> Result<Vec<Vec<Destination>>, CommandFailure> {
         if self.pixel.is_some() {
             return Ok(Vec::new());
         }
@@ -158,7 +158,7 @@ impl Arguments {
     }
 
     /// From where the scene is seen.
-    pub(super) fn views_of(&self, prepared: &Prepared) -> Result<Vec<View>, Failure> {
+    pub(super) fn views_of(&self, prepared: &Prepared) -> Result<Vec<View>, CommandFailure> {
         let count = self.views.unwrap_or(1);
         let step = self.turn.unwrap_or(360.0 / f64::from(count)).to_radians();
         let camera = prepared.camera;
@@ -168,7 +168,7 @@ impl Arguments {
     }
 
     /// Refuses what a renderer does not know.
-    pub(super) fn check(&self) -> Result<(), Failure> {
+    pub(super) fn check(&self) -> Result<(), CommandFailure> {
         let row = self.renderer.row();
         let given = [
             ("--error", self.error.is_some()),
@@ -184,7 +184,7 @@ impl Arguments {
             }
             _ => return Ok(()),
         };
-        Err(Failure::new(Exit::Usage, anyhow::anyhow!(message)))
+        Err(CommandFailure::new(Exit::Usage, anyhow::anyhow!(message)))
     }
 }
 

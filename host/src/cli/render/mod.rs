@@ -7,29 +7,29 @@ mod views;
 
 use super::say::warn;
 use super::source::{load_lit, warn_of_emptiness};
-use super::{Exit, Failure, Row, progress};
+use super::{Exit, CommandFailure, SubcommandRow, progress};
 use crate::picture::display::DisplayTransform;
 use crate::plan::Plan;
 use crate::render::metering::Meter;
-use crate::render::two_way::Shelf;
-use crate::render::{Film, Fingerprint, Made, Ready, RenderError, Task, Watch};
+use crate::render::two_way::PhotonStore;
+use crate::render::{Film, Fingerprint, AnyRenderer, PreparedRenderer, RenderError, Task, Watch};
 use crate::scene::Prepared;
-use arguments::Arguments;
+use arguments::RenderArguments;
 use clap::{Args, FromArgMatches};
 use files::Destination;
 use saved::{Intermediate, Saved};
 use std::path::Path;
 use std::time::{Duration, Instant};
-use views::Views;
+use views::ViewBatch;
 
-pub(super) const ROW: Row = Row {
+pub(super) const ROW: SubcommandRow = SubcommandRow {
     name: "render",
     summary: "Renders a scene by ray tracing, scan line or radiosity into a PNG or EXR file.",
-    arguments: Arguments::augment_args,
-    run: |matches| run(&Arguments::from_arg_matches(matches)?),
+    arguments: RenderArguments::augment_args,
+    run: |matches| run(&RenderArguments::from_arg_matches(matches)?),
 };
 
-fn run(arguments: &Arguments) -> Result<(), Failure> {
+fn run(arguments: &RenderArguments) -> Result<(), CommandFailure> {
     arguments.check()?;
     let outputs = arguments.destinations()?;
     let state = arguments.resume.as_ref().map(Destination::of).transpose()?;
@@ -49,11 +49,11 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let order = arguments.order(&prepared.settings);
     if order.denoise && order.samples < 2 {
         let message = "--denoise needs 2 samples in each pixel: what differs between them is noise";
-        return Err(Failure::new(Exit::Usage, anyhow::anyhow!(message)));
+        return Err(CommandFailure::new(Exit::Usage, anyhow::anyhow!(message)));
     }
     let every = Duration::from_secs_f64(arguments.checkpoint.min(1e9));
     let intermediate = Intermediate::of(arguments, &plan);
-    let keeps = |(path, lasts): (&Path, bool)| Shelf::new(path, &scene, &prepared, every, lasts);
+    let keeps = |(path, lasts): (&Path, bool)| PhotonStore::new(path, &scene, &prepared, every, lasts);
     let shelf = intermediate.light(arguments).map(keeps).transpose()?;
     // Only what is kept has to be known again.
     let fingerprint = state.as_ref().map(|_| Fingerprint::of(&scene, &prepared, &order));
@@ -62,7 +62,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     if order.seconds.is_none() && order.target.is_none() {
         progress::follow(&format!("{} samples", order.samples));
     }
-    let mut all = Views {
+    let mut all = ViewBatch {
         arguments,
         views: &views,
         outputs: &outputs,
@@ -79,17 +79,17 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         all.saved = Some(Saved::read(arguments, every, state, fingerprint, &order)?);
     }
     let task = Task { prepared: &prepared, plan: &plan, shelf: shelf.as_ref(), watch };
-    let Ready { renderer, radiosity } = in_pool(arguments, || arguments.renderer.prepare(&task))?;
+    let PreparedRenderer { renderer, radiosity } = in_pool(arguments, || arguments.renderer.prepare(&task))?;
     all.radiosity = radiosity;
-    if let (Some(pixel), Made::BySamples(tracer)) = (arguments.pixel, &renderer) {
+    if let (Some(pixel), AnyRenderer::BySamples(tracer)) = (arguments.pixel, &renderer) {
         progress::stage("while sampling the pixel");
         return pixel::explain(arguments, tracer, &views[0], &order, pixel);
     }
     renderer.any().left_out(&views[0]).iter().for_each(|what| warn(&format!("by {}, {what}", row.word)));
     all.stops = meter.stops(renderer.any(), &prepared, &views[..1], &watch)?;
     let ended = match &renderer {
-        Made::Whole(renderer) => all.render(&mut |view, _, _| Ok(renderer.render(view, &order, &watch)?)),
-        Made::BySamples(tracer) => {
+        AnyRenderer::Whole(renderer) => all.render(&mut |view, _, _| Ok(renderer.render(view, &order, &watch)?)),
+        AnyRenderer::BySamples(tracer) => {
             all.comes_bit_by_bit = true;
             all.render(&mut |view, film, checkpoints| {
                 let film = film.map_or_else(|| Film::new(order.width, order.height), Ok)?;
@@ -105,7 +105,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Makes something on as many threads as are asked for.
-fn in_pool<T: Send>(arguments: &Arguments, make: impl FnOnce() -> Result<T, RenderError> + Send) -> Result<T, Failure> {
+fn in_pool<T: Send>(arguments: &RenderArguments, make: impl FnOnce() -> Result<T, RenderError> + Send) -> Result<T, CommandFailure> {
     let threads = arguments.threads.map_or(0, |n| n.get());
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(anyhow::Error::from)?;
     Ok(pool.install(make)?)

@@ -1,8 +1,8 @@
 //! One pixel, explained.
 
-use super::arguments::Arguments;
-use crate::cli::{Exit, Failure};
-use crate::render::Order;
+use super::arguments::RenderArguments;
+use crate::cli::{Exit, CommandFailure};
+use crate::render::RenderOrder;
 use crate::render::ray_tracing::{Explanation, RayTracer};
 use crate::scene::View;
 use glam::DVec3;
@@ -12,15 +12,15 @@ const EXPLAINED: usize = 4;
 
 /// Prints what is known of one pixel.
 pub(super) fn explain(
-    arguments: &Arguments,
+    arguments: &RenderArguments,
     tracer: &RayTracer<'_>,
     view: &View,
-    order: &Order,
+    order: &RenderOrder,
     [x, y]: [u32; 2],
-) -> Result<(), Failure> {
+) -> Result<(), CommandFailure> {
     if x >= order.width || y >= order.height {
         let message = format!("pixel {x},{y} is outside the picture of {} x {}", order.width, order.height);
-        return Err(Failure::new(Exit::Usage, anyhow::anyhow!(message)));
+        return Err(CommandFailure::new(Exit::Usage, anyhow::anyhow!(message)));
     }
     let samples = tracer.explain(view, order, [x, y], order.samples)?;
     let mean = samples.iter().map(|sample| DVec3::from_array(sample.radiance)).sum::<DVec3>() / samples.len() as f64;

@@ -1,9 +1,9 @@
 //! Files from which an interrupted rendering goes on: its film, and beside it what was found before there was one.
 
-use super::arguments::Arguments;
-use crate::cli::Failure;
+use super::arguments::RenderArguments;
+use crate::cli::CommandFailure;
 use crate::plan::{Plan, Stage};
-use crate::render::{Film, Fingerprint, Memo, Order, State, StateError};
+use crate::render::{Film, Fingerprint, Memo, RenderOrder, RenderState, StateError};
 use files::Destination;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -28,20 +28,20 @@ impl Saved<'_> {
     /// # Errors
     /// [`StateError`] as [`Failure`]: the file is damaged, or of another rendering.
     pub(super) fn read<'a>(
-        arguments: &Arguments,
+        arguments: &RenderArguments,
         every: Duration,
         destination: &'a Destination,
         mut fingerprint: Fingerprint,
-        order: &Order,
-    ) -> Result<Saved<'a>, Failure> {
+        order: &RenderOrder,
+    ) -> Result<Saved<'a>, CommandFailure> {
         if let Some(views) = arguments.views {
             // Views that are finished get no more samples.
-            let Order { samples, target, .. } = order;
+            let RenderOrder { samples, target, .. } = order;
             fingerprint = fingerprint.with(&format!("{views} {:?} {samples} {target:?}", arguments.turn));
         }
         let mut saved = Saved { destination, fingerprint, views: 0, film: None, every };
         if destination.path().exists() {
-            let State { views, film } = State::read(destination.path(), order, fingerprint)?;
+            let RenderState { views, film } = RenderState::read(destination.path(), order, fingerprint)?;
             (saved.views, saved.film) = (views as usize, Some(film));
         }
         Ok(saved)
@@ -81,7 +81,7 @@ pub(super) struct Intermediate {
 
 impl Intermediate {
     /// Those that a rendering needs.
-    pub(super) fn of(arguments: &Arguments, plan: &Plan) -> Intermediate {
+    pub(super) fn of(arguments: &RenderArguments, plan: &Plan) -> Intermediate {
         let beside = |ending: &str| {
             let mut name = arguments.resume.as_ref()?.as_os_str().to_owned();
             name.push(ending);
@@ -97,7 +97,7 @@ impl Intermediate {
     }
 
     /// The database for light that is followed, and whether it is to last.
-    pub(super) fn light<'a>(&'a self, arguments: &'a Arguments) -> Option<(&'a Path, bool)> {
+    pub(super) fn light<'a>(&'a self, arguments: &'a RenderArguments) -> Option<(&'a Path, bool)> {
         let lasting = arguments.light.as_deref().map(|path| (path, true));
         lasting.or_else(|| self.light.as_deref().map(|path| (path, false)))
     }
@@ -108,12 +108,12 @@ impl Intermediate {
     /// [`StateError`] as [`Failure`].
     pub(super) fn memo(
         &self,
-        arguments: &Arguments,
+        arguments: &RenderArguments,
         fingerprint: Option<&Fingerprint>,
-    ) -> Result<Option<Memo>, Failure> {
+    ) -> Result<Option<Memo>, CommandFailure> {
         let (Some(path), Some(fingerprint)) = (&self.radiosity, fingerprint) else { return Ok(None) };
         // What is left out depends on the views.
-        let Arguments { views, turn, everything, renderer, .. } = arguments;
+        let RenderArguments { views, turn, everything, renderer, .. } = arguments;
         let fingerprint = fingerprint.of_scene(&format!("{views:?} {turn:?} {everything} {renderer:?}"));
         Ok(Some(Memo::open(path, fingerprint)?))
     }

@@ -1,15 +1,15 @@
 //! Views that are rendered one after the other, each written and reported on.
 
-use super::arguments::Arguments;
+use super::arguments::RenderArguments;
 use super::saved::Saved;
-use crate::cli::interrupts::{self, Keeping};
+use crate::cli::interrupts::{self, InterruptGuard};
 use crate::cli::say::{self, warn};
 use crate::cli::source::stem;
-use crate::cli::{Exit, Failure, progress};
+use crate::cli::{Exit, CommandFailure, progress};
 use crate::memory;
 use crate::picture::display::{DisplayTransform, Tone, clipped};
 use crate::picture::{Picture, Provenance};
-use crate::render::radiosity::Report;
+use crate::render::radiosity::RadiosityReport;
 use crate::render::ray_tracing::Checkpoints;
 use crate::render::{Film, Rendering};
 use crate::scene::{Prepared, View};
@@ -22,11 +22,11 @@ use std::time::Instant;
 const TOLD: f64 = 1e-3;
 
 /// Renders a view: on a film that was begun before, if there is one, and keeping it from time to time.
-pub(super) type Render<'a> = dyn FnMut(&View, Option<Film>, Option<Checkpoints<'_>>) -> Result<Rendering, Failure> + 'a;
+pub(super) type Render<'a> = dyn FnMut(&View, Option<Film>, Option<Checkpoints<'_>>) -> Result<Rendering, CommandFailure> + 'a;
 
 /// Views of a scene, and their files.
-pub(super) struct Views<'a> {
-    pub(super) arguments: &'a Arguments,
+pub(super) struct ViewBatch<'a> {
+    pub(super) arguments: &'a RenderArguments,
     pub(super) views: &'a [View],
     /// The files of each view.
     pub(super) outputs: &'a [Vec<Destination>],
@@ -38,19 +38,19 @@ pub(super) struct Views<'a> {
     /// When the work began.
     pub(super) start: Instant,
     /// What radiosity took.
-    pub(super) radiosity: Option<Report>,
+    pub(super) radiosity: Option<RadiosityReport>,
     /// Where films are kept, and what was there.
     pub(super) saved: Option<Saved<'a>>,
     /// Whether all of a picture is there before it has all its samples.
     pub(super) comes_bit_by_bit: bool,
 }
 
-impl Views<'_> {
+impl ViewBatch<'_> {
     /// Renders the views, writes them and reports on them.
     ///
     /// # Errors
     /// [`Failure`], also for a picture that was interrupted, or has pixels that miss the error that was asked for.
-    pub(super) fn render(mut self, render: &mut Render<'_>) -> Result<(), Failure> {
+    pub(super) fn render(mut self, render: &mut Render<'_>) -> Result<(), CommandFailure> {
         let mut reports = Vec::new();
         let ended = self.render_all(render, &mut reports);
         match self.arguments.views {
@@ -61,14 +61,14 @@ impl Views<'_> {
         ended
     }
 
-    fn render_all(&mut self, render: &mut Render<'_>, reports: &mut Vec<Value>) -> Result<(), Failure> {
+    fn render_all(&mut self, render: &mut Render<'_>, reports: &mut Vec<Value>) -> Result<(), CommandFailure> {
         let build_seconds = self.start.elapsed().as_secs_f64();
         let mut missing: f64 = 0.0;
         for (number, (view, outputs)) in self.views.iter().zip(self.outputs).enumerate() {
             if self.saved.as_ref().is_some_and(|saved| saved.has_finished(number, outputs)) {
                 continue;
             }
-            let keeping = self.comes_bit_by_bit.then(Keeping::begin);
+            let keeping = self.comes_bit_by_bit.then(InterruptGuard::begin);
             let film = self.saved.as_mut().and_then(|saved| saved.take(number));
             let saved = self.saved.as_ref();
             let mut keep = |film: &Film| saved.map_or(Ok(()), |saved| saved.write(number, film));
@@ -100,7 +100,7 @@ impl Views<'_> {
                 }
             }
             kept?;
-            let failed = |exit, message: String| Err(Failure::new(exit, anyhow::anyhow!(message)));
+            let failed = |exit, message: String| Err(CommandFailure::new(exit, anyhow::anyhow!(message)));
             match (is_whole, rendering.complete) {
                 (true, true) => {}
                 (true, false) => {
@@ -125,14 +125,14 @@ impl Views<'_> {
                     "{:.2}% of the pixels have a relative error above {target}; the picture is written all the same",
                     100.0 * missing
                 );
-                Err(Failure::new(Exit::Missed, anyhow::anyhow!(message)))
+                Err(CommandFailure::new(Exit::Missed, anyhow::anyhow!(message)))
             }
             _ => Ok(()),
         }
     }
 
     /// Writes the files of a view; the part of the pixels that are clipped in a PNG file, 0..=1.
-    fn write(&self, outputs: &[Destination], view: &View, rendering: &Rendering) -> Result<f64, Failure> {
+    fn write(&self, outputs: &[Destination], view: &View, rendering: &Rendering) -> Result<f64, CommandFailure> {
         let Rendering { picture, film, .. } = rendering;
         let provenance = self.provenance(rendering);
         let is_seen = outputs.iter().any(|file| !Picture::is_exr(file.path()));
@@ -222,7 +222,7 @@ impl Views<'_> {
         if let Some(balance) = &rendering.balance {
             say!("{balance}");
         }
-        self.radiosity.iter().flat_map(Report::lines).for_each(|line| say!("{line}"));
+        self.radiosity.iter().flat_map(RadiosityReport::lines).for_each(|line| say!("{line}"));
         let Rendering { rays, spans, .. } = rendering;
         if !self.arguments.renderer.row().adds_samples {
             return say!("{} spans of surfaces, {} of shadow polygons", spans.surfaces, spans.shadows);

@@ -1,18 +1,18 @@
 //! The arguments of `peris show`.
 
-use crate::cli::waits::Waits;
-use crate::cli::{Definitions, SCRIPT_HELP};
-use crate::workstation::{Drawing, Lines};
+use crate::cli::waits::TimeoutArguments;
+use crate::cli::{ScriptArguments, SCRIPT_HELP};
+use crate::workstation::{Drawing, DrawnEdges};
 use clap::Args;
 use protocol::address::Address;
 use std::{num::NonZeroUsize, path::PathBuf};
 
 #[derive(Args, Clone, Debug)]
-pub(super) struct Arguments {
+pub(super) struct ShowArguments {
     #[arg(help = SCRIPT_HELP, default_value = "teapot", value_name = "SCRIPT")]
     pub(super) script: String,
     #[command(flatten)]
-    pub(super) definitions: Definitions,
+    pub(super) definitions: ScriptArguments,
     /// The host line of a PS 340 that runs already (tcp:HOST:PORT or unix:PATH); without it, one is started, with a window if
     /// there is a display, and the lines of standard input are orders for its operator ('help' lists them)
     #[arg(long, value_name = "LINE")]
@@ -35,7 +35,7 @@ pub(super) struct Arguments {
     pub(super) json: bool,
     /// Which edges are sent
     #[arg(long, value_enum, default_value = "grid")]
-    pub(super) lines: Lines,
+    pub(super) lines: DrawnEdges,
     /// Edges that bend more than this are always sent, degrees
     #[arg(long, value_name = "DEGREES", default_value_t = Drawing::default().crease_degrees)]
     pub(super) crease: f64,
@@ -63,10 +63,10 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR", default_value = ".", conflicts_with = "to")]
     pub(super) files: PathBuf,
     #[command(flatten)]
-    pub(super) waits: Waits,
+    pub(super) waits: TimeoutArguments,
 }
 
-impl Arguments {
+impl ShowArguments {
     /// The lines that are sent, and how they are made.
     pub(super) fn drawing(&self) -> Drawing {
         Drawing { lines: self.lines, crease_degrees: self.crease, tolerance: self.tolerance, facets: self.facets }

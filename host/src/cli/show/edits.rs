@@ -1,8 +1,8 @@
 //! What becomes of a scene while its script is edited: whenever a file that it is made of is saved, it is made anew.
 
-use super::{arguments::Arguments, ready::modelled};
+use super::{arguments::ShowArguments, ready::modelled};
 use crate::{
-    cli::{Failure, load, source},
+    cli::{CommandFailure, load, source},
     production::Model,
     scene::{Camera, Scene},
     workstation::InitialView,
@@ -33,12 +33,12 @@ type Stamp = Option<(SystemTime, u64)>;
 
 /// Files, and what they were when they were looked at last.
 #[derive(Default)]
-pub(super) struct Watched(Vec<(PathBuf, Stamp)>);
+pub(super) struct WatchedFiles(Vec<(PathBuf, Stamp)>);
 
-impl Watched {
+impl WatchedFiles {
     /// The script, or mesh, as it is before it is read.
-    pub(super) fn of(script: &str) -> Watched {
-        let mut watched = Watched::default();
+    pub(super) fn of(script: &str) -> WatchedFiles {
+        let mut watched = WatchedFiles::default();
         watched.follow(source::file(script).map(Path::to_path_buf));
         watched
     }
@@ -80,12 +80,12 @@ fn files(script: &str, read: &[PathBuf]) -> Vec<PathBuf> {
 /// - `watched`: the script. `files_read`: by the scene as it is shown now. `camera`: that its script asks for. `initial`: from
 ///   where it is seen.
 pub(super) fn watch(
-    arguments: &Arguments,
-    mut watched: Watched,
+    arguments: &ShowArguments,
+    mut watched: WatchedFiles,
     files_read: &[PathBuf],
     camera: Option<Camera>,
     initial: InitialView,
-) -> mpsc::Receiver<Result<Edit, Failure>> {
+) -> mpsc::Receiver<Result<Edit, CommandFailure>> {
     let (sender, edits) = mpsc::channel();
     let arguments = arguments.clone();
     watched.follow(files(&arguments.script, files_read));
@@ -125,9 +125,9 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let [one, two] = ["one", "two"].map(|name| folder.path().join(name));
         fs::write(&one, "1").expect("written");
-        let mut watched = Watched::default();
+        let mut watched = WatchedFiles::default();
         watched.follow([one.clone(), two.clone()]);
-        let changes = |watched: &mut Watched| [watched.have_changed(), watched.have_changed()];
+        let changes = |watched: &mut WatchedFiles| [watched.have_changed(), watched.have_changed()];
         assert_eq!(changes(&mut watched), [false, false]);
         fs::write(&one, "12").expect("written");
         assert_eq!(changes(&mut watched), [true, false]);

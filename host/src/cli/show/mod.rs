@@ -7,39 +7,39 @@ mod told;
 mod serving;
 
 use super::say::warn;
-use super::{Exit, Failure, Row, load, source};
+use super::{Exit, CommandFailure, SubcommandRow, load, source};
 use crate::{
     production::{Production, Sent},
     render::tiles::Tiling,
     script::Evaluated,
-    workstation::{Emulator, Patience, Session, network::KEYS},
+    workstation::{Emulator, Timeouts, Session, network::KEYS},
 };
-use arguments::Arguments;
+use arguments::ShowArguments;
 use clap::{Args, FromArgMatches};
-use edits::Watched;
+use edits::WatchedFiles;
 use files::Destination;
 use protocol::address::Address;
 use ready::modelled;
 use serving::Server;
-use told::Told;
+use told::ViewReporter;
 
-pub(super) const ROW: Row = Row {
+pub(super) const ROW: SubcommandRow = SubcommandRow {
     name: "show",
     summary: "Shows a scene on a PS 340 with dials and keys: key 1 renders the view there, key 4 stops that, key 2 resets, key 3 tells the view as a line of a script, key 12 ends.",
-    arguments: Arguments::augment_args,
-    run: |matches| run(&Arguments::from_arg_matches(matches)?),
+    arguments: ShowArguments::augment_args,
+    run: |matches| run(&ShowArguments::from_arg_matches(matches)?),
 };
 
-fn run(arguments: &Arguments) -> Result<(), Failure> {
+fn run(arguments: &ShowArguments) -> Result<(), CommandFailure> {
     if !(0.0..=180.0).contains(&arguments.crease) {
-        return Err(Failure::new(Exit::Usage, anyhow::anyhow!("--crease is an angle of 0 to 180 degrees")));
+        return Err(CommandFailure::new(Exit::Usage, anyhow::anyhow!("--crease is an angle of 0 to 180 degrees")));
     }
     if arguments.watch && source::file(&arguments.script).is_none() {
         let text = format!("--watch is for a file, and '{}' is a scene that ships", arguments.script);
-        return Err(Failure::new(Exit::Usage, anyhow::anyhow!(text)));
+        return Err(CommandFailure::new(Exit::Usage, anyhow::anyhow!(text)));
     }
     let file = arguments.camera.as_ref().map(Destination::of).transpose()?;
-    let watched = arguments.watch.then(|| Watched::of(&arguments.script));
+    let watched = arguments.watch.then(|| WatchedFiles::of(&arguments.script));
     let evaluated = load(&arguments.script, &arguments.definitions)?;
     let camera = evaluated.scene.camera;
     let Evaluated { scene, files, .. } = source::lit(evaluated)?;
@@ -64,7 +64,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     for (number, label, _) in KEYS.iter().filter(|_| !arguments.json) {
         say!("key {number}: {label}");
     }
-    let mut told = Told::new(file, arguments.json);
+    let mut told = ViewReporter::new(file, arguments.json);
     let served = Server::new(&mut production, &mut emulator, arguments, &mut told, &scene).serve(edits.as_ref());
     let is_cut = matches!(&served, Err(failure) if failure.exit == Exit::Line);
     if is_cut && emulator.as_mut().is_some_and(|emulator| emulator.has_window() && emulator.has_quit()) {
@@ -83,7 +83,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Starts a PS 340 of our own, with a window if there is a display to open it on.
-fn start(arguments: &Arguments, patience: Patience) -> Result<Emulator, Failure> {
+fn start(arguments: &ShowArguments, patience: Timeouts) -> Result<Emulator, CommandFailure> {
     let has_display =
         ["DISPLAY", "WAYLAND_DISPLAY"].iter().any(|name| std::env::var_os(name).is_some_and(|d| !d.is_empty()));
     if has_display && !arguments.headless {
@@ -96,7 +96,7 @@ fn start(arguments: &Arguments, patience: Patience) -> Result<Emulator, Failure>
 }
 
 /// Says what was sent.
-fn report(arguments: &Arguments, line: &Address, sent: Sent, light: Option<&Tiling>) {
+fn report(arguments: &ShowArguments, line: &Address, sent: Sent, light: Option<&Tiling>) {
     let Sent { lines, points, seconds } = sent;
     let light = light.map(|light| (light.elements, light.tiles.len(), light.corners(), light.tolerance));
     if arguments.json {

@@ -1,8 +1,8 @@
 //! A scene made ready to be shown.
 
-use super::arguments::Arguments;
+use super::arguments::ShowArguments;
 use crate::cli::source::warn_of_emptiness;
-use crate::cli::{Failure, progress};
+use crate::cli::{CommandFailure, progress};
 use crate::{
     production::{Model, tiling},
     render::tiles::Tiling,
@@ -15,9 +15,9 @@ use crate::{
 /// - `initial`: from where it is seen, instead of by its own camera.
 pub(super) fn modelled(
     scene: &Scene,
-    arguments: &Arguments,
+    arguments: &ShowArguments,
     initial: Option<InitialView>,
-) -> Result<(Model, Option<Tiling>), Failure> {
+) -> Result<(Model, Option<Tiling>), CommandFailure> {
     let light = if arguments.radiosity {
         warn_of_emptiness(scene);
         let light = tiling(scene, arguments.threads, &progress::watch())?;

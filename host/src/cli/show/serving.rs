@@ -1,15 +1,15 @@
 //! Keys of the workstation, orders from standard input, edits of the script and the rendering that goes on meanwhile.
 
-use super::{arguments::Arguments, edits::Edit, told::Told};
+use super::{arguments::ShowArguments, edits::Edit, told::ViewReporter};
 use crate::{
-    cli::{Failure, exit::story, progress, say},
+    cli::{CommandFailure, exit::story, progress, say},
     picture::display::DisplayTransform,
-    production::{News, Production, ProductionError, Progressive, Shot},
-    render::{Amount, Order},
+    production::{RenderingEvent, Production, ProductionError, Progressive, RenderedView},
+    render::{Progress, RenderOrder},
     scene::Scene,
     workstation::{
         Emulator, WorkstationError,
-        network::{KEY_PREFIX, KEYS, Key},
+        network::{KEY_PREFIX, KEYS, FunctionKey},
     },
 };
 use std::{
@@ -29,20 +29,20 @@ const MESSAGE: usize = 80;
 pub(super) struct Server<'a> {
     production: &'a mut Production,
     emulator: &'a mut Option<Emulator>,
-    arguments: &'a Arguments,
-    told: &'a mut Told,
-    order: Order,
+    arguments: &'a ShowArguments,
+    told: &'a mut ViewReporter,
+    order: RenderOrder,
     display: DisplayTransform,
     rendering: Option<Progressive>,
     /// What the rendering does now, in words.
     stage: &'static str,
     /// What the key to render says now.
     label: String,
-    orders: Orders,
+    orders: OperatorCommands,
 }
 
 /// Orders from standard input for the operator of a workstation of our own.
-struct Orders {
+struct OperatorCommands {
     /// None if there are none any more.
     given: Option<mpsc::Receiver<String>>,
     /// Orders whose replies are still to come.
@@ -56,12 +56,12 @@ impl<'a> Server<'a> {
     pub(super) fn new(
         production: &'a mut Production,
         emulator: &'a mut Option<Emulator>,
-        arguments: &'a Arguments,
-        told: &'a mut Told,
+        arguments: &'a ShowArguments,
+        told: &'a mut ViewReporter,
         scene: &Scene,
     ) -> Server<'a> {
         let given = emulator.as_ref().map(|_| read_orders());
-        let orders = Orders { given, unanswered: 0, at_work: Instant::now() };
+        let orders = OperatorCommands { given, unanswered: 0, at_work: Instant::now() };
         let order = order(scene, arguments);
         Server {
             production,
@@ -80,7 +80,7 @@ impl<'a> Server<'a> {
     /// Serves until the end.
     ///
     /// - `edits`: scenes that take the place of this one.
-    pub(super) fn serve(&mut self, edits: Option<&mpsc::Receiver<Result<Edit, Failure>>>) -> Result<(), Failure> {
+    pub(super) fn serve(&mut self, edits: Option<&mpsc::Receiver<Result<Edit, CommandFailure>>>) -> Result<(), CommandFailure> {
         loop {
             if self.carry_out_orders()? {
                 return Ok(());
@@ -97,18 +97,18 @@ impl<'a> Server<'a> {
             let number = message.strip_prefix(KEY_PREFIX.as_bytes()).and_then(|n| std::str::from_utf8(n).ok());
             let number = number.and_then(|n| n.trim().parse::<i32>().ok());
             match KEYS.iter().find(|row| Some(row.0) == number).map(|row| row.2) {
-                Some(Key::Render) => self.render()?,
-                Some(Key::Cancel) => self.rendering.iter().for_each(Progressive::cancel),
-                Some(Key::Reset) => self.production.reset()?,
-                Some(Key::Camera) => self.told.tell(self.production)?,
-                Some(Key::End) => return Ok(()),
+                Some(FunctionKey::Render) => self.render()?,
+                Some(FunctionKey::Cancel) => self.rendering.iter().for_each(Progressive::cancel),
+                Some(FunctionKey::Reset) => self.production.reset()?,
+                Some(FunctionKey::Camera) => self.told.tell(self.production)?,
+                Some(FunctionKey::End) => return Ok(()),
                 None => say!("message: {}", String::from_utf8_lossy(&message)),
             }
         }
     }
 
     /// Gives orders that were read to the operator, and says his replies; whether that is the end.
-    fn carry_out_orders(&mut self) -> Result<bool, Failure> {
+    fn carry_out_orders(&mut self) -> Result<bool, CommandFailure> {
         let Some(emulator) = self.emulator.as_mut() else { return Ok(false) };
         let orders = &mut self.orders;
         match orders.given.as_ref().map(mpsc::Receiver::try_recv) {
@@ -141,7 +141,7 @@ impl<'a> Server<'a> {
     }
 
     /// Shows a scene in place of the one before, or says why there is none.
-    fn replace(&mut self, edit: Result<Edit, Failure>) -> Result<(), Failure> {
+    fn replace(&mut self, edit: Result<Edit, CommandFailure>) -> Result<(), CommandFailure> {
         progress::clear();
         let Edit { scene, model, keeps_view } = match edit {
             Ok(edit) => edit,
@@ -165,36 +165,36 @@ impl<'a> Server<'a> {
     }
 
     /// Begins to render the view that is set.
-    fn render(&mut self) -> Result<(), Failure> {
+    fn render(&mut self) -> Result<(), CommandFailure> {
         let matrix = self.production.view()?;
         self.rendering = Some(self.production.begin_rendering(&matrix, &self.order, &self.display)?);
         self.write_label("0 %")
     }
 
     /// Shows what there is of the image, and tells how far it is.
-    fn tell_of_rendering(&mut self) -> Result<(), Failure> {
+    fn tell_of_rendering(&mut self) -> Result<(), CommandFailure> {
         let Some(rendering) = &self.rendering else { return Ok(()) };
         for news in rendering.news() {
             match news {
-                News::Stage(stage) => {
+                RenderingEvent::Stage(stage) => {
                     progress::stage(stage);
                     self.stage = progress::words(stage);
                     self.production.say(self.stage)?;
                 }
-                News::Amount(amount) => {
+                RenderingEvent::Amount(amount) => {
                     progress::update(amount);
                     self.production.say(&format!("{}: {}", self.stage, progress::describe(amount)))?;
                 }
-                News::Part { shown, rows, samples, seconds_left } => {
+                RenderingEvent::Part { shown, rows, samples, seconds_left } => {
                     self.production.show_rows(&shown, |row| rows[row as usize])?;
                     let all = self.order.samples;
-                    let amount = Amount { done: samples, all: all.into(), unit: "samples" };
+                    let amount = Progress { done: samples, all: all.into(), unit: "samples" };
                     let left = progress::clock(seconds_left);
                     progress::update(amount);
                     self.production.say(&format!("{}, {left} left", progress::describe(amount)))?;
                     self.write_label(&format!("{:.0} %", 100.0 * samples / f64::from(all)))?;
                 }
-                News::End(ended) => {
+                RenderingEvent::End(ended) => {
                     progress::clear();
                     self.rendering = None;
                     self.end_rendering(ended)?;
@@ -205,7 +205,7 @@ impl<'a> Server<'a> {
         Ok(())
     }
 
-    fn end_rendering(&mut self, ended: Result<Box<Shot>, ProductionError>) -> Result<(), Failure> {
+    fn end_rendering(&mut self, ended: Result<Box<RenderedView>, ProductionError>) -> Result<(), CommandFailure> {
         let text = match ended {
             Ok(shot) => {
                 let (rows, rendering) = (shot.rows(), &shot.rendering);
@@ -227,7 +227,7 @@ impl<'a> Server<'a> {
     }
 
     /// Writes the label over the key that renders, unless it is there already.
-    fn write_label(&mut self, text: &str) -> Result<(), Failure> {
+    fn write_label(&mut self, text: &str) -> Result<(), CommandFailure> {
         if self.label != text {
             self.label = text.into();
             self.production.label(RENDER_KEY, text)?;
@@ -237,12 +237,12 @@ impl<'a> Server<'a> {
 }
 
 /// How a scene is rendered as the arguments say.
-fn order(scene: &Scene, arguments: &Arguments) -> Order {
-    let own = Order::of(&scene.settings);
+fn order(scene: &Scene, arguments: &ShowArguments) -> RenderOrder {
+    let own = RenderOrder::of(&scene.settings);
     let samples = arguments.samples.unwrap_or(own.samples);
     // A denoiser tells noise from what is there by two samples at least.
     let samples = if arguments.denoise { samples.max(2) } else { samples };
-    Order { samples, footprints: samples, denoise: arguments.denoise, threads: arguments.threads, ..own }
+    RenderOrder { samples, footprints: samples, denoise: arguments.denoise, threads: arguments.threads, ..own }
 }
 
 /// What a message line has room for, of the first line of a text.

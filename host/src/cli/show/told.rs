@@ -1,12 +1,12 @@
 //! The view that is set, told as a line of a script.
 
-use crate::cli::{Failure, say::warn};
+use crate::cli::{CommandFailure, say::warn};
 use crate::{production::Production, script::camera_call};
 use files::Destination;
 use std::io::Write;
 
 /// The view as somebody was told of it.
-pub(super) struct Told {
+pub(super) struct ViewReporter {
     /// Where it is written, too.
     file: Option<Destination>,
     /// Whether nobody is told.
@@ -15,16 +15,16 @@ pub(super) struct Told {
     last: String,
 }
 
-impl Told {
+impl ViewReporter {
     /// Nobody has been told yet.
     ///
     /// - `file`: takes the line, too. `is_quiet`: whether only that does.
-    pub(super) fn new(file: Option<Destination>, is_quiet: bool) -> Told {
-        Told { file, is_quiet, last: String::new() }
+    pub(super) fn new(file: Option<Destination>, is_quiet: bool) -> ViewReporter {
+        ViewReporter { file, is_quiet, last: String::new() }
     }
 
     /// Tells the view that is set now, unless that was told already.
-    pub(super) fn tell(&mut self, production: &mut Production) -> Result<(), Failure> {
+    pub(super) fn tell(&mut self, production: &mut Production) -> Result<(), CommandFailure> {
         let Some(camera) = production.camera()? else {
             warn("no camera sees what is set: it is scaled unequally, or not seen at all");
             return Ok(());

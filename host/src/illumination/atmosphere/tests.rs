@@ -5,8 +5,8 @@ use super::columns::{Columns, GROUND, TOP, integrated, to_ground, to_top};
 use super::scattering::Scattering;
 use super::*;
 use crate::color::observer::{self, LUMENS_PER_WATT};
-use crate::color::{Beyond, Spectrum};
-use crate::numeric::sampling::{Stream, sphere};
+use crate::color::{Extrapolation, Spectrum};
+use crate::numeric::sampling::{RandomStream, sphere};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
@@ -56,7 +56,7 @@ struct Way {
 /// Radiance by a random walk with collisions drawn against the densest air, at one node, under a sun of irradiance 1.
 fn walked(air: &Air, (eye, view, sun): (f64, DVec3, DVec3), albedo: f64, count: u32) -> f64 {
     let columns = Columns::new();
-    let mut stream = Stream::new(7, 11);
+    let mut stream = RandomStream::new(7, 11);
     let taken = |amounts: &[f64; 3]| extinction(&air.extinction, amounts, GREEN);
     let most = taken(&density(0.0)).max(taken(&density(25.0)));
     let lit = |at: DVec3| {
@@ -158,7 +158,7 @@ fn a_sky_is_blue_above_pale_at_the_horizon_and_red_about_a_low_sun() {
 fn the_day_is_as_bright_as_it_is_measured() {
     let lux = |spectral: &Spectral| {
         let samples: Vec<(f64, f64)> = spectral.iter().enumerate().map(|(i, v)| (node(i), *v)).collect();
-        let spectrum = Spectrum::irregular(&samples, Beyond::Zero).expect("a spectrum");
+        let spectrum = Spectrum::irregular(&samples, Extrapolation::Zero).expect("a spectrum");
         LUMENS_PER_WATT * observer::tristimulus(&spectrum).y
     };
     for elevation in [15.0, 60.0] {

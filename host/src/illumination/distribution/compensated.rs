@@ -1,6 +1,6 @@
 //! Facets with all reflections between them: what the first reflection loses is emitted after further ones.
 
-use super::{Distribution, DistributionError, Facets, Microfacet};
+use super::{Distribution, DistributionError, SlopeDistribution, Microfacet};
 use crate::numeric::cubature::{GAUSS, unit_square};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -48,11 +48,11 @@ impl Compensated {
     ///
     /// # Errors
     /// [`DistributionError::Roughness`].
-    pub fn new(facets: Facets, roughness: f64) -> Result<Compensated, DistributionError> {
+    pub fn new(facets: SlopeDistribution, roughness: f64) -> Result<Compensated, DistributionError> {
         let first = Microfacet::new(facets, DVec2::splat(roughness))?;
         let name = match facets {
-            Facets::Beckmann => "Beckmann, all",
-            Facets::Ggx => "GGX, all",
+            SlopeDistribution::Beckmann => "Beckmann, all",
+            SlopeDistribution::Ggx => "GGX, all",
         };
         let mut made = Compensated {
             first,

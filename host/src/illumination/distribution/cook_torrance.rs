@@ -3,7 +3,7 @@
 //! It counts facets by their normals and forgets that the solid angle of the viewer is 4 (V·H) times that of the
 //! normal. So it does not integrate to 1 over the viewer: see `peris study illumination`, and [`super::Microfacet`].
 
-use super::{Distribution, DistributionError, Facets, checked_roughness};
+use super::{Distribution, DistributionError, SlopeDistribution, checked_roughness};
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
@@ -20,7 +20,7 @@ pub(super) fn sample_density(light: DVec3, view: DVec3, roughness: f64) -> f64 {
     let half = light + view;
     // L·H is half the length of L + V.
     let length = half.length();
-    Facets::Beckmann.area(half, DVec2::splat(roughness)) * half.z / (length * 2.0 * length)
+    SlopeDistribution::Beckmann.area(half, DVec2::splat(roughness)) * half.z / (length * 2.0 * length)
 }
 
 /// D = G exp(−tan²α / m²) / (π m² cos⁴α (N·L)) with the masking G = min(1, 2 (N·H)(N·V)/(V·H), 2 (N·H)(N·L)/(V·H)).
@@ -55,7 +55,7 @@ impl Distribution for CookTorrance {
         let notch = 4.0 * half.z / half.length_squared();
         // The masking over N·L.
         let masking = (1.0 / light.z).min(notch * view.z / light.z).min(notch);
-        Facets::Beckmann.area(half, DVec2::splat(self.roughness)) * masking
+        SlopeDistribution::Beckmann.area(half, DVec2::splat(self.roughness)) * masking
     }
 
     fn sample(&self, light: DVec3, point: [f64; 2]) -> Option<DVec3> {

@@ -324,9 +324,9 @@ impl TryFrom<Plain> for FacetTable {
 #[cfg(test)]
 mod tests {
     use super::super::measure::{check, emitted_share, light_at, reciprocity_residual};
-    use super::super::{Facets, Microfacet};
+    use super::super::{SlopeDistribution, Microfacet};
     use super::*;
-    use crate::numeric::sampling::{Stream, cosine_hemisphere};
+    use crate::numeric::sampling::{RandomStream, cosine_hemisphere};
     use glam::DVec2;
     use std::convert::Infallible;
 
@@ -342,15 +342,15 @@ mod tests {
     fn beckmanns_formula_agrees_with_the_shipped_one_to_the_stated_error() {
         for m in [0.01, 0.1, 0.3, 0.6] {
             let typed = table(beckmann(m));
-            let shipped = Microfacet::new(Facets::Beckmann, DVec2::splat(m)).expect("a roughness");
+            let shipped = Microfacet::new(SlopeDistribution::Beckmann, DVec2::splat(m)).expect("a roughness");
             let TableError { greatest, mean, values } = typed.error();
             assert!(greatest < 5e-4 && mean < 2e-4 && values < MOST, "{m}: {:?}", typed.error());
             for index in 0..2000 {
-                let mut stream = Stream::new(3, index);
+                let mut stream = RandomStream::new(3, index);
                 let light = cosine_hemisphere(stream.point(), DVec3::Z);
                 let Some(view) = shipped.sample(light, stream.point()) else { continue };
                 let [a, b] = [typed.density(light, view), shipped.density(light, view)];
-                let highest = Facets::Beckmann.area(DVec3::Z, DVec2::splat(m)) / (4.0 * light.z.max(m));
+                let highest = SlopeDistribution::Beckmann.area(DVec3::Z, DVec2::splat(m)) / (4.0 * light.z.max(m));
                 assert!((a - b).abs() <= (greatest + 1e-4) * b.max(1e-5 * highest), "{m}: {a} {b} {light} {view}");
             }
         }

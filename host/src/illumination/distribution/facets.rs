@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 
 /// How the slopes of microfacets are distributed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Facets {
+pub enum SlopeDistribution {
     /// Slopes of a Gaussian surface.
     Beckmann,
     /// Slopes of an ellipsoid: longer tails (Trowbridge and Reitz).
@@ -17,7 +17,7 @@ pub enum Facets {
 /// Half of 2 over the root of pi: the mean slope that a horizontal direction sees of a Gaussian surface.
 const GAUSSIAN: f64 = 0.282_094_791_773_878_14;
 
-impl Facets {
+impl SlopeDistribution {
     /// Area of the facets with a normal per unit surface area and solid angle, 1/sr.
     ///
     /// Beckmann: exp(−t²) / (π mₓ m_y cos⁴); GGX: 1 / (π mₓ m_y cos⁴ (1 + t²)²); t² = (x/mₓ)² + (y/m_y)² with the slopes
@@ -37,12 +37,12 @@ impl Facets {
         let cosine = half.z * half.z / square;
         let tilt = (half.truncate() / roughness).length_squared();
         match self {
-            Facets::Beckmann => {
+            SlopeDistribution::Beckmann => {
                 let exponent = tilt / (half.z * half.z);
                 // Beyond 700 the exponential is smaller than any power of the cosine can make up for.
                 if exponent > 700.0 { 0.0 } else { (-exponent).exp() / (scale * cosine * cosine) }
             }
-            Facets::Ggx => 1.0 / (scale * (cosine + tilt / square).powi(2)),
+            SlopeDistribution::Ggx => 1.0 / (scale * (cosine + tilt / square).powi(2)),
         }
     }
 
@@ -57,12 +57,12 @@ impl Facets {
     pub(in crate::illumination) fn projected(self, towards: DVec3, roughness: DVec2) -> f64 {
         let spread = (towards.truncate() * roughness).length();
         match self {
-            Facets::Beckmann if spread == 0.0 => towards.z,
-            Facets::Beckmann => {
+            SlopeDistribution::Beckmann if spread == 0.0 => towards.z,
+            SlopeDistribution::Beckmann => {
                 let a = towards.z / spread;
                 towards.z * 0.5 * (1.0 + erf(a)) + spread * GAUSSIAN * (-a * a).exp()
             }
-            Facets::Ggx => 0.5 * (towards.z + towards.z.hypot(spread)),
+            SlopeDistribution::Ggx => 0.5 * (towards.z + towards.z.hypot(spread)),
         }
     }
 
@@ -78,13 +78,13 @@ impl Facets {
         let sine = stretched.truncate().length();
         let around = if sine > 0.0 { stretched.truncate() / sine } else { DVec2::X };
         let slope = match self {
-            Facets::Beckmann => {
+            SlopeDistribution::Beckmann => {
                 let along = inverse_of_visible(stretched.z, sine, point[0]);
                 let across = inverse_of_visible(1.0, 0.0, point[1]);
                 // A facet that rises towards x turns its normal away from x.
                 -(around * along + around.perp() * across)
             }
-            Facets::Ggx => {
+            SlopeDistribution::Ggx => {
                 let z = (1.0 - point[0]) * (1.0 + stretched.z) - stretched.z;
                 let radius = ((1.0 - z) * (1.0 + z)).max(0.0).sqrt();
                 let (sin, cos) = (TAU * point[1]).sin_cos();

@@ -4,25 +4,25 @@ use glam::{DMat3, DVec3};
 
 /// The frame of a surface element: z is its normal, x and y lie along the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
+pub struct ShadingFrame {
     axes: DMat3,
 }
 
-impl Frame {
+impl ShadingFrame {
     /// A frame about a normal, unit length; x is any direction along the surface.
     #[inline]
-    pub fn about(normal: DVec3) -> Frame {
+    pub fn about(normal: DVec3) -> ShadingFrame {
         let (x, y) = normal.any_orthonormal_pair();
-        Frame { axes: DMat3::from_cols(x, y, normal) }
+        ShadingFrame { axes: DMat3::from_cols(x, y, normal) }
     }
 
     /// A frame about a normal, unit length, whose x is as near as can be to a direction: that of brushing, say.
     ///
     /// - `along`: any length; parallel to the normal or 0, it is not heeded.
-    pub fn brushed(normal: DVec3, along: DVec3) -> Frame {
+    pub fn brushed(normal: DVec3, along: DVec3) -> ShadingFrame {
         match (along - normal * along.dot(normal)).try_normalize() {
-            Some(x) if x.dot(normal).abs() < 1e-6 => Frame { axes: DMat3::from_cols(x, normal.cross(x), normal) },
-            _ => Frame::about(normal),
+            Some(x) if x.dot(normal).abs() < 1e-6 => ShadingFrame { axes: DMat3::from_cols(x, normal.cross(x), normal) },
+            _ => ShadingFrame::about(normal),
         }
     }
 
@@ -46,11 +46,11 @@ mod tests {
     #[test]
     fn a_frame_turns_there_and_back() {
         let normal = DVec3::new(1.0, -2.0, 0.5).normalize();
-        for frame in [Frame::about(normal), Frame::brushed(normal, DVec3::Y), Frame::brushed(normal, normal * 3.0)] {
+        for frame in [ShadingFrame::about(normal), ShadingFrame::brushed(normal, DVec3::Y), ShadingFrame::brushed(normal, normal * 3.0)] {
             assert!((frame.local(normal) - DVec3::Z).length() < 1e-15);
             let direction = DVec3::new(0.3, 0.4, -0.2);
             assert!((frame.world(frame.local(direction)) - direction).length() < 1e-15);
         }
-        assert!(Frame::brushed(DVec3::Z, DVec3::new(0.0, 2.0, 5.0)).local(DVec3::Y).x > 0.999);
+        assert!(ShadingFrame::brushed(DVec3::Z, DVec3::new(0.0, 2.0, 5.0)).local(DVec3::Y).x > 0.999);
     }
 }

@@ -4,7 +4,7 @@
 //! the solid angle of the normal to that of the viewer: for smooth facets its integral is 4 (N·L), not 1.
 
 use super::cook_torrance::{sample, sample_density};
-use super::{Distribution, DistributionError, Facets, checked_roughness};
+use super::{Distribution, DistributionError, SlopeDistribution, checked_roughness};
 use glam::{DVec2, DVec3};
 
 /// D = exp(−tan²α / m²) / (π m² cos³α) for N·V > 0.
@@ -14,28 +14,28 @@ use glam::{DVec2, DVec3};
 /// # Source
 /// The 1988 paper, equation 7.
 #[derive(Clone, Copy, Debug)]
-pub struct Improved {
+pub struct ImprovedCookTorrance {
     roughness: f64,
 }
 
-impl Improved {
+impl ImprovedCookTorrance {
     /// With a roughness m, 1e-8..=1000.
     ///
     /// # Errors
     /// [`DistributionError::Roughness`].
-    pub fn new(roughness: f64) -> Result<Improved, DistributionError> {
-        Ok(Improved { roughness: checked_roughness(roughness)? })
+    pub fn new(roughness: f64) -> Result<ImprovedCookTorrance, DistributionError> {
+        Ok(ImprovedCookTorrance { roughness: checked_roughness(roughness)? })
     }
 }
 
-impl Distribution for Improved {
+impl Distribution for ImprovedCookTorrance {
     fn name(&self) -> &str {
         "improved (7)"
     }
 
     fn density(&self, light: DVec3, view: DVec3) -> f64 {
         let half = light + view;
-        Facets::Beckmann.area(half, DVec2::splat(self.roughness)) * half.z / half.length()
+        SlopeDistribution::Beckmann.area(half, DVec2::splat(self.roughness)) * half.z / half.length()
     }
 
     fn sample(&self, light: DVec3, point: [f64; 2]) -> Option<DVec3> {

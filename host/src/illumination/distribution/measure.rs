@@ -2,7 +2,7 @@
 
 use super::{Distribution, DistributionError};
 use crate::numeric::cubature::{Integral, unit_square};
-use crate::numeric::sampling::{Stream, cosine_hemisphere};
+use crate::numeric::sampling::{RandomStream, cosine_hemisphere};
 use glam::DVec3;
 
 /// The direction to a light at an angle of incidence, radians, in the plane of x and z.
@@ -50,7 +50,7 @@ pub fn seen_share(distribution: &dyn Distribution, view: DVec3, tolerance: f64, 
 /// - `count`: how many. `seed`: of the random numbers.
 fn pairs(distribution: &dyn Distribution, count: u64, seed: u64) -> impl Iterator<Item = (DVec3, DVec3)> + '_ {
     (0..count).filter_map(move |index| {
-        let mut stream = Stream::new(seed, index);
+        let mut stream = RandomStream::new(seed, index);
         // Half of the cosines come near grazing, one for each decade down to 89.9999 degrees.
         let mut anywhere = || {
             let direction = cosine_hemisphere(stream.point(), DVec3::Z);

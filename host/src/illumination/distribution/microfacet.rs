@@ -1,6 +1,6 @@
 //! The exact form of Cook and Torrance's idea: facets that are mirrors, seen and lit as Smith's masking says.
 
-use super::{Distribution, DistributionError, Facets, checked_roughness};
+use super::{Distribution, DistributionError, SlopeDistribution, checked_roughness};
 use glam::{DVec2, DVec3};
 
 /// D = area(H) G₂ / (4 (N·L)): the facets' area, the change 4 (V·H) from their solid angle to the viewer's, and a
@@ -16,7 +16,7 @@ use glam::{DVec2, DVec3};
 /// Walter et al. 2007, equations 20 and 23; Heitz 2014, equations 98 and 99.
 #[derive(Clone, Copy, Debug)]
 pub struct Microfacet {
-    facets: Facets,
+    facets: SlopeDistribution,
     roughness: DVec2,
     /// Whether heights of light and viewer are correlated.
     correlated: bool,
@@ -27,7 +27,7 @@ impl Microfacet {
     ///
     /// # Errors
     /// [`DistributionError::Roughness`].
-    pub fn new(facets: Facets, roughness: DVec2) -> Result<Microfacet, DistributionError> {
+    pub fn new(facets: SlopeDistribution, roughness: DVec2) -> Result<Microfacet, DistributionError> {
         let roughness = DVec2::new(checked_roughness(roughness.x)?, checked_roughness(roughness.y)?);
         Ok(Microfacet { facets, roughness, correlated: true })
     }
@@ -48,10 +48,10 @@ impl Microfacet {
 impl Distribution for Microfacet {
     fn name(&self) -> &str {
         match (self.facets, self.correlated) {
-            (Facets::Beckmann, true) => "Beckmann",
-            (Facets::Ggx, true) => "GGX",
-            (Facets::Beckmann, false) => "Beckmann, separable",
-            (Facets::Ggx, false) => "GGX, separable",
+            (SlopeDistribution::Beckmann, true) => "Beckmann",
+            (SlopeDistribution::Ggx, true) => "GGX",
+            (SlopeDistribution::Beckmann, false) => "Beckmann, separable",
+            (SlopeDistribution::Ggx, false) => "GGX, separable",
         }
     }
 

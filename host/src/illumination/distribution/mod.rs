@@ -26,13 +26,13 @@ pub use compensated::Compensated;
 pub use cook_torrance::CookTorrance;
 pub use error::{DistributionError, LEAST_ROUGHNESS, MOST_ROUGHNESS};
 pub use facet_table::{FacetError, FacetTable, TableError};
-pub use facets::Facets;
-pub use frame::Frame;
-pub use improved::Improved;
+pub use facets::SlopeDistribution;
+pub use frame::ShadingFrame;
+pub use improved::ImprovedCookTorrance;
 pub use lambert::Lambert;
 pub use microfacet::Microfacet;
 pub use phong::{MOST_EXPONENT, Phong, exponent_of_roughness};
-pub use tabulated::{Accuracy, Tabulated};
+pub use tabulated::{TableAccuracy, Tabulated};
 
 pub(super) use error::checked_roughness;
 use glam::{DVec2, DVec3};
@@ -133,44 +133,44 @@ pub const FAMILY: &[DistributionRow] = &[
     DistributionRow {
         name: "improved (7)",
         summary: "the paper's formula (7)",
-        make: |m| Ok(Box::new(Improved::new(m)?)),
+        make: |m| Ok(Box::new(ImprovedCookTorrance::new(m)?)),
     },
     DistributionRow {
         name: "Beckmann",
         summary: "Gaussian facets, exact, with Smith's masking; one reflection",
-        make: |m| Ok(Box::new(Microfacet::new(Facets::Beckmann, DVec2::splat(m))?)),
+        make: |m| Ok(Box::new(Microfacet::new(SlopeDistribution::Beckmann, DVec2::splat(m))?)),
     },
     DistributionRow {
         name: "GGX",
         summary: "facets of an ellipsoid, exact, with Smith's masking; one reflection",
-        make: |m| Ok(Box::new(Microfacet::new(Facets::Ggx, DVec2::splat(m))?)),
+        make: |m| Ok(Box::new(Microfacet::new(SlopeDistribution::Ggx, DVec2::splat(m))?)),
     },
     DistributionRow {
         name: "Beckmann, separable",
         summary: "Beckmann with masking of light and viewer apart; one reflection",
-        make: |m| Ok(Box::new(Microfacet::new(Facets::Beckmann, DVec2::splat(m))?.separable())),
+        make: |m| Ok(Box::new(Microfacet::new(SlopeDistribution::Beckmann, DVec2::splat(m))?.separable())),
     },
     DistributionRow {
         name: "GGX, separable",
         summary: "GGX with masking of light and viewer apart; one reflection",
-        make: |m| Ok(Box::new(Microfacet::new(Facets::Ggx, DVec2::splat(m))?.separable())),
+        make: |m| Ok(Box::new(Microfacet::new(SlopeDistribution::Ggx, DVec2::splat(m))?.separable())),
     },
     DistributionRow {
         name: "anisotropic",
         summary: "Beckmann, four times smoother along y",
         make: |m| {
-            Ok(Box::new(Microfacet::new(Facets::Beckmann, DVec2::new(m, (m / ANISOTROPY).max(LEAST_ROUGHNESS)))?))
+            Ok(Box::new(Microfacet::new(SlopeDistribution::Beckmann, DVec2::new(m, (m / ANISOTROPY).max(LEAST_ROUGHNESS)))?))
         },
     },
     DistributionRow {
         name: "Beckmann, all",
         summary: "Beckmann with all reflections between facets",
-        make: |m| Ok(Box::new(Compensated::new(Facets::Beckmann, m)?)),
+        make: |m| Ok(Box::new(Compensated::new(SlopeDistribution::Beckmann, m)?)),
     },
     DistributionRow {
         name: "GGX, all",
         summary: "GGX with all reflections between facets",
-        make: |m| Ok(Box::new(Compensated::new(Facets::Ggx, m)?)),
+        make: |m| Ok(Box::new(Compensated::new(SlopeDistribution::Ggx, m)?)),
     },
 ];
 

@@ -2,7 +2,7 @@
 
 use super::measure::{checked, light_at};
 use super::{Distribution, DistributionError};
-use crate::numeric::sampling::{Stream, sphere};
+use crate::numeric::sampling::{RandomStream, sphere};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -16,7 +16,7 @@ const SEED: u64 = 1988;
 
 /// How well a table stands for its function.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Accuracy {
+pub struct TableAccuracy {
     /// Root of the mean square of the error, over that of the function, at random directions.
     pub rms: f64,
     /// Greatest error there, over the greatest value of the function there.
@@ -40,7 +40,7 @@ pub struct Tabulated {
     values: Vec<f64>,
     /// For each angle of the light: the part of what is emitted up to each cell.
     below: Vec<f64>,
-    accuracy: Accuracy,
+    accuracy: TableAccuracy,
 }
 
 /// A table as it is stored; checked when it is read.
@@ -50,7 +50,7 @@ struct Plain {
     steps: usize,
     values: Vec<f64>,
     below: Vec<f64>,
-    accuracy: Accuracy,
+    accuracy: TableAccuracy,
 }
 
 impl TryFrom<Plain> for Tabulated {
@@ -100,7 +100,7 @@ impl Tabulated {
         if !STEPS.contains(&steps) {
             return Err(DistributionError::Resolution(steps));
         }
-        let accuracy = Accuracy { rms: 0.0, greatest: 0.0, least_share: f64::INFINITY, greatest_share: 0.0 };
+        let accuracy = TableAccuracy { rms: 0.0, greatest: 0.0, least_share: f64::INFINITY, greatest_share: 0.0 };
         let mut made = Tabulated { name: name.into(), steps, values: Vec::new(), below: Vec::new(), accuracy };
         let mut scales = Vec::new();
         for row in 0..=steps {
@@ -154,7 +154,7 @@ impl Tabulated {
     fn measure(&mut self, scales: &[f64], function: &impl Fn(DVec3, DVec3) -> f64) -> Result<(), DistributionError> {
         let (mut errors, mut squares, mut greatest, mut highest) = (0.0, 0.0, 0.0_f64, 0.0_f64);
         for index in 0..MEASURED {
-            let mut stream = Stream::new(SEED, index);
+            let mut stream = RandomStream::new(SEED, index);
             let mut above = || {
                 let direction = sphere(stream.point());
                 direction.truncate().extend(direction.z.abs().max(1e-3)).normalize()
@@ -169,7 +169,7 @@ impl Tabulated {
             (greatest, highest) = (greatest.max(error), highest.max(exact));
         }
         let ratio = |a: f64, b: f64| if b > 0.0 { a / b } else { f64::INFINITY };
-        self.accuracy = Accuracy {
+        self.accuracy = TableAccuracy {
             rms: ratio(errors, squares).sqrt(),
             greatest: ratio(greatest, highest),
             least_share: scales.iter().copied().fold(f64::INFINITY, f64::min),
@@ -179,7 +179,7 @@ impl Tabulated {
     }
 
     /// How well the table stands for its function.
-    pub fn accuracy(&self) -> Accuracy {
+    pub fn accuracy(&self) -> TableAccuracy {
         self.accuracy
     }
 

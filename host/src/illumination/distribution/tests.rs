@@ -2,7 +2,7 @@
 
 use super::measure::{check, emitted_share, light_at, reciprocity_residual, seen_share};
 use super::*;
-use crate::numeric::sampling::{Stream, even};
+use crate::numeric::sampling::{RandomStream, even};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 const ROUGHNESS: [f64; 6] = [1e-6, 1e-2, 0.1, 0.5, 1.0, 10.0];
@@ -78,7 +78,7 @@ fn samples_follow_their_density() {
             0.0
         });
         let mut found = [0.0; 48];
-        let mut stream = Stream::new(3, 0);
+        let mut stream = RandomStream::new(3, 0);
         for _ in 0..COUNT {
             if let Some(view) = made.sample(light, stream.point()) {
                 assert!((view.length() - 1.0).abs() < 1e-9 && view.z > 0.0);
@@ -136,7 +136,7 @@ fn smooth_facets_give_the_published_forms_their_known_excess() {
     for degrees in [0.0, 30.0, 60.0, 80.0] {
         let cosine = f64::cos(f64::to_radians(degrees));
         assert!((share(&CookTorrance::new(1e-4).expect("a roughness"), degrees) - 4.0).abs() < 1e-4);
-        assert!((share(&Improved::new(1e-4).expect("a roughness"), degrees) - 4.0 * cosine).abs() < 1e-4);
+        assert!((share(&ImprovedCookTorrance::new(1e-4).expect("a roughness"), degrees) - 4.0 * cosine).abs() < 1e-4);
         let exact = row("Beckmann", 1e-4);
         assert!((share(exact.as_ref(), degrees) - 1.0).abs() < 1e-6);
     }
@@ -146,7 +146,7 @@ fn smooth_facets_give_the_published_forms_their_known_excess() {
 fn formula_7_integrates_to_1_over_the_normals() {
     // ∫ D(α) dω_H with α from 0 to 90 degrees; D depends on the half vector alone.
     for roughness in [0.1, 0.5, 1.0] {
-        let improved = Improved::new(roughness).expect("a roughness");
+        let improved = ImprovedCookTorrance::new(roughness).expect("a roughness");
         let over_normals = hemisphere(400, |half| improved.density(half, half));
         assert!((over_normals - 1.0).abs() < 5e-4, "{roughness}: {over_normals}");
     }
@@ -164,7 +164,7 @@ fn exact_forms_never_create_energy_and_are_reciprocal() {
             assert!(found > 0.0 && found < 1.0 + 1e-9, "{name} {roughness} {degrees}: {found}");
         }
     }
-    assert!(reciprocity_residual(&Improved::new(0.3).expect("a roughness"), 1000, 5) > 0.1);
+    assert!(reciprocity_residual(&ImprovedCookTorrance::new(0.3).expect("a roughness"), 1000, 5) > 0.1);
     assert!(reciprocity_residual(&CookTorrance::new(0.3).expect("a roughness"), 1000, 5) < 1e-12);
 }
 
@@ -178,7 +178,7 @@ fn ggx_at_normal_incidence_has_its_closed_form() {
 #[test]
 fn compensated_forms_conserve_energy_to_a_ten_thousandth_and_never_create_it() {
     for (facets, roughness) in
-        [Facets::Beckmann, Facets::Ggx].into_iter().flat_map(|f| [1e-6, 1e-2, 0.2, 1.0].map(|m| (f, m)))
+        [SlopeDistribution::Beckmann, SlopeDistribution::Ggx].into_iter().flat_map(|f| [1e-6, 1e-2, 0.2, 1.0].map(|m| (f, m)))
     {
         let made = Compensated::new(facets, roughness).expect("a roughness");
         let first = Microfacet::new(facets, DVec2::splat(roughness)).expect("a roughness");

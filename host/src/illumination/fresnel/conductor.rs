@@ -1,7 +1,7 @@
 //! The surface of a metal.
 
 use super::{IndexError, Polarised, checked, cosine_of};
-use crate::color::shipped::Metal;
+use crate::color::shipped::ComplexIndex;
 
 /// An interface between a transparent medium and one that absorbs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,7 +60,7 @@ impl Conductor {
     ///
     /// # Errors
     /// [`IndexError`].
-    pub fn of_metal(metal: &Metal, wavelength: f64) -> Result<Conductor, IndexError> {
+    pub fn of_metal(metal: &ComplexIndex, wavelength: f64) -> Result<Conductor, IndexError> {
         Conductor::new(1.0, metal.n.at(wavelength), metal.k.at(wavelength))
     }
 

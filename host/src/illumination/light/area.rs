@@ -1,9 +1,9 @@
 //! A surface that emits the same radiance in all directions of its front, and is seen.
 
-use super::Patch;
-use super::beam::{Beam, Glow, LightPoint, Origin, Sides, Start};
+use super::LightShape;
+use super::beam::{LightSample, LightHit, LightPoint, LightOrigin, EmittingSides, EmissionSample};
 use super::emitter::Emitter;
-use crate::color::{Channels, Curve};
+use crate::color::{Channels, SpectralTable};
 use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::Ray;
 use crate::numeric::sampling::{disk, sphere};
@@ -12,39 +12,39 @@ use std::f64::consts::PI;
 
 /// A surface that emits.
 #[derive(Clone, Debug)]
-pub(super) struct Area {
-    pub(super) patch: Patch,
+pub(super) struct AreaLight {
+    pub(super) patch: LightShape,
     /// Radiance, W/(m² sr).
-    pub(super) strength: Curve,
+    pub(super) strength: SpectralTable,
 }
 
-impl Emitter for Area {
-    fn beam(&self, point: DVec3, _: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<Beam> {
+impl Emitter for AreaLight {
+    fn beam(&self, point: DVec3, _: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<LightSample> {
         let drawn = self.patch.draw(point, uniform)?;
         let irradiance = self.strength.of(comb) * drawn.density.recip();
-        Some(Beam { towards: drawn.towards, distance: drawn.distance, irradiance, density: Some(drawn.density) })
+        Some(LightSample { towards: drawn.towards, distance: drawn.distance, irradiance, density: Some(drawn.density) })
     }
 
     /// A sphere's points lie on a smaller one, so that they are spread as its disc is, as seen from anywhere.
     fn points(&self, count: u32) -> Vec<LightPoint> {
         LightPoint::spread(count, |uniform| {
             let (at, normal) = self.patch.point(uniform, count == 1);
-            (at, self.patch.seen_area(), normal, Sides::Front)
+            (at, self.patch.seen_area(), normal, EmittingSides::Front)
         })
     }
 
     #[inline]
-    fn beam_from(&self, from: &LightPoint, point: DVec3, comb: usize) -> Option<Beam> {
+    fn beam_from(&self, from: &LightPoint, point: DVec3, comb: usize) -> Option<LightSample> {
         from.beam(self.strength.of(comb), point)
     }
 
-    fn origin(&self) -> Origin {
-        Origin::Within(Bounds::of(self.patch.bounds()))
+    fn origin(&self) -> LightOrigin {
+        LightOrigin::Within(Bounds::of(self.patch.bounds()))
     }
 
-    fn start(&self, uniform: [f64; 2], _: usize) -> Option<Start> {
+    fn start(&self, uniform: [f64; 2], _: usize) -> Option<EmissionSample> {
         let (at, normal) = start_on(&self.patch, uniform)?;
-        Some(Start::Place { at, normal: Some(normal), area: self.patch.area() })
+        Some(EmissionSample::Place { at, normal: Some(normal), area: self.patch.area() })
     }
 
     fn intensity(&self, normal: Option<DVec3>, direction: DVec3, comb: usize) -> Channels {
@@ -64,27 +64,27 @@ impl Emitter for Area {
         true
     }
 
-    fn glow(&self, ray: &Ray, t_min: f64, t_max: f64, comb: usize) -> Option<Glow> {
+    fn glow(&self, ray: &Ray, t_min: f64, t_max: f64, comb: usize) -> Option<LightHit> {
         let (t, front) = self.patch.met(ray, t_min, t_max)?;
         let length = ray.direction.length();
         let radiance = if front { self.strength.of(comb) } else { Channels::ZERO };
-        Some(Glow { t, radiance, density: self.patch.density(ray.origin, ray.direction / length, t * length) })
+        Some(LightHit { t, radiance, density: self.patch.density(ray.origin, ray.direction / length, t * length) })
     }
 }
 
 /// A point of a patch, drawn evenly by area, and the normal on the side that emits.
-fn start_on(patch: &Patch, uniform: [f64; 2]) -> Option<(DVec3, DVec3)> {
+fn start_on(patch: &LightShape, uniform: [f64; 2]) -> Option<(DVec3, DVec3)> {
     match *patch {
-        Patch::Rectangle { corner, across, up } => {
+        LightShape::Rectangle { corner, across, up } => {
             Some((corner + across * uniform[0] + up * uniform[1], across.cross(up).try_normalize()?))
         }
-        Patch::Disc { center, normal, radius } => {
+        LightShape::Disc { center, normal, radius } => {
             let normal = normal.try_normalize()?;
             let (x, y) = normal.any_orthonormal_pair();
             let [a, b] = disk(uniform);
             Some((center + (x * a + y * b) * radius, normal))
         }
-        Patch::Sphere { center, radius } => {
+        LightShape::Sphere { center, radius } => {
             let normal = sphere(uniform);
             Some((center + normal * radius, normal))
         }

@@ -2,12 +2,12 @@
 
 use crate::color::Channels;
 use crate::numeric::bounds::Bounds;
-use crate::numeric::sequence::Sequence;
+use crate::numeric::sequence::SobolSequence;
 use glam::DVec3;
 
 /// Light that arrives at a point from one direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Beam {
+pub struct LightSample {
     /// From the point towards the light, unit length.
     pub towards: DVec3,
     /// From the point to the light; infinite for light from infinitely far away.
@@ -21,7 +21,7 @@ pub struct Beam {
 
 /// What a ray sees of a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Glow {
+pub struct LightHit {
     /// How far, in lengths of the ray's direction; infinite for the sky.
     pub t: f64,
     /// Its radiance there, W/(m² sr); 0 on the dark side.
@@ -39,19 +39,19 @@ pub struct LightPoint {
     pub towards: DVec3,
     /// The part of an emitting surface that it stands for, square units, and its normal; no normal where it is seen alike from
     /// everywhere. None for a light without size.
-    pub(super) surface: Option<(f64, Option<DVec3>, Sides)>,
+    pub(super) surface: Option<(f64, Option<DVec3>, EmittingSides)>,
 }
 
 /// On which sides a surface emits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Sides {
+pub(super) enum EmittingSides {
     Front,
     Both,
 }
 
 /// Where light leaves a source.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Start {
+pub enum EmissionSample {
     /// From a place, in many directions.
     Place {
         /// Where it is.
@@ -72,7 +72,7 @@ pub enum Start {
 
 /// Where the light of a source comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Origin {
+pub enum LightOrigin {
     /// From within a box, which is a point for a light without size.
     Within(Bounds),
     /// From infinitely far away: towards it, unit length.
@@ -81,10 +81,10 @@ pub enum Origin {
     Everywhere,
 }
 
-impl Origin {
+impl LightOrigin {
     /// A point.
-    pub(super) fn point(at: DVec3) -> Origin {
-        Origin::Within(Bounds::of([at]))
+    pub(super) fn point(at: DVec3) -> LightOrigin {
+        LightOrigin::Within(Bounds::of([at]))
     }
 }
 
@@ -104,9 +104,9 @@ impl LightPoint {
     /// - `point`: of the unit square: where it is, the area of all of the surface, its normal, on which sides it emits.
     pub(super) fn spread(
         count: u32,
-        point: impl Fn([f64; 2]) -> (DVec3, f64, Option<DVec3>, Sides),
+        point: impl Fn([f64; 2]) -> (DVec3, f64, Option<DVec3>, EmittingSides),
     ) -> Vec<LightPoint> {
-        let sequence = Sequence::new(0, 0);
+        let sequence = SobolSequence::new(0, 0);
         let squares = |i: u32| if count == 1 { [0.5; 2] } else { sequence.point(i, 0) };
         let part = f64::from(count).recip();
         let of = |i: u32| {
@@ -118,23 +118,23 @@ impl LightPoint {
 
     /// The light that it sends to a point, of a surface of a radiance; none of a light without size.
     #[inline]
-    pub(super) fn beam(&self, radiance: Channels, point: DVec3) -> Option<Beam> {
+    pub(super) fn beam(&self, radiance: Channels, point: DVec3) -> Option<LightSample> {
         let (Some((area, normal, sides)), Some(at)) = (self.surface, self.at) else { return None };
         let beam = from_point(at - point, radiance * area)?;
         let facing = match (normal, sides) {
             (None, _) => 1.0,
-            (Some(normal), Sides::Front) => -normal.dot(beam.towards),
-            (Some(normal), Sides::Both) => normal.dot(beam.towards).abs(),
+            (Some(normal), EmittingSides::Front) => -normal.dot(beam.towards),
+            (Some(normal), EmittingSides::Both) => normal.dot(beam.towards).abs(),
         };
-        (facing > 0.0).then(|| Beam { irradiance: beam.irradiance * facing, ..beam })
+        (facing > 0.0).then(|| LightSample { irradiance: beam.irradiance * facing, ..beam })
     }
 }
 
 /// Light of an intensity that comes from a place at an offset; none at the place itself.
 #[inline]
-pub(super) fn from_point(offset: DVec3, intensity: Channels) -> Option<Beam> {
+pub(super) fn from_point(offset: DVec3, intensity: Channels) -> Option<LightSample> {
     let distance = offset.length();
-    (distance > 0.0 && distance.is_finite()).then(|| Beam {
+    (distance > 0.0 && distance.is_finite()).then(|| LightSample {
         towards: offset / distance,
         distance,
         irradiance: intensity * distance.recip() * distance.recip(),

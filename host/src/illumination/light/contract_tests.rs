@@ -1,11 +1,11 @@
 //! What every light keeps: what is sampled is what is seen, what leaves it is its power, it is where it says.
 
-use super::{Goniometry, Light, Origin, Patch, SkyDisc, SkyMap, Source, Start};
-use crate::color::{Color, Wavelengths};
+use super::{Goniometry, Light, LightOrigin, LightShape, SkyDisc, SkyMap, LightSource, EmissionSample};
+use crate::color::{Color, WavelengthSets};
 use crate::numeric::cubature::unit_square;
 use crate::numeric::ray::Ray;
-use crate::numeric::sampling::{Stream, cosine_hemisphere, sphere};
-use crate::numeric::sequence::Sequence;
+use crate::numeric::sampling::{RandomStream, cosine_hemisphere, sphere};
+use crate::numeric::sequence::SobolSequence;
 use glam::DVec3;
 use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};
@@ -16,7 +16,7 @@ const TRIANGLE: [DVec3; 3] = [DVec3::new(-1.0, 2.0, -0.5), DVec3::new(1.5, 2.5, 
 const POINT: DVec3 = DVec3::new(0.2, 0.1, -0.3);
 
 /// Lights of every kind, all above the point.
-fn sources() -> Vec<Source> {
+fn sources() -> Vec<LightSource> {
     let one = || Color::grey(1.0);
     let (at, down) = (DVec3::new(0.5, 3.0, 0.4), DVec3::NEG_Y);
     let vertical: Vec<f64> = (0..=180).map(f64::from).collect();
@@ -30,29 +30,29 @@ fn sources() -> Vec<Source> {
         Light::Directional { direction: DVec3::new(0.4, -1.0, 0.1), irradiance: one() },
         Light::Spot { at, direction: down, intensity: one(), inner: 20.0, outer: 60.0 },
         Light::Luminaire { at, down, front: DVec3::X, goniometry, color: one() },
-        area(Patch::Rectangle { corner: at, across: DVec3::new(1.5, 0.2, 0.0), up: DVec3::new(-0.2, 1.5, 2.0) }),
-        area(Patch::Disc { center: at, normal: DVec3::new(0.2, -1.0, 0.1), radius: 0.8 }),
-        area(Patch::Sphere { center: at, radius: 0.7 }),
+        area(LightShape::Rectangle { corner: at, across: DVec3::new(1.5, 0.2, 0.0), up: DVec3::new(-0.2, 1.5, 2.0) }),
+        area(LightShape::Disc { center: at, normal: DVec3::new(0.2, -1.0, 0.1), radius: 0.8 }),
+        area(LightShape::Sphere { center: at, radius: 0.7 }),
         Light::Sky { map: None, radiance: one(), turned: 0.0 },
         Light::Sky { map: Some(disc), radiance: one(), turned: 30.0 },
     ];
-    let wavelengths = Wavelengths::bands();
+    let wavelengths = WavelengthSets::bands();
     let made = |light: &Light| {
         light.check().unwrap_or_else(|error| panic!("{error}"));
-        Source::new(light, &wavelengths)
+        LightSource::new(light, &wavelengths)
     };
-    let mesh = Source::of_triangles(vec![TRIANGLE], wavelengths.light(&one()));
+    let mesh = LightSource::of_triangles(vec![TRIANGLE], wavelengths.light(&one()));
     lights.iter().map(made).chain(mesh).collect()
 }
 
 #[test]
 fn there_is_a_light_of_every_kind() {
-    let kinds: BTreeSet<&str> = sources().iter().map(Source::kind).collect();
-    assert_eq!(kinds, Source::KINDS.iter().copied().collect());
+    let kinds: BTreeSet<&str> = sources().iter().map(LightSource::kind).collect();
+    assert_eq!(kinds, LightSource::KINDS.iter().copied().collect());
 }
 
 /// Irradiance of a surface that faces up, by the beams of a light.
-fn sampled(source: &Source) -> f64 {
+fn sampled(source: &LightSource) -> f64 {
     let term = |uniform| {
         let beam = source.beam(POINT, Some(DVec3::Y), uniform, 0);
         beam.map_or(0.0, |beam| beam.irradiance.0[0] * beam.towards.y.max(0.0))
@@ -61,7 +61,7 @@ fn sampled(source: &Source) -> f64 {
 }
 
 /// The radiance that comes from a direction, and the density with which beams are drawn there.
-fn seen(source: &Source, towards: DVec3) -> (f64, f64) {
+fn seen(source: &LightSource, towards: DVec3) -> (f64, f64) {
     let ray = Ray { origin: POINT, direction: towards };
     let glow = source.glow(&ray, 0.0, f64::INFINITY, 0).or_else(|| source.sky(&ray, Some(DVec3::Y), 0));
     if let Some(glow) = glow {
@@ -81,7 +81,7 @@ fn seen(source: &Source, towards: DVec3) -> (f64, f64) {
 
 #[test]
 fn sampled_irradiance_is_that_of_all_that_is_seen() {
-    let sequence = Sequence::new(3, 1);
+    let sequence = SobolSequence::new(3, 1);
     let count = 1 << 18;
     for source in sources().iter().filter(|source| !source.is_sharp()) {
         let (mut irradiance, mut density) = (0.0, 0.0);
@@ -99,7 +99,7 @@ fn sampled_irradiance_is_that_of_all_that_is_seen() {
 
 #[test]
 fn beams_have_the_densities_that_are_told_and_come_from_where_lights_are() {
-    let mut stream = Stream::new(1, 2);
+    let mut stream = RandomStream::new(1, 2);
     for source in sources() {
         for _ in 0..200 {
             let uniform = stream.point();
@@ -111,12 +111,12 @@ fn beams_have_the_densities_that_are_told_and_come_from_where_lights_are() {
                 assert!(error < 1e-6, "{}: {density} {told} {radiance}", source.kind());
             }
             let is_there = match source.origin() {
-                Origin::Within(bounds) => {
+                LightOrigin::Within(bounds) => {
                     let end = POINT + beam.towards * beam.distance;
                     (end - end.clamp(bounds.min, bounds.max)).length() < 1e-9
                 }
-                Origin::Towards(towards) => beam.towards == towards && beam.distance.is_infinite(),
-                Origin::Everywhere => beam.distance.is_infinite() && source.is_beyond(),
+                LightOrigin::Towards(towards) => beam.towards == towards && beam.distance.is_infinite(),
+                LightOrigin::Everywhere => beam.distance.is_infinite() && source.is_beyond(),
             };
             assert!(is_there, "{}", source.kind());
         }
@@ -137,14 +137,14 @@ fn points_that_stand_for_a_light_light_as_it_does() {
 
 #[test]
 fn what_leaves_a_light_is_its_power() {
-    let sequence = Sequence::new(1, 1);
+    let sequence = SobolSequence::new(1, 1);
     let (count, radius) = (1 << 14, 2.0);
     for source in sources() {
         let of = |index: u32| match source.start(sequence.point(index, 0), 0) {
-            Some(Start::Place { normal, .. }) => {
+            Some(EmissionSample::Place { normal, .. }) => {
                 source.intensity(normal, sphere(sequence.point(index, 1)), 0).0[0] * 2.0 * TAU
             }
-            Some(Start::Parallel { irradiance, .. }) => irradiance.0[0] * PI * radius * radius,
+            Some(EmissionSample::Parallel { irradiance, .. }) => irradiance.0[0] * PI * radius * radius,
             None => 0.0,
         };
         let found = (0..count).map(of).sum::<f64>() / f64::from(count);

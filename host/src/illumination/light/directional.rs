@@ -1,36 +1,36 @@
 //! Parallel light from infinitely far away.
 
-use super::beam::{Beam, LightPoint, Origin, Start};
+use super::beam::{LightSample, LightPoint, LightOrigin, EmissionSample};
 use super::emitter::Emitter;
-use crate::color::{Channels, Curve};
+use crate::color::{Channels, SpectralTable};
 use glam::DVec3;
 use std::f64::consts::PI;
 
 /// Parallel light.
 #[derive(Clone, Debug)]
-pub(super) struct Directional {
+pub(super) struct DirectionalLight {
     /// Towards the light, unit length.
     pub(super) towards: DVec3,
     /// Irradiance of a surface that faces it, W/m².
-    pub(super) strength: Curve,
+    pub(super) strength: SpectralTable,
 }
 
-impl Emitter for Directional {
-    fn beam(&self, _: DVec3, _: Option<DVec3>, _: [f64; 2], comb: usize) -> Option<Beam> {
+impl Emitter for DirectionalLight {
+    fn beam(&self, _: DVec3, _: Option<DVec3>, _: [f64; 2], comb: usize) -> Option<LightSample> {
         let irradiance = self.strength.of(comb);
-        Some(Beam { towards: self.towards, distance: f64::INFINITY, irradiance, density: None })
+        Some(LightSample { towards: self.towards, distance: f64::INFINITY, irradiance, density: None })
     }
 
     fn points(&self, _: u32) -> Vec<LightPoint> {
         vec![LightPoint::towards(self.towards)]
     }
 
-    fn origin(&self) -> Origin {
-        Origin::Towards(self.towards)
+    fn origin(&self) -> LightOrigin {
+        LightOrigin::Towards(self.towards)
     }
 
-    fn start(&self, _: [f64; 2], comb: usize) -> Option<Start> {
-        Some(Start::Parallel { direction: -self.towards, irradiance: self.strength.of(comb) })
+    fn start(&self, _: [f64; 2], comb: usize) -> Option<EmissionSample> {
+        Some(EmissionSample::Parallel { direction: -self.towards, irradiance: self.strength.of(comb) })
     }
 
     fn intensity(&self, _: Option<DVec3>, _: DVec3, comb: usize) -> Channels {

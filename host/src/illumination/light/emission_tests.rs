@@ -1,19 +1,19 @@
 //! Facts about light as it leaves its source.
 
-use super::{Goniometry, Light, Patch, Source, Start};
-use crate::color::{Color, Wavelengths};
+use super::{Goniometry, Light, LightShape, LightSource, EmissionSample};
+use crate::color::{Color, WavelengthSets};
 use crate::numeric::sampling::sphere;
-use crate::numeric::sequence::Sequence;
+use crate::numeric::sequence::SobolSequence;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
 /// What leaves a source in all directions, by samples.
-fn sampled(source: &Source) -> f64 {
-    let sequence = Sequence::new(1, 1);
+fn sampled(source: &LightSource) -> f64 {
+    let sequence = SobolSequence::new(1, 1);
     let count = 1 << 14;
     let of = |index: u32| {
         let start = source.start(sequence.point(index, 0), 0);
-        let Some(Start::Place { normal, .. }) = start else { return 0.0 };
+        let Some(EmissionSample::Place { normal, .. }) = start else { return 0.0 };
         source.intensity(normal, sphere(sequence.point(index, 1)), 0).0[0] * 2.0 * TAU
     };
     (0..count).map(of).sum::<f64>() / f64::from(count)
@@ -34,13 +34,13 @@ fn what_leaves_a_source_is_its_power() {
             Light::Spot { at, direction: y, intensity: one(), inner: 20.0, outer: 60.0 },
             TAU * (1.0 - 0.5 * (20f64.to_radians().cos() + 60f64.to_radians().cos())),
         ),
-        (area(Patch::Rectangle { corner: at, across: DVec3::X * 2.0, up: DVec3::Z * 3.0 }), 6.0 * PI),
-        (area(Patch::Disc { center: at, normal: y, radius: 2.0 }), 4.0 * PI * PI),
-        (area(Patch::Sphere { center: at, radius: 2.0 }), 16.0 * PI * PI),
+        (area(LightShape::Rectangle { corner: at, across: DVec3::X * 2.0, up: DVec3::Z * 3.0 }), 6.0 * PI),
+        (area(LightShape::Disc { center: at, normal: y, radius: 2.0 }), 4.0 * PI * PI),
+        (area(LightShape::Sphere { center: at, radius: 2.0 }), 16.0 * PI * PI),
         (Light::Luminaire { at, down: -y, front: DVec3::X, goniometry, color: one() }, 2.0 * TAU),
     ];
     for (light, expected) in lights {
-        let source = Source::new(&light, &Wavelengths::bands());
+        let source = LightSource::new(&light, &WavelengthSets::bands());
         let (found, power) = (sampled(&source), source.power(1.0, 0).0[0]);
         assert!((power / expected - 1.0).abs() < 1e-4, "{}: {power} {expected}", light.words());
         assert!((found / expected - 1.0).abs() < 1e-2, "{}: {found} {expected}", light.words());
@@ -50,8 +50,8 @@ fn what_leaves_a_source_is_its_power() {
 #[test]
 fn a_sky_sends_its_light_through_every_disc() {
     let light = Light::Sky { map: None, radiance: Color::grey(2.0), turned: 0.0 };
-    let source = Source::new(&light, &Wavelengths::bands());
-    let Some(Start::Parallel { irradiance, .. }) = source.start([0.3, 0.7], 0) else { panic!("parallel") };
+    let source = LightSource::new(&light, &WavelengthSets::bands());
+    let Some(EmissionSample::Parallel { irradiance, .. }) = source.start([0.3, 0.7], 0) else { panic!("parallel") };
     assert!((irradiance.0[0] - 4.0 * TAU).abs() < 1e-9);
     assert!((source.power(3.0, 0).0[0] - 4.0 * TAU * 9.0 * PI).abs() < 1e-9);
 }

@@ -1,6 +1,6 @@
 //! What every light tells: what arrives at a point, what leaves it, where it is.
 
-use super::beam::{Beam, Glow, LightPoint, Origin, Start};
+use super::beam::{LightSample, LightHit, LightPoint, LightOrigin, EmissionSample};
 use crate::color::Channels;
 use crate::numeric::ray::Ray;
 use glam::DVec3;
@@ -8,22 +8,22 @@ use glam::DVec3;
 /// A light of one kind, ready for rendering. [`Source`](super::Source) says what each function gives.
 pub(super) trait Emitter {
     /// Light that arrives at a point if nothing stands between.
-    fn beam(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<Beam>;
+    fn beam(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<LightSample>;
 
     /// A few points that stand for it.
     fn points(&self, count: u32) -> Vec<LightPoint>;
 
     /// Light that arrives from one of its points.
-    fn beam_from(&self, _: &LightPoint, point: DVec3, comb: usize) -> Option<Beam> {
+    fn beam_from(&self, _: &LightPoint, point: DVec3, comb: usize) -> Option<LightSample> {
         // What has no size is its only point, and the middle of a disc in the sky stands for it.
         self.beam(point, None, [0.0; 2], comb)
     }
 
     /// Where its light comes from.
-    fn origin(&self) -> Origin;
+    fn origin(&self) -> LightOrigin;
 
     /// Where light leaves it.
-    fn start(&self, uniform: [f64; 2], comb: usize) -> Option<Start>;
+    fn start(&self, uniform: [f64; 2], comb: usize) -> Option<EmissionSample>;
 
     /// Flux in each solid angle that leaves such a place.
     fn intensity(&self, normal: Option<DVec3>, direction: DVec3, comb: usize) -> Channels;
@@ -57,12 +57,12 @@ pub(super) trait Emitter {
     }
 
     /// What a ray sees of a surface of its own.
-    fn glow(&self, _: &Ray, _: f64, _: f64, _: usize) -> Option<Glow> {
+    fn glow(&self, _: &Ray, _: f64, _: f64, _: usize) -> Option<LightHit> {
         None
     }
 
     /// What is seen of a sky.
-    fn sky(&self, _: &Ray, _: Option<DVec3>, _: usize) -> Option<Glow> {
+    fn sky(&self, _: &Ray, _: Option<DVec3>, _: usize) -> Option<LightHit> {
         None
     }
 

@@ -1,10 +1,10 @@
 //! A luminaire that was measured: a point whose intensity is a table over the directions.
 
 use super::Goniometry;
-use super::beam::{Beam, LightPoint, Origin, Start, from_point};
+use super::beam::{LightSample, LightPoint, LightOrigin, EmissionSample, from_point};
 use super::emitter::Emitter;
 use crate::color::observer::LUMENS_PER_WATT;
-use crate::color::{Channels, Curve};
+use crate::color::{Channels, SpectralTable};
 use crate::numeric::cubature::GAUSS;
 use glam::{DMat3, DVec3};
 use std::f64::consts::{PI, TAU};
@@ -15,42 +15,42 @@ const PARTS: usize = 24;
 
 /// A measured luminaire.
 #[derive(Clone, Debug)]
-pub(super) struct Luminaire {
+pub(super) struct GoniometricLight {
     pub(super) at: DVec3,
     /// From the axes of the table to those of the scene.
     pub(super) axes: DMat3,
     /// Candelas.
     pub(super) table: Arc<Goniometry>,
     /// What the table is multiplied with.
-    pub(super) strength: Curve,
+    pub(super) strength: SpectralTable,
 }
 
-impl Luminaire {
+impl GoniometricLight {
     /// - `down`: where the vertical angle is 0. `front`: about where the horizontal angle is 0.
-    pub(super) fn new(at: DVec3, [down, front]: [DVec3; 2], table: Arc<Goniometry>, strength: Curve) -> Luminaire {
+    pub(super) fn new(at: DVec3, [down, front]: [DVec3; 2], table: Arc<Goniometry>, strength: SpectralTable) -> GoniometricLight {
         let up = -down.normalize_or(DVec3::NEG_Y);
         let y = up.cross(front).normalize_or(up.any_orthonormal_vector());
-        Luminaire { at, axes: DMat3::from_cols(y.cross(up), y, up), table, strength }
+        GoniometricLight { at, axes: DMat3::from_cols(y.cross(up), y, up), table, strength }
     }
 }
 
-impl Emitter for Luminaire {
-    fn beam(&self, point: DVec3, _: Option<DVec3>, _: [f64; 2], comb: usize) -> Option<Beam> {
+impl Emitter for GoniometricLight {
+    fn beam(&self, point: DVec3, _: Option<DVec3>, _: [f64; 2], comb: usize) -> Option<LightSample> {
         let beam = from_point(self.at - point, self.strength.of(comb))?;
         let watts = self.table.candelas(self.axes.transpose() * -beam.towards) / LUMENS_PER_WATT;
-        (watts > 0.0).then(|| Beam { irradiance: beam.irradiance * watts, ..beam })
+        (watts > 0.0).then(|| LightSample { irradiance: beam.irradiance * watts, ..beam })
     }
 
     fn points(&self, _: u32) -> Vec<LightPoint> {
         vec![LightPoint::at(self.at)]
     }
 
-    fn origin(&self) -> Origin {
-        Origin::point(self.at)
+    fn origin(&self) -> LightOrigin {
+        LightOrigin::point(self.at)
     }
 
-    fn start(&self, _: [f64; 2], _: usize) -> Option<Start> {
-        Some(Start::Place { at: self.at, normal: None, area: 0.0 })
+    fn start(&self, _: [f64; 2], _: usize) -> Option<EmissionSample> {
+        Some(EmissionSample::Place { at: self.at, normal: None, area: 0.0 })
     }
 
     fn intensity(&self, _: Option<DVec3>, direction: DVec3, comb: usize) -> Channels {

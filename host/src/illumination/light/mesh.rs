@@ -1,26 +1,26 @@
 //! Triangles of an object that emits the same radiance on both sides.
 
-use super::beam::{Beam, LightPoint, Origin, Sides, Start};
+use super::beam::{LightSample, LightPoint, LightOrigin, EmittingSides, EmissionSample};
 use super::emitter::Emitter;
-use crate::color::{Channels, Curve};
+use crate::color::{Channels, SpectralTable};
 use crate::numeric::bounds::Bounds;
 use glam::DVec3;
 use std::f64::consts::TAU;
 
 /// Triangles that emit on both sides, drawn evenly by area.
 #[derive(Clone, Debug)]
-pub(super) struct Triangles {
+pub(super) struct MeshLight {
     /// Radiance, W/(m² sr).
-    strength: Curve,
+    strength: SpectralTable,
     corners: Vec<[DVec3; 3]>,
     /// The part of the area up to each.
     below: Vec<f64>,
     area: f64,
 }
 
-impl Triangles {
+impl MeshLight {
     /// None without area.
-    pub(super) fn new(corners: Vec<[DVec3; 3]>, strength: Curve) -> Option<Triangles> {
+    pub(super) fn new(corners: Vec<[DVec3; 3]>, strength: SpectralTable) -> Option<MeshLight> {
         let mut area = 0.0;
         let mut below: Vec<f64> = Vec::with_capacity(corners.len());
         for [a, b, c] in &corners {
@@ -31,7 +31,7 @@ impl Triangles {
             return None;
         }
         below.iter_mut().for_each(|part| *part /= area);
-        Some(Triangles { strength, corners, below, area })
+        Some(MeshLight { strength, corners, below, area })
     }
 
     /// A point, drawn evenly by area, and the normal there.
@@ -55,32 +55,32 @@ impl Triangles {
     }
 }
 
-impl Emitter for Triangles {
-    fn beam(&self, point: DVec3, _: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<Beam> {
+impl Emitter for MeshLight {
+    fn beam(&self, point: DVec3, _: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<LightSample> {
         let (towards, distance, density) = self.draw(point, uniform)?;
         let irradiance = self.strength.of(comb) * density.recip();
-        Some(Beam { towards, distance, irradiance, density: Some(density) })
+        Some(LightSample { towards, distance, irradiance, density: Some(density) })
     }
 
     fn points(&self, count: u32) -> Vec<LightPoint> {
         LightPoint::spread(count, |uniform| {
             let (at, normal) = self.point(uniform);
-            (at, self.area, Some(normal), Sides::Both)
+            (at, self.area, Some(normal), EmittingSides::Both)
         })
     }
 
     #[inline]
-    fn beam_from(&self, from: &LightPoint, point: DVec3, comb: usize) -> Option<Beam> {
+    fn beam_from(&self, from: &LightPoint, point: DVec3, comb: usize) -> Option<LightSample> {
         from.beam(self.strength.of(comb), point)
     }
 
-    fn origin(&self) -> Origin {
-        Origin::Within(Bounds::of(self.corners.iter().flatten().copied()))
+    fn origin(&self) -> LightOrigin {
+        LightOrigin::Within(Bounds::of(self.corners.iter().flatten().copied()))
     }
 
-    fn start(&self, uniform: [f64; 2], _: usize) -> Option<Start> {
+    fn start(&self, uniform: [f64; 2], _: usize) -> Option<EmissionSample> {
         let (at, normal) = self.point(uniform);
-        Some(Start::Place { at, normal: Some(normal), area: self.area })
+        Some(EmissionSample::Place { at, normal: Some(normal), area: self.area })
     }
 
     fn intensity(&self, normal: Option<DVec3>, direction: DVec3, comb: usize) -> Channels {

@@ -23,12 +23,12 @@ mod emission_tests;
 #[cfg(test)]
 mod tests;
 
-pub use beam::{Beam, Glow, LightPoint, Origin, Start};
+pub use beam::{LightSample, LightHit, LightPoint, LightOrigin, EmissionSample};
 pub use goniometry::{Goniometry, GoniometryError};
 pub use panorama::Panorama;
-pub use patch::Patch;
+pub use patch::LightShape;
 pub use sky::Sky;
-pub use source::Source;
+pub use source::LightSource;
 
 use crate::color::Color;
 use crate::numeric::bounds::Bounds;
@@ -85,7 +85,7 @@ pub enum Light {
     /// A surface that emits the same radiance in all directions, and is seen.
     Area {
         /// The surface.
-        patch: Patch,
+        patch: LightShape,
         /// Its radiance, W/(m² sr).
         radiance: Color,
     },
@@ -195,17 +195,17 @@ impl Light {
     }
 
     /// Where its light comes from.
-    pub fn origin(&self) -> Origin {
+    pub fn origin(&self) -> LightOrigin {
         match self {
-            Light::Point { at, .. } | Light::Spot { at, .. } | Light::Luminaire { at, .. } => Origin::point(*at),
-            Light::Directional { direction, .. } => Origin::Towards(-direction.normalize_or(DVec3::NEG_Y)),
-            Light::Area { patch, .. } => Origin::Within(Bounds::of(patch.bounds())),
-            Light::Sky { .. } => Origin::Everywhere,
+            Light::Point { at, .. } | Light::Spot { at, .. } | Light::Luminaire { at, .. } => LightOrigin::point(*at),
+            Light::Directional { direction, .. } => LightOrigin::Towards(-direction.normalize_or(DVec3::NEG_Y)),
+            Light::Area { patch, .. } => LightOrigin::Within(Bounds::of(patch.bounds())),
+            Light::Sky { .. } => LightOrigin::Everywhere,
         }
     }
 
     /// The surface that emits and its radiance, if it has one of its own.
-    pub fn surface(&self) -> Option<(&Patch, &Color)> {
+    pub fn surface(&self) -> Option<(&LightShape, &Color)> {
         match self {
             Light::Area { patch, radiance } => Some((patch, radiance)),
             _ => None,

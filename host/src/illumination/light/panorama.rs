@@ -6,7 +6,7 @@
 
 use crate::color::{Color, Spectrum};
 use crate::memory;
-use crate::picture::source::Source;
+use crate::picture::source::PictureReader;
 use crate::picture::{Picture, PictureError, Pixel, pixel_of};
 use glam::{DVec2, DVec3};
 use std::path::Path;
@@ -51,7 +51,7 @@ impl Panorama {
     /// # Errors
     /// [`PictureError`], also for a number that is not finite, and where there is no memory for it.
     pub fn read(path: &Path) -> Result<Panorama, PictureError> {
-        let source = Source::open(path)?;
+        let source = PictureReader::open(path)?;
         let [width, height] = source.size();
         let count = Picture::pixels_of(width, height)?;
         let bytes = count * if count <= MOST_WHOLE { size_of::<[f32; 3]>() } else { size_of::<u32>() };

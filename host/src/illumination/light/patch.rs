@@ -14,7 +14,7 @@ const SMALL: f64 = 1e-6;
 /// A surface that emits light.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Patch {
+pub enum LightShape {
     /// A rectangle, or a parallelogram, that emits on the side where its sides turn counter-clockwise.
     Rectangle {
         /// A corner.
@@ -44,7 +44,7 @@ pub enum Patch {
 
 /// A point of a patch, drawn for a point that it lights.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Drawn {
+pub(super) struct ShapeSample {
     /// From the lit point towards it, unit length.
     pub(super) towards: DVec3,
     /// From the lit point to it.
@@ -53,13 +53,13 @@ pub(super) struct Drawn {
     pub(super) density: f64,
 }
 
-impl Patch {
+impl LightShape {
     /// What it is, in words.
     pub fn words(&self) -> &'static str {
         match self {
-            Patch::Rectangle { .. } => "a rectangular light",
-            Patch::Disc { .. } => "a disc light",
-            Patch::Sphere { .. } => "a spherical light",
+            LightShape::Rectangle { .. } => "a rectangular light",
+            LightShape::Disc { .. } => "a disc light",
+            LightShape::Sphere { .. } => "a spherical light",
         }
     }
 
@@ -70,14 +70,14 @@ impl Patch {
     pub fn check(&self) -> Result<(), LightError> {
         let area = self.area();
         let finite = match *self {
-            Patch::Rectangle { corner, across, up } => corner.is_finite() && across.is_finite() && up.is_finite(),
-            Patch::Disc { center, normal, radius } => {
+            LightShape::Rectangle { corner, across, up } => corner.is_finite() && across.is_finite() && up.is_finite(),
+            LightShape::Disc { center, normal, radius } => {
                 if normal.try_normalize().is_none() {
                     return Err(LightError::NoLength { what: "its normal", value: normal });
                 }
                 center.is_finite() && radius > 0.0
             }
-            Patch::Sphere { center, radius } => center.is_finite() && radius > 0.0,
+            LightShape::Sphere { center, radius } => center.is_finite() && radius > 0.0,
         };
         match area {
             _ if !finite || !area.is_finite() => Err(LightError::Patch("not finite, or its radius not above 0")),
@@ -89,20 +89,20 @@ impl Patch {
     /// Its area.
     pub fn area(&self) -> f64 {
         match *self {
-            Patch::Rectangle { across, up, .. } => across.cross(up).length(),
-            Patch::Disc { radius, .. } => PI * radius * radius,
-            Patch::Sphere { radius, .. } => 4.0 * PI * radius * radius,
+            LightShape::Rectangle { across, up, .. } => across.cross(up).length(),
+            LightShape::Disc { radius, .. } => PI * radius * radius,
+            LightShape::Sphere { radius, .. } => 4.0 * PI * radius * radius,
         }
     }
 
     /// The corners of a box around it.
     pub fn bounds(&self) -> [DVec3; 2] {
         match *self {
-            Patch::Rectangle { corner, across, up } => {
+            LightShape::Rectangle { corner, across, up } => {
                 let corners = [corner, corner + across, corner + up, corner + across + up];
                 corners.into_iter().fold([corner; 2], |[low, high], p| [low.min(p), high.max(p)])
             }
-            Patch::Disc { center, radius, .. } | Patch::Sphere { center, radius } => {
+            LightShape::Disc { center, radius, .. } | LightShape::Sphere { center, radius } => {
                 [center - DVec3::splat(radius), center + DVec3::splat(radius)]
             }
         }
@@ -114,17 +114,17 @@ impl Patch {
     pub fn polygons(&self, sides: usize) -> Vec<Vec<DVec3>> {
         let turn = |k: usize| (TAU * (k % sides) as f64 / sides as f64).sin_cos();
         match *self {
-            Patch::Rectangle { corner, across, up } => {
+            LightShape::Rectangle { corner, across, up } => {
                 vec![vec![corner, corner + across, corner + across + up, corner + up]]
             }
-            Patch::Disc { center, radius, .. } => {
+            LightShape::Disc { center, radius, .. } => {
                 let normal = self.normal().unwrap_or(DVec3::Y);
                 let across = normal.any_orthonormal_vector();
                 let up = normal.cross(across);
                 let point = |k: usize| center + (across * turn(k).1 + up * turn(k).0) * radius;
                 vec![(0..sides).map(point).collect()]
             }
-            Patch::Sphere { center, radius } => {
+            LightShape::Sphere { center, radius } => {
                 let rows = sides.div_ceil(2);
                 let point = |row: usize, k: usize| {
                     let (sin, cos) = (PI * row as f64 / rows as f64).sin_cos();
@@ -147,26 +147,26 @@ impl Patch {
     /// The flat ones' normal.
     fn normal(&self) -> Option<DVec3> {
         match *self {
-            Patch::Rectangle { across, up, .. } => across.cross(up).try_normalize(),
-            Patch::Disc { normal, .. } => normal.try_normalize(),
-            Patch::Sphere { .. } => None,
+            LightShape::Rectangle { across, up, .. } => across.cross(up).try_normalize(),
+            LightShape::Disc { normal, .. } => normal.try_normalize(),
+            LightShape::Sphere { .. } => None,
         }
     }
 
     /// Whether a point is on the side of a rectangle on which this emits; of other patches, always.
     pub(super) fn is_before(&self, point: DVec3) -> bool {
         match *self {
-            Patch::Rectangle { corner, across, up } => (point - corner).dot(across.cross(up)) > 0.0,
-            Patch::Disc { .. } | Patch::Sphere { .. } => true,
+            LightShape::Rectangle { corner, across, up } => (point - corner).dot(across.cross(up)) > 0.0,
+            LightShape::Disc { .. } | LightShape::Sphere { .. } => true,
         }
     }
 
     /// Draws a point that lights a point; none where it does not light it.
     ///
     /// A sphere and a rectangle are drawn evenly by solid angle, a disc by its area.
-    pub(super) fn draw(&self, point: DVec3, uniform: [f64; 2]) -> Option<Drawn> {
+    pub(super) fn draw(&self, point: DVec3, uniform: [f64; 2]) -> Option<ShapeSample> {
         match *self {
-            Patch::Rectangle { corner, across, up } => {
+            LightShape::Rectangle { corner, across, up } => {
                 let normal = self.normal()?;
                 if !self.is_before(point) {
                     return None;
@@ -175,17 +175,17 @@ impl Patch {
                     let offset = seen.draw(uniform);
                     let distance = offset.length();
                     let density = seen.solid_angle().recip();
-                    return (distance > 0.0).then(|| Drawn { towards: offset / distance, distance, density });
+                    return (distance > 0.0).then(|| ShapeSample { towards: offset / distance, distance, density });
                 }
                 self.by_area(point, corner + across * uniform[0] + up * uniform[1], normal)
             }
-            Patch::Disc { center, radius, .. } => {
+            LightShape::Disc { center, radius, .. } => {
                 let normal = self.normal()?;
                 let (x, y) = normal.any_orthonormal_pair();
                 let [a, b] = disk(uniform);
                 self.by_area(point, center + (x * a + y * b) * radius, normal)
             }
-            Patch::Sphere { center, radius } => draw_sphere(center - point, radius, uniform),
+            LightShape::Sphere { center, radius } => draw_sphere(center - point, radius, uniform),
         }
     }
 
@@ -195,14 +195,14 @@ impl Patch {
     pub(super) fn point(&self, uniform: [f64; 2], middle: bool) -> (DVec3, Option<DVec3>) {
         let [u, v] = if middle { [0.5; 2] } else { uniform };
         match *self {
-            Patch::Rectangle { corner, across, up } => (corner + across * u + up * v, self.normal()),
-            Patch::Disc { center, radius, .. } => {
+            LightShape::Rectangle { corner, across, up } => (corner + across * u + up * v, self.normal()),
+            LightShape::Disc { center, radius, .. } => {
                 let (x, y) = self.normal().unwrap_or(DVec3::Y).any_orthonormal_pair();
                 let [a, b] = if middle { [0.0; 2] } else { disk([u, v]) };
                 (center + (x * a + y * b) * radius, self.normal())
             }
-            Patch::Sphere { center, .. } if middle => (center, None),
-            Patch::Sphere { center, radius } => {
+            LightShape::Sphere { center, .. } if middle => (center, None),
+            LightShape::Sphere { center, radius } => {
                 let (height, (sin, cos)) = (1.0 - 2.0 * u, (TAU * v).sin_cos());
                 let across = (1.0 - height * height).max(0.0).sqrt();
                 // Seen from anywhere, as far from the middle in the mean square as the points of a disc.
@@ -215,23 +215,23 @@ impl Patch {
     /// The area that is seen of it from straight before it and far away.
     pub(super) fn seen_area(&self) -> f64 {
         match *self {
-            Patch::Sphere { radius, .. } => PI * radius * radius,
+            LightShape::Sphere { radius, .. } => PI * radius * radius,
             _ => self.area(),
         }
     }
 
-    fn by_area(&self, point: DVec3, at: DVec3, normal: DVec3) -> Option<Drawn> {
+    fn by_area(&self, point: DVec3, at: DVec3, normal: DVec3) -> Option<ShapeSample> {
         let offset = at - point;
         let distance = offset.length();
         let towards = offset / distance;
         let facing = -normal.dot(towards);
         let density = distance * distance / (facing * self.area());
-        (distance > 0.0 && facing > 0.0 && density.is_finite()).then_some(Drawn { towards, distance, density })
+        (distance > 0.0 && facing > 0.0 && density.is_finite()).then_some(ShapeSample { towards, distance, density })
     }
 
     /// The rectangle as a point sees it, unless it is too small or none.
     fn seen_rectangle(&self, point: DVec3) -> Option<SphericalRectangle> {
-        let Patch::Rectangle { corner, across, up } = *self else { return None };
+        let LightShape::Rectangle { corner, across, up } = *self else { return None };
         let skew = across.dot(up).abs();
         if skew > 1e-12 * across.length() * up.length() {
             return None;
@@ -242,7 +242,7 @@ impl Patch {
     /// The density with which [`Patch::draw`] draws a direction in which the patch is met at a distance, 1/sr.
     pub(super) fn density(&self, point: DVec3, towards: DVec3, distance: f64) -> f64 {
         match *self {
-            Patch::Sphere { center, radius } => cone(center - point, radius).map_or(0.0, |cap| (TAU * cap).recip()),
+            LightShape::Sphere { center, radius } => cone(center - point, radius).map_or(0.0, |cap| (TAU * cap).recip()),
             _ => {
                 let Some(normal) = self.normal() else { return 0.0 };
                 if let Some(seen) = self.seen_rectangle(point) {
@@ -264,7 +264,7 @@ impl Patch {
             Some((t, slope < 0.0)).filter(|(t, _)| within(t))
         };
         match *self {
-            Patch::Rectangle { corner, across, up } => {
+            LightShape::Rectangle { corner, across, up } => {
                 let normal = across.cross(up);
                 let (t, front) = plane(corner, normal)?;
                 let offset = origin + direction * t - corner;
@@ -272,11 +272,11 @@ impl Patch {
                 let (a, b) = (offset.cross(up).dot(normal) / square, across.cross(offset).dot(normal) / square);
                 ((0.0..=1.0).contains(&a) && (0.0..=1.0).contains(&b)).then_some((t, front))
             }
-            Patch::Disc { center, normal, radius } => {
+            LightShape::Disc { center, normal, radius } => {
                 let (t, front) = plane(center, normal)?;
                 ((origin + direction * t).distance_squared(center) <= radius * radius).then_some((t, front))
             }
-            Patch::Sphere { center, radius } => {
+            LightShape::Sphere { center, radius } => {
                 // The nearest point of the line to the middle, and half the chord: no digit is lost far away.
                 let square = direction.length_squared();
                 let offset = center - origin;
@@ -295,7 +295,7 @@ fn cone(offset: DVec3, radius: f64) -> Option<f64> {
     (square < 1.0).then(|| square / (1.0 + (1.0 - square).sqrt()))
 }
 
-fn draw_sphere(offset: DVec3, radius: f64, [x, y]: [f64; 2]) -> Option<Drawn> {
+fn draw_sphere(offset: DVec3, radius: f64, [x, y]: [f64; 2]) -> Option<ShapeSample> {
     let cap = cone(offset, radius)?;
     let far = offset.length();
     let axis = offset / far;
@@ -305,5 +305,5 @@ fn draw_sphere(offset: DVec3, radius: f64, [x, y]: [f64; 2]) -> Option<Drawn> {
     let (across, up) = axis.any_orthonormal_pair();
     let towards = ((across * cos + up * sin) * sine + axis * (1.0 - height)).normalize();
     let half_chord = (radius * radius - far * far * sine * sine).max(0.0).sqrt();
-    Some(Drawn { towards, distance: far * (1.0 - height) - half_chord, density: (TAU * cap).recip() })
+    Some(ShapeSample { towards, distance: far * (1.0 - height) - half_chord, density: (TAU * cap).recip() })
 }

@@ -1,21 +1,21 @@
 //! A point that emits alike in all directions.
 
-use super::beam::{Beam, LightPoint, Origin, Start, from_point};
+use super::beam::{LightSample, LightPoint, LightOrigin, EmissionSample, from_point};
 use super::emitter::Emitter;
-use crate::color::{Channels, Curve};
+use crate::color::{Channels, SpectralTable};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
 /// A point light.
 #[derive(Clone, Debug)]
-pub(super) struct Point {
+pub(super) struct PointLight {
     pub(super) at: DVec3,
     /// Radiant intensity, W/sr.
-    pub(super) strength: Curve,
+    pub(super) strength: SpectralTable,
 }
 
-impl Emitter for Point {
-    fn beam(&self, point: DVec3, _: Option<DVec3>, _: [f64; 2], comb: usize) -> Option<Beam> {
+impl Emitter for PointLight {
+    fn beam(&self, point: DVec3, _: Option<DVec3>, _: [f64; 2], comb: usize) -> Option<LightSample> {
         from_point(self.at - point, self.strength.of(comb))
     }
 
@@ -23,12 +23,12 @@ impl Emitter for Point {
         vec![LightPoint::at(self.at)]
     }
 
-    fn origin(&self) -> Origin {
-        Origin::point(self.at)
+    fn origin(&self) -> LightOrigin {
+        LightOrigin::point(self.at)
     }
 
-    fn start(&self, _: [f64; 2], _: usize) -> Option<Start> {
-        Some(Start::Place { at: self.at, normal: None, area: 0.0 })
+    fn start(&self, _: [f64; 2], _: usize) -> Option<EmissionSample> {
+        Some(EmissionSample::Place { at: self.at, normal: None, area: 0.0 })
     }
 
     fn intensity(&self, _: Option<DVec3>, _: DVec3, comb: usize) -> Channels {

@@ -1,7 +1,7 @@
 //! Openings through which the light of skies comes in: what is drawn there is not lost on walls.
 
-use super::Patch;
-use super::patch::Drawn;
+use super::LightShape;
+use super::patch::ShapeSample;
 use crate::numeric::ray::Ray;
 use glam::DVec3;
 
@@ -17,11 +17,11 @@ const PART: f64 = 0.8;
 /// After Bitterli, Novák and Jarosz 2015, "Portal-masked environment map sampling", with rectangles drawn evenly by solid
 /// angle in the place of the map that is rectified for each portal.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Portals(Vec<Patch>);
+pub(super) struct Portals(Vec<LightShape>);
 
 impl Portals {
     /// - `rectangles`: each one's normal, across x up, points inwards.
-    pub(super) fn new(rectangles: &[Patch]) -> Portals {
+    pub(super) fn new(rectangles: &[LightShape]) -> Portals {
         Portals(rectangles.to_vec())
     }
 
@@ -29,17 +29,17 @@ impl Portals {
     /// otherwise the two numbers are to choose another direction.
     ///
     /// - `uniform`: a point of the unit square.
-    pub(super) fn draw(&self, point: DVec3, [x, y]: [f64; 2]) -> Chosen {
+    pub(super) fn draw(&self, point: DVec3, [x, y]: [f64; 2]) -> PortalChoice {
         let count = self.before(point).count();
         match x / PART {
-            _ if count == 0 => Chosen::Anywhere([x, y]),
+            _ if count == 0 => PortalChoice::Anywhere([x, y]),
             part if part < 1.0 => {
                 let number = (part * count as f64) as usize;
                 let uniform = [part * count as f64 - number as f64, y];
                 let drawn = self.before(point).nth(number).and_then(|portal| portal.draw(point, uniform));
-                drawn.map_or(Chosen::None, |Drawn { towards, .. }| Chosen::Through(towards))
+                drawn.map_or(PortalChoice::None, |ShapeSample { towards, .. }| PortalChoice::Through(towards))
             }
-            _ => Chosen::Anywhere([(x - PART) / (1.0 - PART), y]),
+            _ => PortalChoice::Anywhere([(x - PART) / (1.0 - PART), y]),
         }
     }
 
@@ -58,14 +58,14 @@ impl Portals {
     }
 
     /// The portals on whose inner side a point is.
-    fn before(&self, point: DVec3) -> impl Iterator<Item = &Patch> {
+    fn before(&self, point: DVec3) -> impl Iterator<Item = &LightShape> {
         self.0.iter().filter(move |portal| portal.is_before(point))
     }
 }
 
 /// What portals chose.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Chosen {
+pub(super) enum PortalChoice {
     /// A direction through one of them, unit length.
     Through(DVec3),
     /// The whole sky, by these two numbers.

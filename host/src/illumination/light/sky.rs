@@ -1,9 +1,9 @@
 //! Light from all around: one radiance, or a picture of it.
 
 use super::panorama::Panorama;
-use super::portal::{Chosen, Portals};
-use super::{Patch, SkyDisc, SkyMap};
-use crate::color::{Channels, Color, Curve, Wavelengths};
+use super::portal::{PortalChoice, Portals};
+use super::{LightShape, SkyDisc, SkyMap};
+use crate::color::{Channels, Color, SpectralTable, WavelengthSets};
 use crate::numeric::sampling::{cosine_hemisphere, sphere};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -19,7 +19,7 @@ const BLOCK: usize = 8;
 /// Light from all around, ready for rendering.
 #[derive(Clone, Debug)]
 pub struct Sky {
-    factor: Curve,
+    factor: SpectralTable,
     map: Option<Map>,
     disc: Option<Disc>,
     /// Cosine and sine of the turn about the upright axis.
@@ -35,9 +35,9 @@ pub struct Sky {
 struct Map {
     panorama: Arc<Panorama>,
     /// Light of red, green and blue.
-    primaries: [Curve; 3],
+    primaries: [SpectralTable; 3],
     /// Light of the parts of spectra, where these are known and rays carry wavelengths.
-    parts: Vec<Curve>,
+    parts: Vec<SpectralTable>,
     /// Cells along a side of a block.
     side: usize,
     /// Light of all cells.
@@ -50,7 +50,7 @@ struct Map {
 
 impl Sky {
     /// - `radiance`: what the map is multiplied with; all of the light without one.
-    pub fn new(map: Option<&SkyMap>, radiance: &Color, turned: f64, wavelengths: &Wavelengths) -> Sky {
+    pub fn new(map: Option<&SkyMap>, radiance: &Color, turned: f64, wavelengths: &WavelengthSets) -> Sky {
         let panorama = map.and_then(|map| map.panorama.clone());
         let disc = map.and_then(|map| map.disc).map(Disc::new);
         let map = panorama.map(|panorama| Map::new(panorama, wavelengths));
@@ -73,7 +73,7 @@ impl Sky {
     }
 
     /// The sky, of which directions are drawn through portals from where these are; a disc of it is small enough without.
-    pub(super) fn with_portals(self, portals: &[Patch]) -> Sky {
+    pub(super) fn with_portals(self, portals: &[LightShape]) -> Sky {
         let portals = if self.disc.is_some() { Portals::default() } else { Portals::new(portals) };
         Sky { portals, ..self }
     }
@@ -84,9 +84,9 @@ impl Sky {
     /// - `uniform`: a point of the unit square.
     pub(super) fn draw(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2]) -> Option<(DVec3, f64)> {
         let towards = match self.portals.draw(point, uniform) {
-            Chosen::Through(towards) => towards,
-            Chosen::Anywhere(uniform) => self.draw_anywhere(normal, uniform)?,
-            Chosen::None => return None,
+            PortalChoice::Through(towards) => towards,
+            PortalChoice::Anywhere(uniform) => self.draw_anywhere(normal, uniform)?,
+            PortalChoice::None => return None,
         };
         Some((towards, self.density(point, towards, normal))).filter(|(_, density)| *density > 0.0)
     }
@@ -217,13 +217,13 @@ fn direction(place: DVec2) -> DVec3 {
 }
 
 impl Map {
-    fn new(panorama: Arc<Panorama>, wavelengths: &Wavelengths) -> Map {
+    fn new(panorama: Arc<Panorama>, wavelengths: &WavelengthSets) -> Map {
         let [columns, rows] = panorama.cells();
         Map::divided(panorama, wavelengths, if columns * rows <= MOST_SINGLE { 1 } else { BLOCK })
     }
 
     /// - `side`: cells along a side of a block, at most [`BLOCK`].
-    fn divided(panorama: Arc<Panorama>, wavelengths: &Wavelengths, side: usize) -> Map {
+    fn divided(panorama: Arc<Panorama>, wavelengths: &WavelengthSets, side: usize) -> Map {
         let primaries = DVec3::AXES.map(|axis| wavelengths.light(&Color::Bands(axis)));
         let cells = panorama.cells();
         let is_known = panorama.parts().filter(|_| wavelengths.is_spectral());
@@ -410,7 +410,7 @@ fn within(below: &[f64], uniform: f64) -> (usize, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::sampling::Stream;
+    use crate::numeric::sampling::RandomStream;
 
     #[test]
     fn blocks_draw_the_same_directions_as_single_cells_do() {
@@ -418,10 +418,10 @@ mod tests {
             DVec3::splat(f64::from((x * 7 + y * 13) % 11) + if x == 5 && y == 9 { 300.0 } else { 0.0 })
         };
         let panorama = Arc::new(Panorama::of(37, 23, radiance).expect("small"));
-        let [single, blocks] = [1, BLOCK].map(|side| Map::divided(panorama.clone(), &Wavelengths::bands(), side));
+        let [single, blocks] = [1, BLOCK].map(|side| Map::divided(panorama.clone(), &WavelengthSets::bands(), side));
         assert!((single.all / blocks.all - 1.0).abs() < 1e-12);
         let count = 40_000;
-        let (mut stream, mut sums) = (Stream::new(3, 5), [DVec2::ZERO; 2]);
+        let (mut stream, mut sums) = (RandomStream::new(3, 5), [DVec2::ZERO; 2]);
         let (mut seen, mut near) = (0.0, [0, 0]);
         for _ in 0..count {
             let uniform = stream.point();

@@ -1,16 +1,16 @@
 //! Lights made ready for rendering, a row for each kind. A new light is a file, a row, and what scenes say of it.
 
-use super::area::Area;
-use super::beam::{Beam, Glow, LightPoint, Origin, Start};
-use super::directional::Directional;
+use super::area::AreaLight;
+use super::beam::{LightSample, LightHit, LightPoint, LightOrigin, EmissionSample};
+use super::directional::DirectionalLight;
 use super::emitter::Emitter;
-use super::luminaire::Luminaire;
-use super::mesh::Triangles;
-use super::point::Point;
-use super::spot::Spot;
-use super::surrounding::Surrounding;
-use super::{Light, Patch, Sky};
-use crate::color::{Channels, Curve, Wavelengths};
+use super::luminaire::GoniometricLight;
+use super::mesh::MeshLight;
+use super::point::PointLight;
+use super::spot::SpotLight;
+use super::surrounding::EnvironmentLight;
+use super::{Light, LightShape, Sky};
+use crate::color::{Channels, SpectralTable, WavelengthSets};
 use crate::numeric::ray::Ray;
 use glam::DVec3;
 use std::sync::Arc;
@@ -24,7 +24,7 @@ macro_rules! lights {
         }
 
         #[cfg(test)]
-        impl Source {
+        impl LightSource {
             /// The words for all kinds.
             pub(super) const KINDS: &[&str] = &[$(stringify!($kind),)*];
 
@@ -48,29 +48,29 @@ macro_rules! lights {
 }
 
 lights! {
-    Point(Point),
-    Directional(Directional),
-    Spot(Spot),
-    Luminaire(Luminaire),
-    Area(Area),
-    Mesh(Triangles),
-    Sky(Surrounding),
+    Point(PointLight),
+    Directional(DirectionalLight),
+    Spot(SpotLight),
+    Luminaire(GoniometricLight),
+    Area(AreaLight),
+    Mesh(MeshLight),
+    Sky(EnvironmentLight),
 }
 
 /// A light ready for rendering.
 #[derive(Clone, Debug)]
-pub struct Source(Kind);
+pub struct LightSource(Kind);
 
-impl Source {
+impl LightSource {
     /// A light, ready. It should have been checked before.
-    pub fn new(light: &Light, wavelengths: &Wavelengths) -> Source {
+    pub fn new(light: &Light, wavelengths: &WavelengthSets) -> LightSource {
         let strength = wavelengths.light(light.strength().1);
-        Source(match light {
-            Light::Point { at, .. } => Kind::Point(Point { at: *at, strength }),
+        LightSource(match light {
+            Light::Point { at, .. } => Kind::Point(PointLight { at: *at, strength }),
             Light::Directional { direction, .. } => {
-                Kind::Directional(Directional { towards: -direction.normalize_or(DVec3::NEG_Y), strength })
+                Kind::Directional(DirectionalLight { towards: -direction.normalize_or(DVec3::NEG_Y), strength })
             }
-            Light::Spot { at, direction, inner, outer, .. } => Kind::Spot(Spot {
+            Light::Spot { at, direction, inner, outer, .. } => Kind::Spot(SpotLight {
                 at: *at,
                 axis: direction.normalize_or(DVec3::NEG_Y),
                 inner: inner.to_radians().cos(),
@@ -78,12 +78,12 @@ impl Source {
                 strength,
             }),
             Light::Luminaire { at, down, front, goniometry, .. } => {
-                Kind::Luminaire(Luminaire::new(*at, [*down, *front], Arc::new(goniometry.clone()), strength))
+                Kind::Luminaire(GoniometricLight::new(*at, [*down, *front], Arc::new(goniometry.clone()), strength))
             }
-            Light::Area { patch, .. } => Kind::Area(Area { patch: *patch, strength }),
+            Light::Area { patch, .. } => Kind::Area(AreaLight { patch: *patch, strength }),
             Light::Sky { map, radiance, turned } => {
                 let sky = Sky::new(map.as_ref(), radiance, *turned, wavelengths);
-                Kind::Sky(Surrounding { sky: Box::new(sky), strength })
+                Kind::Sky(EnvironmentLight { sky: Box::new(sky), strength })
             }
         })
     }
@@ -91,18 +91,18 @@ impl Source {
     /// The light; of one that is a sky, directions are then drawn through portals from where these are.
     ///
     /// - `portals`: rectangles whose normals, across x up, point inwards.
-    pub fn with_portals(self, portals: &[Patch]) -> Source {
+    pub fn with_portals(self, portals: &[LightShape]) -> LightSource {
         match self.0 {
-            Kind::Sky(Surrounding { sky, strength }) if !portals.is_empty() => {
-                Source(Kind::Sky(Surrounding { sky: Box::new(sky.with_portals(portals)), strength }))
+            Kind::Sky(EnvironmentLight { sky, strength }) if !portals.is_empty() => {
+                LightSource(Kind::Sky(EnvironmentLight { sky: Box::new(sky.with_portals(portals)), strength }))
             }
-            other => Source(other),
+            other => LightSource(other),
         }
     }
 
     /// Triangles that emit the same radiance on both sides; none without area.
-    pub fn of_triangles(corners: Vec<[DVec3; 3]>, radiance: Curve) -> Option<Source> {
-        Some(Source(Kind::Mesh(Triangles::new(corners, radiance)?)))
+    pub fn of_triangles(corners: Vec<[DVec3; 3]>, radiance: SpectralTable) -> Option<LightSource> {
+        Some(LightSource(Kind::Mesh(MeshLight::new(corners, radiance)?)))
     }
 
     /// Light that arrives at a point if nothing stands between; none where there is none, and at the light itself.
@@ -110,7 +110,7 @@ impl Source {
     /// - `normal`: of the element at the point, unit length, if there is one: directions above it are drawn more often.
     /// - `uniform`: a point of the unit square, which chooses the point of a light that has a size.
     #[inline]
-    pub fn beam(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<Beam> {
+    pub fn beam(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<LightSample> {
         self.0.emitter().beam(point, normal, uniform, comb)
     }
 
@@ -123,19 +123,19 @@ impl Source {
 
     /// Light that arrives from one of [`Source::points`] if nothing stands between.
     #[inline]
-    pub fn beam_from(&self, from: &LightPoint, point: DVec3, comb: usize) -> Option<Beam> {
+    pub fn beam_from(&self, from: &LightPoint, point: DVec3, comb: usize) -> Option<LightSample> {
         self.0.emitter().beam_from(from, point, comb)
     }
 
     /// Where its light comes from.
-    pub fn origin(&self) -> Origin {
+    pub fn origin(&self) -> LightOrigin {
         self.0.emitter().origin()
     }
 
     /// Draws where light leaves the source; none where there is none.
     ///
     /// - `uniform`: a point of the unit square.
-    pub fn start(&self, uniform: [f64; 2], comb: usize) -> Option<Start> {
+    pub fn start(&self, uniform: [f64; 2], comb: usize) -> Option<EmissionSample> {
         self.0.emitter().start(uniform, comb)
     }
 
@@ -154,7 +154,7 @@ impl Source {
 
     /// What a ray sees of a light that is a surface of its own.
     #[inline]
-    pub fn glow(&self, ray: &Ray, t_min: f64, t_max: f64, comb: usize) -> Option<Glow> {
+    pub fn glow(&self, ray: &Ray, t_min: f64, t_max: f64, comb: usize) -> Option<LightHit> {
         self.0.emitter().glow(ray, t_min, t_max, comb)
     }
 
@@ -163,7 +163,7 @@ impl Source {
     /// - `ray`: of unit length, from the point from which it is seen.
     /// - `normal`: of the element from which it is seen, as in [`Source::beam`].
     #[inline]
-    pub fn sky(&self, ray: &Ray, normal: Option<DVec3>, comb: usize) -> Option<Glow> {
+    pub fn sky(&self, ray: &Ray, normal: Option<DVec3>, comb: usize) -> Option<LightHit> {
         self.0.emitter().sky(ray, normal, comb)
     }
 

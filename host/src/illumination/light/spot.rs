@@ -1,14 +1,14 @@
 //! A point that emits a cone of light, which fades towards its edge.
 
-use super::beam::{Beam, LightPoint, Origin, Start, from_point};
+use super::beam::{LightSample, LightPoint, LightOrigin, EmissionSample, from_point};
 use super::emitter::Emitter;
-use crate::color::{Channels, Curve};
+use crate::color::{Channels, SpectralTable};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
 /// A spot light.
 #[derive(Clone, Debug)]
-pub(super) struct Spot {
+pub(super) struct SpotLight {
     pub(super) at: DVec3,
     /// Where the cone goes, unit length.
     pub(super) axis: DVec3,
@@ -17,10 +17,10 @@ pub(super) struct Spot {
     /// Cosine of the angle where there is none.
     pub(super) outer: f64,
     /// Radiant intensity on the axis, W/sr.
-    pub(super) strength: Curve,
+    pub(super) strength: SpectralTable,
 }
 
-impl Spot {
+impl SpotLight {
     /// The part of the intensity at an angle to the axis.
     fn part(&self, cosine: f64) -> f64 {
         let part = ((cosine - self.outer) / (self.inner - self.outer)).clamp(0.0, 1.0);
@@ -28,23 +28,23 @@ impl Spot {
     }
 }
 
-impl Emitter for Spot {
-    fn beam(&self, point: DVec3, _: Option<DVec3>, _: [f64; 2], comb: usize) -> Option<Beam> {
+impl Emitter for SpotLight {
+    fn beam(&self, point: DVec3, _: Option<DVec3>, _: [f64; 2], comb: usize) -> Option<LightSample> {
         let beam = from_point(self.at - point, self.strength.of(comb))?;
         let part = self.part(-beam.towards.dot(self.axis));
-        (part > 0.0).then(|| Beam { irradiance: beam.irradiance * part, ..beam })
+        (part > 0.0).then(|| LightSample { irradiance: beam.irradiance * part, ..beam })
     }
 
     fn points(&self, _: u32) -> Vec<LightPoint> {
         vec![LightPoint::at(self.at)]
     }
 
-    fn origin(&self) -> Origin {
-        Origin::point(self.at)
+    fn origin(&self) -> LightOrigin {
+        LightOrigin::point(self.at)
     }
 
-    fn start(&self, _: [f64; 2], _: usize) -> Option<Start> {
-        Some(Start::Place { at: self.at, normal: None, area: 0.0 })
+    fn start(&self, _: [f64; 2], _: usize) -> Option<EmissionSample> {
+        Some(EmissionSample::Place { at: self.at, normal: None, area: 0.0 })
     }
 
     fn intensity(&self, _: Option<DVec3>, direction: DVec3, comb: usize) -> Channels {

@@ -1,40 +1,40 @@
 //! A sky as a light.
 
 use super::Sky;
-use super::beam::{Beam, Glow, LightPoint, Origin, Start};
+use super::beam::{LightSample, LightHit, LightPoint, LightOrigin, EmissionSample};
 use super::emitter::Emitter;
-use crate::color::{Channels, Curve};
+use crate::color::{Channels, SpectralTable};
 use crate::numeric::ray::Ray;
 use glam::DVec3;
 use std::f64::consts::PI;
 
 /// A sky, or a disc in it.
 #[derive(Clone, Debug)]
-pub(super) struct Surrounding {
+pub(super) struct EnvironmentLight {
     pub(super) sky: Box<Sky>,
     /// What its map is multiplied with, as light.
-    pub(super) strength: Curve,
+    pub(super) strength: SpectralTable,
 }
 
-impl Emitter for Surrounding {
-    fn beam(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<Beam> {
+impl Emitter for EnvironmentLight {
+    fn beam(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<LightSample> {
         let (towards, density) = self.sky.draw(point, normal, uniform)?;
         let irradiance = self.sky.radiance(towards, comb) * density.recip();
-        Some(Beam { towards, distance: f64::INFINITY, irradiance, density: Some(density) })
+        Some(LightSample { towards, distance: f64::INFINITY, irradiance, density: Some(density) })
     }
 
     fn points(&self, _: u32) -> Vec<LightPoint> {
         self.sky.disc().map(LightPoint::towards).into_iter().collect()
     }
 
-    fn origin(&self) -> Origin {
-        Origin::Everywhere
+    fn origin(&self) -> LightOrigin {
+        LightOrigin::Everywhere
     }
 
-    fn start(&self, uniform: [f64; 2], comb: usize) -> Option<Start> {
+    fn start(&self, uniform: [f64; 2], comb: usize) -> Option<EmissionSample> {
         let (towards, density) = self.sky.start(uniform)?;
         let irradiance = self.sky.radiance(towards, comb) * density.recip();
-        Some(Start::Parallel { direction: -towards, irradiance })
+        Some(EmissionSample::Parallel { direction: -towards, irradiance })
     }
 
     fn intensity(&self, _: Option<DVec3>, _: DVec3, comb: usize) -> Channels {
@@ -62,12 +62,12 @@ impl Emitter for Surrounding {
         self.sky.disc().is_none()
     }
 
-    fn sky(&self, ray: &Ray, normal: Option<DVec3>, comb: usize) -> Option<Glow> {
+    fn sky(&self, ray: &Ray, normal: Option<DVec3>, comb: usize) -> Option<LightHit> {
         let Ray { origin, direction: towards } = *ray;
         if self.sky.is_beside(towards) {
             return None;
         }
         let (radiance, density) = (self.sky.radiance(towards, comb), self.sky.density(origin, towards, normal));
-        Some(Glow { t: f64::INFINITY, radiance, density })
+        Some(LightHit { t: f64::INFINITY, radiance, density })
     }
 }

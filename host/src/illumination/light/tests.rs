@@ -1,23 +1,23 @@
 //! Facts about lights: closed forms of irradiance, and densities.
 
 use super::*;
-use crate::color::Wavelengths;
+use crate::color::WavelengthSets;
 use crate::numeric::cubature::unit_square;
 use crate::numeric::ray::Ray;
-use crate::numeric::sampling::{Stream, sphere};
+use crate::numeric::sampling::{RandomStream, sphere};
 use std::f64::consts::PI;
 
-fn source(light: Light) -> Source {
+fn source(light: Light) -> LightSource {
     light.check().unwrap_or_else(|error| panic!("{error}"));
-    Source::new(&light, &Wavelengths::bands())
+    LightSource::new(&light, &WavelengthSets::bands())
 }
 
-fn area(patch: Patch) -> Source {
+fn area(patch: LightShape) -> LightSource {
     source(Light::Area { patch, radiance: Color::grey(1.0) })
 }
 
 /// Irradiance of a surface element by cubature over the light.
-fn irradiance(source: &Source, point: DVec3, normal: DVec3) -> f64 {
+fn irradiance(source: &LightSource, point: DVec3, normal: DVec3) -> f64 {
     let term = |uniform| {
         source
             .beam(point, None, uniform, 0)
@@ -42,12 +42,12 @@ fn irradiance_of_a_point_falls_with_the_square_of_the_distance() {
 fn irradiance_of_a_sphere_is_that_of_its_solid_angle() {
     // E = pi L (r/d)^2 cos, if all of the sphere is above the horizon.
     for (distance, radius) in [(2.0, 1.0), (1.0001, 1.0), (1e9, 1.0), (5.0, 1e-6)] {
-        let patch = Patch::Sphere { center: DVec3::new(0.0, distance, 0.0), radius };
+        let patch = LightShape::Sphere { center: DVec3::new(0.0, distance, 0.0), radius };
         let expected = PI * (radius / distance).powi(2);
         let found = irradiance(&area(patch), DVec3::ZERO, DVec3::Y);
         assert!((found / expected - 1.0).abs() < 1e-6, "{distance} {radius}: {found} {expected}");
     }
-    let patch = Patch::Sphere { center: DVec3::new(3.0, 4.0, 0.0), radius: 1.0 };
+    let patch = LightShape::Sphere { center: DVec3::new(3.0, 4.0, 0.0), radius: 1.0 };
     let found = irradiance(&area(patch), DVec3::ZERO, DVec3::Y);
     assert!((found - PI / 25.0 * 0.8).abs() < 1e-8);
     assert!(area(patch).beam(DVec3::new(3.0, 4.5, 0.0), None, [0.5; 2], 0).is_none(), "dark inside");
@@ -58,7 +58,7 @@ fn irradiance_of_a_disc_is_that_of_its_closed_form() {
     // E = pi L r^2 / (r^2 + h^2) on the axis.
     for (height, radius) in [(1.0, 1.0), (3.0, 0.5), (1e6, 10.0), (2.0, 1e-6)] {
         let center = DVec3::new(0.0, height, 0.0);
-        let patch = Patch::Disc { center, normal: DVec3::NEG_Y, radius };
+        let patch = LightShape::Disc { center, normal: DVec3::NEG_Y, radius };
         let expected = PI * radius * radius / (radius * radius + height * height);
         let found = irradiance(&area(patch), DVec3::ZERO, DVec3::Y);
         assert!((found / expected - 1.0).abs() < 1e-6, "{height} {radius}: {found} {expected}");
@@ -89,10 +89,10 @@ fn irradiance_of_a_rectangle_is_that_of_lamberts_formula() {
         (DVec3::new(-1.0, 2.0, -1.0), DVec3::new(2.0, 0.0, 1.0), DVec3::Z * 2.0),
     ];
     for (corner, across, up) in cases {
-        let patch = Patch::Rectangle { corner, across, up };
+        let patch = LightShape::Rectangle { corner, across, up };
         // Seen from whichever side emits.
         let front = across.cross(up).dot(-corner) > 0.0;
-        let patch = if front { patch } else { Patch::Rectangle { corner, across: up, up: across } };
+        let patch = if front { patch } else { LightShape::Rectangle { corner, across: up, up: across } };
         let expected = of_polygon(&[corner, corner + across, corner + across + up, corner + up], DVec3::Y);
         let found = irradiance(&area(patch), DVec3::ZERO, DVec3::Y);
         assert!((found / expected - 1.0).abs() < 2e-5, "{patch:?}: {found} {expected}");
@@ -104,21 +104,21 @@ fn triangles_emit_as_the_rectangle_that_they_make() {
     let (corner, across, up) = (DVec3::new(-1.0, 2.0, -1.0), DVec3::X * 2.0, DVec3::Z * 2.0);
     let corners = [corner, corner + across, corner + across + up, corner + up];
     let triangles = vec![[corners[0], corners[1], corners[2]], [corners[0], corners[2], corners[3]]];
-    let source = Source::of_triangles(triangles, Wavelengths::bands().constant(1.0)).expect("area");
+    let source = LightSource::of_triangles(triangles, WavelengthSets::bands().constant(1.0)).expect("area");
     let found = irradiance(&source, DVec3::ZERO, DVec3::Y);
     assert!((found - of_polygon(&corners, DVec3::Y)).abs() < 1e-6);
-    assert!(Source::of_triangles(vec![[corner; 3]], Wavelengths::bands().constant(1.0)).is_none());
+    assert!(LightSource::of_triangles(vec![[corner; 3]], WavelengthSets::bands().constant(1.0)).is_none());
 }
 
 #[test]
 fn densities_are_those_of_the_drawn_directions() {
     let patches = [
-        Patch::Sphere { center: DVec3::new(1.0, 3.0, 0.0), radius: 0.7 },
-        Patch::Disc { center: DVec3::new(1.0, 3.0, 0.0), normal: DVec3::new(-0.3, -1.0, 0.2), radius: 0.7 },
-        Patch::Rectangle { corner: DVec3::new(-1.0, 2.0, -1.0), across: DVec3::X * 2.0, up: DVec3::Z },
-        Patch::Rectangle { corner: DVec3::new(-1.0, 2.0, -1.0), across: DVec3::X * 2.0, up: DVec3::new(1.0, 0.0, 1.0) },
+        LightShape::Sphere { center: DVec3::new(1.0, 3.0, 0.0), radius: 0.7 },
+        LightShape::Disc { center: DVec3::new(1.0, 3.0, 0.0), normal: DVec3::new(-0.3, -1.0, 0.2), radius: 0.7 },
+        LightShape::Rectangle { corner: DVec3::new(-1.0, 2.0, -1.0), across: DVec3::X * 2.0, up: DVec3::Z },
+        LightShape::Rectangle { corner: DVec3::new(-1.0, 2.0, -1.0), across: DVec3::X * 2.0, up: DVec3::new(1.0, 0.0, 1.0) },
     ];
-    let mut stream = Stream::new(7, 7);
+    let mut stream = RandomStream::new(7, 7);
     for patch in patches {
         let source = area(patch);
         for _ in 0..200 {
@@ -237,7 +237,7 @@ fn a_map_is_seen_where_its_directions_are_and_drawn_as_bright_as_it_is() {
         * unit_square(|u| sky.sky(&from_origin(sphere(u)), None, 0).map_or(0.0, |glow| glow.density), 1e-4, 400_000)
             .value;
     assert!((all - 1.0).abs() < 2e-3, "{all}");
-    let mut stream = Stream::new(2, 2);
+    let mut stream = RandomStream::new(2, 2);
     for _ in 0..100 {
         let beam = sky.beam(DVec3::ZERO, None, stream.point(), 0).expect("light");
         let glow = sky.sky(&from_origin(beam.towards), None, 0).expect("a sky");
@@ -263,7 +263,7 @@ fn a_disc_in_the_sky_is_drawn_evenly_and_seen_where_it_is() {
     let sun = source(Light::Sky { map: Some(map), radiance: Color::grey(2.0 / disc.solid_angle()), turned: 0.0 });
     assert!((irradiance(&sun, DVec3::ZERO, DVec3::Y) - 2.0 * 0.8).abs() < 1e-5);
     assert!(!sun.is_sky() && sun.is_beyond() && sun.is_caught());
-    let mut stream = Stream::new(4, 9);
+    let mut stream = RandomStream::new(4, 9);
     for _ in 0..1000 {
         let beam = sun.beam(DVec3::ZERO, None, stream.point(), 0).expect("light");
         let angle = beam.towards.cross(disc.towards).length().asin();
@@ -283,9 +283,9 @@ fn a_disc_in_the_sky_is_drawn_evenly_and_seen_where_it_is() {
 fn polygons_of_a_patch_lie_on_it_and_turn_counter_clockwise_about_where_it_emits_to() {
     let at = DVec3::new(1.0, -2.0, 3.0);
     let patches = [
-        Patch::Rectangle { corner: at, across: DVec3::new(2.0, 1.0, 0.0), up: DVec3::new(0.0, 1.0, 3.0) },
-        Patch::Disc { center: at, normal: DVec3::new(-1.0, 2.0, -3.0), radius: 2.0 },
-        Patch::Sphere { center: at, radius: 2.0 },
+        LightShape::Rectangle { corner: at, across: DVec3::new(2.0, 1.0, 0.0), up: DVec3::new(0.0, 1.0, 3.0) },
+        LightShape::Disc { center: at, normal: DVec3::new(-1.0, 2.0, -3.0), radius: 2.0 },
+        LightShape::Sphere { center: at, radius: 2.0 },
     ];
     for (patch, least) in patches.into_iter().zip([1.0, 0.99, 0.98]) {
         let mut area = 0.0;
@@ -305,7 +305,7 @@ fn polygons_of_a_patch_lie_on_it_and_turn_counter_clockwise_about_where_it_emits
     }
 }
 
-fn area_glow(patch: &Patch, ray: &Ray) -> Option<Glow> {
+fn area_glow(patch: &LightShape, ray: &Ray) -> Option<LightHit> {
     area(*patch).glow(ray, 0.0, f64::INFINITY, 0)
 }
 
@@ -316,7 +316,7 @@ fn from_origin(direction: DVec3) -> Ray {
 
 #[test]
 fn portals_change_where_a_sky_is_looked_for_and_not_how_much_it_lights() {
-    let rectangle = |corner: DVec3, across: DVec3, up: DVec3| Patch::Rectangle { corner, across, up };
+    let rectangle = |corner: DVec3, across: DVec3, up: DVec3| LightShape::Rectangle { corner, across, up };
     let portals = [
         // Behind the origin, ahead of it, and one that is no right-angled one.
         rectangle(DVec3::new(-1.0, 0.0, 2.0), DVec3::X, DVec3::Y),
@@ -329,7 +329,7 @@ fn portals_change_where_a_sky_is_looked_for_and_not_how_much_it_lights() {
         let seen = sky.clone().with_portals(&portals);
         // Drawn with the normal, and without.
         for known in [Some(normal), None] {
-            let mean = |source: &Source| {
+            let mean = |source: &LightSource| {
                 let term = |uniform| {
                     let beam = source.beam(DVec3::ZERO, known, uniform, 0);
                     beam.map_or(0.0, |beam| beam.irradiance.0[0] * beam.towards.dot(normal).max(0.0))
@@ -342,7 +342,7 @@ fn portals_change_where_a_sky_is_looked_for_and_not_how_much_it_lights() {
             let all = 4.0 * PI * unit_square(density, 1e-4, 400_000).value;
             assert!((all - 1.0).abs() < 3e-3, "{all}");
         }
-        let mut stream = Stream::new(5, 1);
+        let mut stream = RandomStream::new(5, 1);
         let mut through = 0;
         for _ in 0..1000 {
             let Some(beam) = seen.beam(DVec3::ZERO, Some(normal), stream.point(), 0) else { continue };

@@ -6,7 +6,7 @@ pub use principled::Principled;
 
 use super::distribution::{DistributionError, FAMILY, FacetTable, Tabulated, checked_roughness};
 use super::fresnel::{Conductor, Dielectric, IndexError};
-use super::texture::{Number, Paint, Relief, TextureError};
+use super::texture::{NumberTexture, Paint, Relief, TextureError};
 use crate::color::{Color, ColorError, Glass, Spectrum};
 use crate::spelling;
 use glam::DVec3;
@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Material {
     /// Of what it is.
-    pub body: Body,
+    pub body: MaterialKind,
     /// Radiance that it emits on both sides, W/(m² sr); per nanometre, if a spectrum.
     pub emission: Color,
     /// What of it is higher than it looks.
@@ -26,11 +26,11 @@ pub struct Material {
 /// Of what a surface is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Body {
+pub enum MaterialKind {
     /// The sum of Lambert's and Phong's terms, a mirror, and what goes straight through.
     Classic(Classic),
     /// A fraction K, distributed by a D of the family or of the user's.
-    Shaped(Shaped),
+    Shaped(Distributed),
     /// A metal, polished or rough.
     Metal(Metal),
     /// Glass, water, a gem: reflects and refracts.
@@ -50,7 +50,7 @@ pub struct Classic {
     /// Fraction in the highlight of Phong's model, 0..=1.
     pub specular: Paint,
     /// Phong's exponent n, 1 to [`Classic::MOST_EXPONENT`]; the lobe falls to one half at acos(2^(-1/n)).
-    pub exponent: Number,
+    pub exponent: NumberTexture,
     /// Fraction reflected as by a mirror, 0..=1.
     pub mirror: Paint,
     /// Fraction that goes straight through, 0..=1.
@@ -59,23 +59,23 @@ pub struct Classic {
 
 /// A fraction K, distributed by a D.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Shaped {
+pub struct Distributed {
     /// The reflected fraction K, 0..=1.
     pub reflectance: Paint,
     /// D.
-    pub form: Form,
+    pub form: DistributionForm,
 }
 
 /// A distribution D.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Form {
+pub enum DistributionForm {
     /// A member of the family, by its name.
     Member {
         /// The name, as in [`FAMILY`].
         name: String,
         /// Its roughness m, 1e-8..=1000.
-        roughness: Number,
+        roughness: NumberTexture,
     },
     /// One that the user defined, of the directions of light and viewer.
     Table(Tabulated),
@@ -105,12 +105,12 @@ pub enum Finish {
         /// The name, as in [`FAMILY`].
         name: String,
         /// Its roughness m, 1e-8..=1000.
-        roughness: Number,
+        roughness: NumberTexture,
     },
     /// Facets of a Gaussian surface, not as rough along one direction as across it.
     Brushed {
         /// Roughness along and across, 1e-8..=1000.
-        roughness: [Number; 2],
+        roughness: [NumberTexture; 2],
         /// The direction, in the coordinates of the scene; any length but 0.
         along: DVec3,
     },
@@ -120,9 +120,9 @@ pub enum Finish {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Transparent {
     /// The refractive index.
-    pub index: Index,
+    pub index: RefractiveIndex,
     /// Roughness m of both sides of its surface, 1e-8..=1000; 0 is polished.
-    pub roughness: Number,
+    pub roughness: NumberTexture,
     /// What is absorbed inside, in one unit of length of the scene: light falls by exp(−absorption).
     pub absorption: Color,
     /// Of bodies that are in one place, that of the greatest priority is there; of several with the same, the smallest.
@@ -135,7 +135,7 @@ impl Transparent {
     pub const LIQUID: i32 = -1;
 
     /// A polished, clear one of a refractive index, with the priority of solids.
-    pub fn clear(index: Index) -> Transparent {
+    pub fn clear(index: RefractiveIndex) -> Transparent {
         Transparent { index, roughness: 0.0.into(), absorption: Color::BLACK, priority: 0 }
     }
 }
@@ -143,19 +143,19 @@ impl Transparent {
 /// A refractive index.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Index {
+pub enum RefractiveIndex {
     /// One number at all wavelengths, 1e-6..=1e6.
     Constant(f64),
     /// By Sellmeier's formula.
     Dispersive(Glass),
 }
 
-impl Index {
+impl RefractiveIndex {
     /// The index at a wavelength, nm; where the formula of a glass does not hold, that of the nearest where it does.
     pub fn at(&self, wavelength: f64) -> f64 {
         match self {
-            Index::Constant(index) => *index,
-            Index::Dispersive(glass) => glass.index(wavelength.clamp(glass.from, glass.to)).unwrap_or(1.0),
+            RefractiveIndex::Constant(index) => *index,
+            RefractiveIndex::Dispersive(glass) => glass.index(wavelength.clamp(glass.from, glass.to)).unwrap_or(1.0),
         }
     }
 }
@@ -168,7 +168,7 @@ pub struct Coated {
     /// Refractive index of the coat, 1e-6..=1e6.
     pub index: f64,
     /// Roughness m of the coat, 1e-8..=1000; 0 is polished.
-    pub roughness: Number,
+    pub roughness: NumberTexture,
 }
 
 impl Default for Classic {
@@ -185,12 +185,12 @@ impl Classic {
 
 impl From<Classic> for Material {
     fn from(classic: Classic) -> Material {
-        Body::Classic(classic).into()
+        MaterialKind::Classic(classic).into()
     }
 }
 
-impl From<Body> for Material {
-    fn from(body: Body) -> Material {
+impl From<MaterialKind> for Material {
+    fn from(body: MaterialKind) -> Material {
         Material { body, emission: Color::BLACK, relief: None }
     }
 }
@@ -205,7 +205,7 @@ impl Material {
     /// Whether it may pass on as a beam some of the light that comes to it.
     pub fn may_throw(&self) -> bool {
         match &self.body {
-            Body::Classic(Classic { mirror, specular, .. }) => !mirror.is_black() || !specular.is_black(),
+            MaterialKind::Classic(Classic { mirror, specular, .. }) => !mirror.is_black() || !specular.is_black(),
             _ => true,
         }
     }
@@ -219,7 +219,7 @@ impl Default for Material {
 
 /// What a material looks like in three bands: fractions of light, linear sRGB, and the exponent of a highlight.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Appearance {
+pub struct MaterialPreview {
     /// Diffusely reflected fraction.
     pub diffuse: DVec3,
     /// Fraction in the highlight.
@@ -287,43 +287,43 @@ impl Material {
         self.emission.is_spectral()
             || self.paints().into_iter().any(Paint::is_spectral)
             || match &self.body {
-                Body::Metal(_) => true,
-                Body::Transparent(Transparent { index, absorption, .. }) => {
-                    matches!(index, Index::Dispersive(_)) || absorption.is_spectral()
+                MaterialKind::Metal(_) => true,
+                MaterialKind::Transparent(Transparent { index, absorption, .. }) => {
+                    matches!(index, RefractiveIndex::Dispersive(_)) || absorption.is_spectral()
                 }
-                Body::Principled(principled) => principled.transmits() && principled.absorption.is_spectral(),
-                Body::Classic(_) | Body::Shaped(_) | Body::Coated(_) => false,
+                MaterialKind::Principled(principled) => principled.transmits() && principled.absorption.is_spectral(),
+                MaterialKind::Classic(_) | MaterialKind::Shaped(_) | MaterialKind::Coated(_) => false,
             }
     }
 
     /// The fractions of light in it.
     pub fn paints(&self) -> Vec<&Paint> {
         match &self.body {
-            Body::Classic(Classic { diffuse, specular, mirror, transparency, .. }) => {
+            MaterialKind::Classic(Classic { diffuse, specular, mirror, transparency, .. }) => {
                 vec![diffuse, specular, mirror, transparency]
             }
-            Body::Shaped(shaped) => vec![&shaped.reflectance],
-            Body::Coated(coated) => vec![&coated.diffuse],
-            Body::Principled(principled) => vec![&principled.base_color, &principled.sheen],
-            Body::Metal(_) | Body::Transparent(_) => Vec::new(),
+            MaterialKind::Shaped(shaped) => vec![&shaped.reflectance],
+            MaterialKind::Coated(coated) => vec![&coated.diffuse],
+            MaterialKind::Principled(principled) => vec![&principled.base_color, &principled.sheen],
+            MaterialKind::Metal(_) | MaterialKind::Transparent(_) => Vec::new(),
         }
     }
 
     /// The numbers in it that may change from place to place.
-    pub fn numbers(&self) -> Vec<&Number> {
+    pub fn numbers(&self) -> Vec<&NumberTexture> {
         match &self.body {
-            Body::Classic(classic) => vec![&classic.exponent],
-            Body::Shaped(Shaped { form: Form::Member { roughness, .. }, .. })
-            | Body::Metal(Metal { finish: Finish::Rough { roughness, .. }, .. })
-            | Body::Transparent(Transparent { roughness, .. })
-            | Body::Coated(Coated { roughness, .. }) => vec![roughness],
-            Body::Metal(Metal { finish: Finish::Brushed { roughness, .. }, .. }) => roughness.iter().collect(),
-            Body::Principled(principled) => {
+            MaterialKind::Classic(classic) => vec![&classic.exponent],
+            MaterialKind::Shaped(Distributed { form: DistributionForm::Member { roughness, .. }, .. })
+            | MaterialKind::Metal(Metal { finish: Finish::Rough { roughness, .. }, .. })
+            | MaterialKind::Transparent(Transparent { roughness, .. })
+            | MaterialKind::Coated(Coated { roughness, .. }) => vec![roughness],
+            MaterialKind::Metal(Metal { finish: Finish::Brushed { roughness, .. }, .. }) => roughness.iter().collect(),
+            MaterialKind::Principled(principled) => {
                 let Principled { metallic, roughness, specular, transmission, coat, .. } = &**principled;
                 let Principled { coat_roughness, sheen_roughness, .. } = &**principled;
                 vec![metallic, roughness, specular, transmission, coat, coat_roughness, sheen_roughness]
             }
-            Body::Metal(_) | Body::Shaped(_) => Vec::new(),
+            MaterialKind::Metal(_) | MaterialKind::Shaped(_) => Vec::new(),
         }
     }
 
@@ -331,14 +331,14 @@ impl Material {
     pub fn is_textured(&self) -> bool {
         self.relief.is_some()
             || self.paints().into_iter().any(Paint::is_pattern)
-            || self.numbers().into_iter().any(Number::is_varying)
+            || self.numbers().into_iter().any(NumberTexture::is_varying)
     }
 
     /// Whether parameters of the surface are needed to tell what it is like at a place.
     pub fn needs_parameters(&self) -> bool {
         self.relief.as_ref().is_some_and(Relief::needs_parameters)
             || self.paints().into_iter().any(Paint::needs_parameters)
-            || self.numbers().into_iter().any(Number::needs_parameters)
+            || self.numbers().into_iter().any(NumberTexture::needs_parameters)
     }
 
     /// Checks every number.
@@ -349,7 +349,7 @@ impl Material {
         power("emission", &self.emission)?;
         self.relief.as_ref().map_or(Ok(()), Relief::check)?;
         match &self.body {
-            Body::Classic(classic) => {
+            MaterialKind::Classic(classic) => {
                 fraction("diffuse reflectance", &classic.diffuse)?;
                 fraction("specular reflectance", &classic.specular)?;
                 fraction("mirror reflectance", &classic.mirror)?;
@@ -363,14 +363,14 @@ impl Material {
                     .find(impossible)
                     .map_or(Ok(()), |n| Err(MaterialError::Exponent(n)))
             }
-            Body::Shaped(shaped) => {
+            MaterialKind::Shaped(shaped) => {
                 fraction("reflectance", &shaped.reflectance)?;
                 match &shaped.form {
-                    Form::Member { name, roughness } => member(name, roughness),
-                    Form::Table(_) | Form::Facets(_) => Ok(()),
+                    DistributionForm::Member { name, roughness } => member(name, roughness),
+                    DistributionForm::Table(_) | DistributionForm::Facets(_) => Ok(()),
                 }
             }
-            Body::Metal(metal) => {
+            MaterialKind::Metal(metal) => {
                 for (wavelength, n) in metal.n.samples() {
                     Conductor::new(1.0, n, metal.k.at(wavelength))?;
                 }
@@ -380,59 +380,59 @@ impl Material {
                     Finish::Brushed { roughness, .. } => roughness.iter().try_for_each(rough),
                 }
             }
-            Body::Transparent(Transparent { index, roughness, absorption, priority }) => {
+            MaterialKind::Transparent(Transparent { index, roughness, absorption, priority }) => {
                 self::priority(*priority)?;
                 power("absorption", absorption)?;
-                if let Index::Dispersive(glass) = index {
+                if let RefractiveIndex::Dispersive(glass) = index {
                     glass.check()?;
                 }
                 Dielectric::new(1.0, index.at(550.0))?;
                 polished_or_rough(roughness)
             }
-            Body::Coated(Coated { diffuse, index, roughness }) => {
+            MaterialKind::Coated(Coated { diffuse, index, roughness }) => {
                 fraction("diffuse reflectance", diffuse)?;
                 Dielectric::new(1.0, *index)?;
                 polished_or_rough(roughness)
             }
-            Body::Principled(principled) => principled.check(),
+            MaterialKind::Principled(principled) => principled.check(),
         }
     }
 
     /// What it looks like in three bands, for displays that know no more of a material.
-    pub fn appearance(&self) -> Appearance {
+    pub fn appearance(&self) -> MaterialPreview {
         let shine = |roughness: f64| (2.0 / roughness.max(1e-3).powi(2) - 2.0).clamp(1.0, Classic::MOST_EXPONENT);
-        let black = Appearance { diffuse: DVec3::ZERO, specular: DVec3::ZERO, exponent: 1.0, mirror: DVec3::ZERO };
+        let black = MaterialPreview { diffuse: DVec3::ZERO, specular: DVec3::ZERO, exponent: 1.0, mirror: DVec3::ZERO };
         let bands = |paint: &Paint| paint.mean_bands().clamp(DVec3::ZERO, DVec3::ONE);
         match &self.body {
-            Body::Classic(Classic { diffuse, specular, exponent, mirror, .. }) => {
+            MaterialKind::Classic(Classic { diffuse, specular, exponent, mirror, .. }) => {
                 let [diffuse, specular, mirror] = [diffuse, specular, mirror].map(bands);
-                Appearance { diffuse, specular, exponent: exponent.mean(), mirror }
+                MaterialPreview { diffuse, specular, exponent: exponent.mean(), mirror }
             }
-            Body::Shaped(shaped) => Appearance { diffuse: bands(&shaped.reflectance), ..black },
-            Body::Metal(metal) => {
+            MaterialKind::Shaped(shaped) => MaterialPreview { diffuse: bands(&shaped.reflectance), ..black },
+            MaterialKind::Metal(metal) => {
                 let normal = |w: f64| {
                     Conductor::new(1.0, metal.n.at(w), metal.k.at(w)).map_or(0.0, |c| c.reflectance(1.0).mean())
                 };
                 let color = DVec3::from_array([611.0, 549.0, 464.0].map(normal));
                 match &metal.finish {
-                    Finish::Polished => Appearance { mirror: color, ..black },
+                    Finish::Polished => MaterialPreview { mirror: color, ..black },
                     Finish::Rough { roughness, .. } => {
-                        Appearance { specular: color, exponent: shine(roughness.mean()), ..black }
+                        MaterialPreview { specular: color, exponent: shine(roughness.mean()), ..black }
                     }
                     Finish::Brushed { roughness: [along, across], .. } => {
-                        Appearance { specular: color, exponent: shine((along.mean() * across.mean()).sqrt()), ..black }
+                        MaterialPreview { specular: color, exponent: shine((along.mean() * across.mean()).sqrt()), ..black }
                     }
                 }
             }
-            Body::Principled(principled) => principled.appearance(),
-            Body::Transparent(Transparent { index, .. }) => {
-                Appearance { mirror: DVec3::splat(normal_reflectance(index.at(550.0))), ..black }
+            MaterialKind::Principled(principled) => principled.appearance(),
+            MaterialKind::Transparent(Transparent { index, .. }) => {
+                MaterialPreview { mirror: DVec3::splat(normal_reflectance(index.at(550.0))), ..black }
             }
-            Body::Coated(Coated { diffuse, index, roughness }) => {
+            MaterialKind::Coated(Coated { diffuse, index, roughness }) => {
                 let reflected = DVec3::splat(normal_reflectance(*index));
                 let [specular, mirror] =
                     if roughness.mean() > 0.0 { [reflected, DVec3::ZERO] } else { [DVec3::ZERO, reflected] };
-                Appearance { diffuse: bands(diffuse), specular, exponent: shine(roughness.mean()), mirror }
+                MaterialPreview { diffuse: bands(diffuse), specular, exponent: shine(roughness.mean()), mirror }
             }
         }
     }
@@ -440,12 +440,12 @@ impl Material {
     /// What it is, in a word.
     pub fn word(&self) -> &'static str {
         match self.body {
-            Body::Classic(_) => "classic",
-            Body::Shaped(_) => "shaped",
-            Body::Metal(_) => "metal",
-            Body::Transparent(_) => "transparent",
-            Body::Coated(_) => "coated",
-            Body::Principled(_) => "principled",
+            MaterialKind::Classic(_) => "classic",
+            MaterialKind::Shaped(_) => "shaped",
+            MaterialKind::Metal(_) => "metal",
+            MaterialKind::Transparent(_) => "transparent",
+            MaterialKind::Coated(_) => "coated",
+            MaterialKind::Principled(_) => "principled",
         }
     }
 }
@@ -478,12 +478,12 @@ fn priority(priority: i32) -> Result<(), MaterialError> {
 }
 
 /// Checks a roughness that may be 0.
-fn polished_or_rough(roughness: &Number) -> Result<(), MaterialError> {
-    if *roughness == Number::Constant(0.0) { Ok(()) } else { rough(roughness) }
+fn polished_or_rough(roughness: &NumberTexture) -> Result<(), MaterialError> {
+    if *roughness == NumberTexture::Constant(0.0) { Ok(()) } else { rough(roughness) }
 }
 
 /// Checks a roughness. One that varies may be 0 here and there: surfaces are no smoother there than they can be.
-fn rough(roughness: &Number) -> Result<(), MaterialError> {
+fn rough(roughness: &NumberTexture) -> Result<(), MaterialError> {
     roughness.check()?;
     let [least, most] = roughness.range();
     let least = if roughness.is_varying() && least >= 0.0 { least.max(LEAST_VARYING_ROUGHNESS) } else { least };
@@ -494,7 +494,7 @@ fn rough(roughness: &Number) -> Result<(), MaterialError> {
 }
 
 /// Checks a member of the family: its name, and its roughness.
-fn member(name: &str, roughness: &Number) -> Result<(), MaterialError> {
+fn member(name: &str, roughness: &NumberTexture) -> Result<(), MaterialError> {
     if !FAMILY.iter().any(|row| row.name == name) {
         let names: Vec<&str> = FAMILY.iter().map(|row| row.name).collect();
         return Err(MaterialError::Unknown { name: name.into(), advice: spelling::advice(name, &names) });

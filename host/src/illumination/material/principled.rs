@@ -1,10 +1,10 @@
 //! The principled material: metal, opaque ground and transparent body in any mixture.
 
-use super::{Appearance, Classic, MaterialError, fraction, normal_reflectance, power, priority};
+use super::{MaterialPreview, Classic, MaterialError, fraction, normal_reflectance, power, priority};
 use crate::color::Color;
 use crate::illumination::distribution::checked_roughness;
 use crate::illumination::fresnel::Dielectric;
-use crate::illumination::texture::{Number, Paint};
+use crate::illumination::texture::{NumberTexture, Paint};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -22,15 +22,15 @@ pub struct Principled {
     /// that comes in and goes out; 0..=1.
     pub base_color: Paint,
     /// The part that is a metal, 0..=1.
-    pub metallic: Number,
+    pub metallic: NumberTexture,
     /// 0..=1: the slope m of its facets is the square of it; 0 is polished.
-    pub roughness: Number,
+    pub roughness: NumberTexture,
     /// How much of its reflection the clear surface of an opaque ground has, 0..=1.
-    pub specular: Number,
+    pub specular: NumberTexture,
     /// Refractive index of the clear surface, and of the transparent body, 1e-6..=1e6.
     pub index: f64,
     /// The part of what is no metal that is transparent, 0..=1.
-    pub transmission: Number,
+    pub transmission: NumberTexture,
     /// Whether the body is a thin wall: light goes through it and is not bent.
     pub thin: bool,
     /// What is absorbed inside of a transparent body, in one unit of length of the scene.
@@ -38,20 +38,20 @@ pub struct Principled {
     /// Of transparent bodies in one place, that of the greatest is there.
     pub priority: i32,
     /// The part that has a coat, 0..=1.
-    pub coat: Number,
+    pub coat: NumberTexture,
     /// Roughness of the coat, as that of the surface.
-    pub coat_roughness: Number,
+    pub coat_roughness: NumberTexture,
     /// Refractive index of the coat, 1e-6..=1e6.
     pub coat_index: f64,
     /// The part of what is not transparent that is a cloth, by the color of its rim, 0..=1.
     pub sheen: Paint,
     /// How wide the rim is, 0..=1.
-    pub sheen_roughness: Number,
+    pub sheen_roughness: NumberTexture,
 }
 
 impl Default for Principled {
     fn default() -> Principled {
-        let [metallic, transmission, coat] = [0.0; 3].map(Number::Constant);
+        let [metallic, transmission, coat] = [0.0; 3].map(NumberTexture::Constant);
         Principled {
             base_color: Paint::grey(0.8),
             metallic,
@@ -74,12 +74,12 @@ impl Default for Principled {
 impl Principled {
     /// Whether light may go through it.
     pub fn transmits(&self) -> bool {
-        self.transmission != Number::Constant(0.0)
+        self.transmission != NumberTexture::Constant(0.0)
     }
 
     /// Whether some of it is diffuse: no whole metal, and not all of it transparent.
     pub fn is_diffuse(&self) -> bool {
-        let whole = Number::Constant(1.0);
+        let whole = NumberTexture::Constant(1.0);
         self.metallic != whole && self.transmission != whole && !self.base_color.is_black() || !self.sheen.is_black()
     }
 
@@ -102,7 +102,7 @@ impl Principled {
             }
         }
         for roughness in [&self.roughness, &self.coat_roughness] {
-            if let Number::Constant(roughness) = roughness
+            if let NumberTexture::Constant(roughness) = roughness
                 && *roughness != 0.0
             {
                 checked_roughness(roughness * roughness)?;
@@ -116,9 +116,9 @@ impl Principled {
         Ok(())
     }
 
-    pub(super) fn appearance(&self) -> Appearance {
+    pub(super) fn appearance(&self) -> MaterialPreview {
         let base = self.base_color.mean_bands().clamp(DVec3::ZERO, DVec3::ONE);
-        let [metallic, transmission, specular] = [&self.metallic, &self.transmission, &self.specular].map(Number::mean);
+        let [metallic, transmission, specular] = [&self.metallic, &self.transmission, &self.specular].map(NumberTexture::mean);
         let opaque = (1.0 - metallic) * (1.0 - transmission);
         let clear = (1.0 - metallic) * (transmission + (1.0 - transmission) * specular);
         let reflected = base * metallic + DVec3::splat(clear * normal_reflectance(self.index));
@@ -127,9 +127,9 @@ impl Principled {
         let shine = |roughness: f64| (2.0 / roughness.max(0.03).powi(4) - 2.0).clamp(1.0, Classic::MOST_EXPONENT);
         match self.roughness.mean() {
             0.0 => {
-                Appearance { diffuse, specular: coat, exponent: shine(self.coat_roughness.mean()), mirror: reflected }
+                MaterialPreview { diffuse, specular: coat, exponent: shine(self.coat_roughness.mean()), mirror: reflected }
             }
-            roughness => Appearance { diffuse, specular: reflected, exponent: shine(roughness), mirror: coat },
+            roughness => MaterialPreview { diffuse, specular: reflected, exponent: shine(roughness), mirror: coat },
         }
     }
 }

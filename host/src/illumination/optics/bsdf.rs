@@ -2,11 +2,11 @@
 
 use super::lobe::{Flags, Lobe};
 use super::lobes::AnyLobe;
-use super::principled::Surface;
-use super::shade::{Changing, Quantity, Shade};
-use super::sighting::{Onward, Side, Sighting};
-use crate::color::{Channels, Curve};
-use crate::illumination::texture::{Number, Place, Relief};
+use super::principled::PrincipledSurface;
+use super::shade::{PreparedTexture, PreparedNumber, PreparedPaint};
+use super::sighting::{BsdfSample, InterfaceIndices, ShadingContext};
+use crate::color::{Channels, SpectralTable};
+use crate::illumination::texture::{NumberTexture, TextureFootprint, Relief};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -15,22 +15,22 @@ use std::sync::Arc;
 const MOST_LOBES: usize = 4;
 
 /// What the patterns of a material give at a place, one after the other; a number is in all lanes.
-pub type Painting = Vec<Channels>;
+pub type TextureValues = Vec<Channels>;
 
 /// What patterns are mixed of at a place.
 #[derive(Clone, Debug, Default)]
-pub struct Mixture<'a> {
+pub struct TextureMixture<'a> {
     /// How many patterns there are.
     count: usize,
     /// Which pattern it is, a color in it, and how much there is of it.
-    parts: Vec<(usize, &'a Curve, f64)>,
+    parts: Vec<(usize, &'a SpectralTable, f64)>,
     /// Which pattern it is, and the number that it tells.
     numbers: Vec<(usize, f64)>,
 }
 
-impl Mixture<'_> {
+impl TextureMixture<'_> {
     /// What the patterns give at the wavelengths of a comb.
-    pub fn at(&self, comb: usize) -> Painting {
+    pub fn at(&self, comb: usize) -> TextureValues {
         let mut painting = vec![Channels::ZERO; self.count];
         for (pattern, curve, amount) in &self.parts {
             painting[*pattern] += curve.of(comb) * *amount;
@@ -46,7 +46,7 @@ impl Mixture<'_> {
 ///
 /// The first two carry rays from the eye on. A way of light may be told by them: each of its turns is by a broad lobe or by a narrow one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Which {
+pub enum LobeClass {
     /// Those that spread light so far that it is seen from about everywhere.
     Broad,
     /// Those that pass it on as a beam: mirrors, smooth interfaces, and rough ones of narrow highlights.
@@ -79,14 +79,14 @@ impl Interreflection {
     }
 }
 
-impl Which {
+impl LobeClass {
     /// Those that carry rays from the eye on.
-    pub const CONTINUED: [Which; 2] = [Which::Broad, Which::Narrow];
+    pub const CONTINUED: [LobeClass; 2] = [LobeClass::Broad, LobeClass::Narrow];
 }
 
 /// Among which lobes a direction is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Among {
+pub enum LobeSelection {
     /// All that carry rays from the eye on.
     All,
     /// Those whose directions are not all known: [`Optics::mirrored`] gives the others.
@@ -97,13 +97,13 @@ pub enum Among {
     Broad,
 }
 
-impl Among {
-    fn has(self, which: Which, flags: Flags) -> bool {
+impl LobeSelection {
+    fn has(self, which: LobeClass, flags: Flags) -> bool {
         match self {
-            Among::All => Which::CONTINUED.contains(&which),
-            Among::Spread => Which::CONTINUED.contains(&which) && !flags.has(Flags::DELTA),
-            Among::Narrow => which == Which::Narrow,
-            Among::Broad => matches!(which, Which::Broad | Which::Solved),
+            LobeSelection::All => LobeClass::CONTINUED.contains(&which),
+            LobeSelection::Spread => LobeClass::CONTINUED.contains(&which) && !flags.has(Flags::DELTA),
+            LobeSelection::Narrow => which == LobeClass::Narrow,
+            LobeSelection::Broad => matches!(which, LobeClass::Broad | LobeClass::Solved),
         }
     }
 }
@@ -111,7 +111,7 @@ impl Among {
 /// A lobe of a material.
 #[derive(Clone, Debug)]
 struct Member {
-    which: Which,
+    which: LobeClass,
     /// What the lobe says of itself.
     flags: Flags,
     lobe: AnyLobe,
@@ -119,64 +119,64 @@ struct Member {
 
 /// A material made ready for rendering.
 #[derive(Clone, Debug)]
-pub struct Optics {
+pub struct Bsdf {
     lobes: Vec<Member>,
     throws: bool,
     takes: bool,
     passes: bool,
     spreads: bool,
     /// What the ambient term reflects; none if it is what is reflected alike to everywhere.
-    pub(super) ambient: Option<Shade>,
+    pub(super) ambient: Option<PreparedPaint>,
     /// What changes from place to place.
-    pub(super) patterns: Vec<Changing>,
+    pub(super) patterns: Vec<PreparedTexture>,
     pub(super) relief: Option<Relief>,
     /// The part of light that goes straight through; none if none does.
-    pub(super) passing: Option<Passing>,
+    pub(super) passing: Option<StraightTransmission>,
     /// Radiance that it emits; none if it does not.
-    pub emission: Option<Curve>,
+    pub emission: Option<SpectralTable>,
     /// What is inside, where it is transparent.
-    pub interior: Option<Interior>,
+    pub interior: Option<InteriorMedium>,
     /// The direction along which it is brushed.
     pub along: Option<DVec3>,
 }
 
 /// The part of light that goes straight through.
 #[derive(Clone, Debug)]
-pub(super) enum Passing {
+pub(super) enum StraightTransmission {
     /// One fraction for light from everywhere.
-    Shade(Shade),
+    Shade(PreparedPaint),
     /// Through a polished pane.
-    Pane(Arc<Surface>),
+    Pane(Arc<PrincipledSurface>),
 }
 
-impl Passing {
-    fn of(&self, sighting: &Sighting) -> Channels {
+impl StraightTransmission {
+    fn of(&self, sighting: &ShadingContext) -> Channels {
         match self {
-            Passing::Shade(shade) => shade.of(sighting),
-            Passing::Pane(surface) => surface.straight(sighting),
+            StraightTransmission::Shade(shade) => shade.of(sighting),
+            StraightTransmission::Pane(surface) => surface.straight(sighting),
         }
     }
 }
 
 /// What is behind the surface of a transparent body.
 #[derive(Clone, Debug)]
-pub struct Interior {
+pub struct InteriorMedium {
     /// Its refractive index.
-    pub index: Curve,
+    pub index: SpectralTable,
     /// What it absorbs in a unit of length.
-    pub absorption: Curve,
+    pub absorption: SpectralTable,
     /// Whether the index differs with the wavelength.
     pub disperses: bool,
     /// Which of several bodies in one place is there: that of the greatest.
     pub priority: i32,
 }
 
-impl Optics {
+impl Bsdf {
     /// A material without lobes.
     ///
     /// - `ambient`: what the ambient term reflects. `emission`: radiance.
-    pub(super) fn new(ambient: Shade, relief: Option<Relief>, emission: Option<Curve>) -> Optics {
-        Optics {
+    pub(super) fn new(ambient: PreparedPaint, relief: Option<Relief>, emission: Option<SpectralTable>) -> Bsdf {
+        Bsdf {
             lobes: Vec::new(),
             throws: false,
             takes: false,
@@ -195,13 +195,13 @@ impl Optics {
     /// Radiance towards the viewer for each unit of flux density that arrives from a light, 1/sr: D K / (N·V).
     ///
     /// Of directions that only a mirror or a smooth interface would reach nothing is known here.
-    pub fn value(&self, which: Which, sighting: &Sighting, light: DVec3) -> Channels {
+    pub fn value(&self, which: LobeClass, sighting: &ShadingContext, light: DVec3) -> Channels {
         self.of(which).fold(Channels::ZERO, |sum, lobe| sum + lobe.value(sighting, light))
     }
 
     /// Radiance towards the viewer for each unit of flux density that arrives from a light, 1/sr, by the lobes that are
     /// `among`; nothing of what only a mirror or a smooth interface would reach.
-    pub fn value_among(&self, among: Among, sighting: &Sighting, light: DVec3) -> Channels {
+    pub fn value_among(&self, among: LobeSelection, sighting: &ShadingContext, light: DVec3) -> Channels {
         let members = self.lobes.iter().filter(|member| among.has(member.which, member.flags));
         members.fold(Channels::ZERO, |sum, member| sum + member.lobe.value(sighting, light))
     }
@@ -209,83 +209,83 @@ impl Optics {
     /// Radiance towards the viewer for each unit of flux density that arrives from a light, 1/sr, by all lobes; nothing of
     /// what only a mirror or a smooth interface would reach.
     #[inline]
-    pub fn response(&self, sighting: &Sighting, light: DVec3) -> Channels {
+    pub fn response(&self, sighting: &ShadingContext, light: DVec3) -> Channels {
         self.lobes.iter().fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.value(sighting, light))
     }
 
     /// The density with which [`Optics::onward`] draws a direction by broad or by narrow lobes, 1/sr.
     ///
     /// - `among`: as there.
-    pub fn density(&self, which: Which, sighting: &Sighting, light: DVec3, among: Among) -> f64 {
+    pub fn density(&self, which: LobeClass, sighting: &ShadingContext, light: DVec3, among: LobeSelection) -> f64 {
         let shares = self.shares(sighting, among);
         let members = self.lobes.iter().zip(&shares).filter(|(member, _)| member.which == which);
         members.map(|(member, share)| share * member.lobe.density(sighting, light)).sum()
     }
 
     /// The density with which [`Optics::onward`] draws a direction among lobes, 1/sr.
-    pub fn density_among(&self, among: Among, sighting: &Sighting, light: DVec3) -> f64 {
+    pub fn density_among(&self, among: LobeSelection, sighting: &ShadingContext, light: DVec3) -> f64 {
         let members = self.lobes.iter().zip(self.shares(sighting, among)).filter(|(_, share)| *share > 0.0);
         members.map(|(member, share)| share * member.lobe.density(sighting, light)).sum()
     }
 
     /// The directions of mirrors and smooth interfaces, all of them.
-    pub fn mirrored(&self, sighting: &Sighting) -> impl Iterator<Item = Onward> {
-        let narrow = |member: &&Member| member.which == Which::Narrow && member.flags.has(Flags::DELTA);
+    pub fn mirrored(&self, sighting: &ShadingContext) -> impl Iterator<Item = BsdfSample> {
+        let narrow = |member: &&Member| member.which == LobeClass::Narrow && member.flags.has(Flags::DELTA);
         let members = self.lobes.iter().filter(narrow);
         members.flat_map(|member| member.lobe.mirrored(sighting)).flatten().filter(|onward| onward.weight.max() > 0.0)
     }
 
     /// What goes straight through, if anything does.
-    pub fn straight(&self, sighting: &Sighting) -> Option<Onward> {
+    pub fn straight(&self, sighting: &ShadingContext) -> Option<BsdfSample> {
         let weight = self.passing.as_ref()?.of(sighting);
-        Some(Onward { light: -sighting.view, weight, density: None, is_straight: true, is_broad: false })
+        Some(BsdfSample { light: -sighting.view, weight, density: None, is_straight: true, is_broad: false })
     }
 
     /// One direction, drawn about as what comes from there counts; none where what is drawn counts nothing.
     ///
     /// - `choice`: uniform in 0..1, chooses among lobes. `point`: uniform in the unit square.
     /// - `among`: which lobes it is drawn among.
-    pub fn onward(&self, sighting: &Sighting, choice: f64, point: [f64; 2], among: Among) -> Option<Onward> {
+    pub fn onward(&self, sighting: &ShadingContext, choice: f64, point: [f64; 2], among: LobeSelection) -> Option<BsdfSample> {
         let shares = self.shares(sighting, among);
         let (index, choice) = chosen(&shares, choice)?;
         let Member { which, lobe, .. } = self.lobes.get(index)?;
         let drawn = lobe.sample(sighting, choice, point)?;
         if drawn.density.is_none() {
-            return Some(Onward { weight: drawn.weight * shares[index].recip(), ..drawn });
+            return Some(BsdfSample { weight: drawn.weight * shares[index].recip(), ..drawn });
         }
         // What all lobes of the kind give there, over the density with which all of them draw it.
         let light = drawn.light;
         let (mut value, mut density) = (Channels::ZERO, 0.0);
-        let is_broad = *which != Which::Narrow;
+        let is_broad = *which != LobeClass::Narrow;
         for (Member { which, lobe, .. }, share) in self.lobes.iter().zip(&shares).filter(|(_, share)| **share > 0.0) {
-            if is_broad == (*which != Which::Narrow) {
+            if is_broad == (*which != LobeClass::Narrow) {
                 value += lobe.value(sighting, light);
                 density += share * lobe.density(sighting, light);
             }
         }
         let weight = value * (light.z.abs() / density);
-        (density > 0.0 && weight.is_finite()).then_some(Onward { weight, density: Some(density), is_broad, ..drawn })
+        (density > 0.0 && weight.is_finite()).then_some(BsdfSample { weight, density: Some(density), is_broad, ..drawn })
     }
 
     /// What ambient light, the same radiance from everywhere, adds: its reflected fraction.
-    pub fn ambient(&self, sighting: &Sighting) -> Channels {
+    pub fn ambient(&self, sighting: &ShadingContext) -> Channels {
         self.ambient.as_ref().map_or_else(|| self.diffuse(sighting), |ambient| ambient.of(sighting))
     }
 
     /// About what ambient light adds by what mirrors, metals, coats and glass reflect, where that is not followed.
-    pub fn surrounded(&self, sighting: &Sighting) -> Channels {
+    pub fn surrounded(&self, sighting: &ShadingContext) -> Channels {
         self.lobes.iter().fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.shown(sighting))
     }
 
     /// The part of light from all around that is reflected alike to everywhere: Lambert's term, and what a ground under a
     /// coat gives in the mean.
-    pub fn diffuse(&self, sighting: &Sighting) -> Channels {
+    pub fn diffuse(&self, sighting: &ShadingContext) -> Channels {
         self.lobes.iter().fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.diffuse(sighting))
     }
 
     /// About the part of light from all around that is reflected to the viewer, but for what a mirror or a smooth interface
     /// passes on.
-    pub fn spread_albedo(&self, sighting: &Sighting) -> Channels {
+    pub fn spread_albedo(&self, sighting: &ShadingContext) -> Channels {
         let spread = self.lobes.iter().filter(|member| !member.flags.has(Flags::DELTA));
         spread.fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.diffuse(sighting) + lobe.shown(sighting))
     }
@@ -301,28 +301,28 @@ impl Optics {
     }
 
     /// What its patterns are mixed of in the mean over a place, for any wavelengths.
-    pub fn mix(&self, place: &Place) -> Mixture<'_> {
-        let mut mixture = Mixture { count: self.patterns.len(), ..Mixture::default() };
+    pub fn mix(&self, place: &TextureFootprint) -> TextureMixture<'_> {
+        let mut mixture = TextureMixture { count: self.patterns.len(), ..TextureMixture::default() };
         for (index, pattern) in self.patterns.iter().enumerate() {
             match pattern {
-                Changing::Paint(painted) => {
+                PreparedTexture::Paint(painted) => {
                     painted.each(place, 1.0, &mut |curve, amount| mixture.parts.push((index, curve, amount)));
                 }
-                Changing::Number(number) => mixture.numbers.push((index, number.at(place))),
+                PreparedTexture::Number(number) => mixture.numbers.push((index, number.at(place))),
             }
         }
         mixture
     }
 
     /// What its patterns give in the mean over a place.
-    pub fn paint(&self, place: &Place, comb: usize) -> Painting {
+    pub fn paint(&self, place: &TextureFootprint, comb: usize) -> TextureValues {
         self.patterns.iter().map(|pattern| pattern.at(place, comb)).collect()
     }
 
     /// The normal of an element, tilted by the relief.
     ///
     /// - `normal`: of the surface, unit length, outwards.
-    pub fn tilted(&self, place: &Place, normal: DVec3) -> DVec3 {
+    pub fn tilted(&self, place: &TextureFootprint, normal: DVec3) -> DVec3 {
         self.relief.as_ref().map_or(normal, |relief| relief.normal(place, normal))
     }
 
@@ -334,29 +334,29 @@ impl Optics {
     /// The part of light that goes straight through.
     ///
     /// - `cosine`: of the angle between light and normal, 0..=1. `place`: asked for only if a pattern has to be looked up.
-    pub fn passing(&self, comb: usize, cosine: f64, place: impl FnOnce() -> Place) -> Channels {
+    pub fn passing(&self, comb: usize, cosine: f64, place: impl FnOnce() -> TextureFootprint) -> Channels {
         let Some(passing) = &self.passing else { return Channels::ZERO };
-        let painted = if self.patterns.is_empty() { Painting::new() } else { self.paint(&place(), comb) };
+        let painted = if self.patterns.is_empty() { TextureValues::new() } else { self.paint(&place(), comb) };
         let view = DVec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
-        passing.of(&Sighting { view, comb, side: Side::AIR, lane: 0, painted: &painted })
+        passing.of(&ShadingContext { view, comb, side: InterfaceIndices::AIR, lane: 0, painted: &painted })
     }
 
     /// Whether it is a polished interface: what goes through has one direction.
     pub fn is_clear(&self) -> bool {
-        let is_clear = |member: &Member| member.which == Which::Narrow && member.flags.has(Flags::CLEAR);
+        let is_clear = |member: &Member| member.which == LobeClass::Narrow && member.flags.has(Flags::CLEAR);
         self.interior.is_some() && self.lobes.iter().any(is_clear)
     }
 
     /// The part of light that a polished interface lets through, as if it were not bent.
     ///
     /// - `cosine`: of the angle between light and normal, 0..=1. `place`: asked for only if a pattern has to be looked up.
-    pub fn cleared(&self, comb: usize, cosine: f64, place: impl FnOnce() -> Place) -> Channels {
+    pub fn cleared(&self, comb: usize, cosine: f64, place: impl FnOnce() -> TextureFootprint) -> Channels {
         let Some(interior) = &self.interior else { return Channels::ZERO };
-        let painted = if self.patterns.is_empty() { Painting::new() } else { self.paint(&place(), comb) };
+        let painted = if self.patterns.is_empty() { TextureValues::new() } else { self.paint(&place(), comb) };
         let view = DVec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
-        let side = Side { behind: interior.index.of(comb), ..Side::AIR };
-        let sighting = Sighting { view, comb, side, lane: 0, painted: &painted };
-        self.of(Which::Narrow).fold(Channels::ZERO, |sum, lobe| sum + lobe.cleared(&sighting))
+        let side = InterfaceIndices { behind: interior.index.of(comb), ..InterfaceIndices::AIR };
+        let sighting = ShadingContext { view, comb, side, lane: 0, painted: &painted };
+        self.of(LobeClass::Narrow).fold(Channels::ZERO, |sum, lobe| sum + lobe.cleared(&sighting))
     }
 
     /// Whether some lobe of a kind answers lights.
@@ -366,7 +366,7 @@ impl Optics {
 
     /// Whether rays are carried on.
     pub fn carries_on(&self) -> bool {
-        self.lobes.iter().any(|member| Which::CONTINUED.contains(&member.which))
+        self.lobes.iter().any(|member| LobeClass::CONTINUED.contains(&member.which))
     }
 
     /// Whether some lobe passes light on as a beam, other than straight.
@@ -380,15 +380,15 @@ impl Optics {
     }
 
     /// Radiance towards the viewer for each unit of flux density that arrives, 1/sr, of all lobes but the narrow ones.
-    pub fn spread_value(&self, sighting: &Sighting, light: DVec3) -> Channels {
-        let spread = self.lobes.iter().filter(|member| member.which != Which::Narrow);
+    pub fn spread_value(&self, sighting: &ShadingContext, light: DVec3) -> Channels {
+        let spread = self.lobes.iter().filter(|member| member.which != LobeClass::Narrow);
         spread.fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.value(sighting, light))
     }
 
     /// Radiance towards the viewer for each unit of flux density, 1/sr, of all lobes but the narrow ones, where it is one
     /// for all light from above; none where it is not.
-    pub fn even_value(&self, sighting: &Sighting) -> Option<Channels> {
-        let mut spread = self.lobes.iter().filter(|member| member.which != Which::Narrow);
+    pub fn even_value(&self, sighting: &ShadingContext) -> Option<Channels> {
+        let mut spread = self.lobes.iter().filter(|member| member.which != LobeClass::Narrow);
         spread.try_fold(Channels::ZERO, |sum, Member { flags, lobe, .. }| {
             flags.has(Flags::EVEN).then(|| sum + lobe.value(sighting, DVec3::Z))
         })
@@ -396,7 +396,7 @@ impl Optics {
 
     /// Whether light that is followed from lamps goes on from it about everywhere.
     pub fn is_broad(&self) -> bool {
-        let goes_on = |member: &Member| Among::Broad.has(member.which, member.flags) && !member.flags.has(Flags::BLACK);
+        let goes_on = |member: &Member| LobeSelection::Broad.has(member.which, member.flags) && !member.flags.has(Flags::BLACK);
         self.lobes.iter().any(goes_on)
     }
 
@@ -411,35 +411,35 @@ impl Optics {
     pub(super) fn add(&mut self, lobe: AnyLobe, carried: Interreflection) {
         let flags = lobe.flags();
         let which = match carried {
-            Interreflection::LeftOut => Which::Ended,
-            Interreflection::Solved if flags.has(Flags::DIFFUSE) => Which::Solved,
-            Interreflection::Solved => Which::Ended,
-            Interreflection::Followed if flags.has(Flags::BROAD) => Which::Broad,
-            Interreflection::Followed => Which::Narrow,
+            Interreflection::LeftOut => LobeClass::Ended,
+            Interreflection::Solved if flags.has(Flags::DIFFUSE) => LobeClass::Solved,
+            Interreflection::Solved => LobeClass::Ended,
+            Interreflection::Followed if flags.has(Flags::BROAD) => LobeClass::Broad,
+            Interreflection::Followed => LobeClass::Narrow,
         };
         let is_black = flags.has(Flags::BLACK);
-        let is_continued = Which::CONTINUED.contains(&which);
+        let is_continued = LobeClass::CONTINUED.contains(&which);
         self.spreads |= is_continued && !flags.has(Flags::DELTA) && !is_black;
         match which {
             _ if is_black => {}
-            Which::Narrow if flags.has(Flags::STRAIGHT) => self.passes = true,
-            Which::Narrow if flags.has(Flags::PANE) => (self.passes, self.throws) = (true, true),
-            Which::Narrow => self.throws = true,
-            Which::Broad | Which::Solved | Which::Ended => self.takes = true,
+            LobeClass::Narrow if flags.has(Flags::STRAIGHT) => self.passes = true,
+            LobeClass::Narrow if flags.has(Flags::PANE) => (self.passes, self.throws) = (true, true),
+            LobeClass::Narrow => self.throws = true,
+            LobeClass::Broad | LobeClass::Solved | LobeClass::Ended => self.takes = true,
         }
         self.lobes.push(Member { which, flags, lobe });
     }
 
     /// Takes in a number that changes from place to place.
-    pub(super) fn varying(&mut self, number: &Number) -> Quantity {
-        self.patterns.push(Changing::Number(number.clone()));
-        Quantity::Varying(self.patterns.len() - 1)
+    pub(super) fn varying(&mut self, number: &NumberTexture) -> PreparedNumber {
+        self.patterns.push(PreparedTexture::Number(number.clone()));
+        PreparedNumber::Varying(self.patterns.len() - 1)
     }
 
     /// A number, which may change from place to place.
-    pub(super) fn quantity(&mut self, number: &Number) -> Quantity {
+    pub(super) fn quantity(&mut self, number: &NumberTexture) -> PreparedNumber {
         match number {
-            Number::Constant(value) => Quantity::Constant(*value),
+            NumberTexture::Constant(value) => PreparedNumber::Constant(*value),
             varying => self.varying(varying),
         }
     }
@@ -450,12 +450,12 @@ impl Optics {
         self.lobes.iter().map(|member| &member.lobe)
     }
 
-    fn of(&self, which: Which) -> impl Iterator<Item = &AnyLobe> {
+    fn of(&self, which: LobeClass) -> impl Iterator<Item = &AnyLobe> {
         self.lobes.iter().filter(move |member| member.which == which).map(|member| &member.lobe)
     }
 
     /// The chances of the lobes; they add up to 1, or are all 0.
-    fn shares(&self, sighting: &Sighting, among: Among) -> [f64; MOST_LOBES] {
+    fn shares(&self, sighting: &ShadingContext, among: LobeSelection) -> [f64; MOST_LOBES] {
         let mut shares = [0.0; MOST_LOBES];
         for (share, Member { which, flags, lobe }) in shares.iter_mut().zip(&self.lobes) {
             *share = if among.has(*which, *flags) { lobe.strength(sighting) } else { 0.0 };

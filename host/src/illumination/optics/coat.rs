@@ -2,9 +2,9 @@
 
 use super::diffuse::{cosine_density, cosine_sample};
 use super::lobe::{Flags, Lobe};
-use super::shade::Shade;
-use super::sighting::{Onward, Sighting};
-use crate::color::{Channels, Curve};
+use super::shade::PreparedPaint;
+use super::sighting::{BsdfSample, ShadingContext};
+use crate::color::{Channels, SpectralTable};
 use crate::illumination::distribution::{Distribution, Microfacet};
 use crate::illumination::fresnel::Dielectric;
 use crate::numeric::cubature::{GAUSS, unit_square};
@@ -21,7 +21,7 @@ const MOST_EVALUATIONS: u32 = 20_000;
 
 /// What a coat reflects.
 #[derive(Clone, Debug)]
-pub(super) struct Coat {
+pub(super) struct CoatReflection {
     surface: Dielectric,
     /// None where it is polished.
     facets: Option<Microfacet>,
@@ -29,9 +29,9 @@ pub(super) struct Coat {
     through: Vec<f64>,
 }
 
-impl Coat {
-    pub(super) fn new(surface: Dielectric, facets: Option<Microfacet>) -> Coat {
-        let mut coat = Coat { surface, facets, through: Vec::new() };
+impl CoatReflection {
+    pub(super) fn new(surface: Dielectric, facets: Option<Microfacet>) -> CoatReflection {
+        let mut coat = CoatReflection { surface, facets, through: Vec::new() };
         if let Some(facets) = &coat.facets {
             let entry = |step: usize| {
                 let cosine = (step as f64 / STEPS as f64).powi(2).max(1e-6);
@@ -81,7 +81,7 @@ impl Coat {
     }
 }
 
-impl Lobe for Coat {
+impl Lobe for CoatReflection {
     fn flags(&self) -> Flags {
         match &self.facets {
             None => Flags::DELTA,
@@ -89,7 +89,7 @@ impl Lobe for Coat {
         }
     }
 
-    fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
+    fn value(&self, sighting: &ShadingContext, light: DVec3) -> Channels {
         let view = sighting.view;
         if sighting.is_behind(light) {
             return Channels::ZERO;
@@ -100,31 +100,31 @@ impl Lobe for Coat {
         Channels::splat(self.reflected(half.dot(view)) * facets.density(light, view) / view.z)
     }
 
-    fn density(&self, sighting: &Sighting, light: DVec3) -> f64 {
+    fn density(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
         match &self.facets {
             Some(facets) if !sighting.is_behind(light) => facets.sample_density(sighting.view, light),
             _ => 0.0,
         }
     }
 
-    fn sample(&self, sighting: &Sighting, _: f64, point: [f64; 2]) -> Option<Onward> {
+    fn sample(&self, sighting: &ShadingContext, _: f64, point: [f64; 2]) -> Option<BsdfSample> {
         match &self.facets {
-            Some(facets) => facets.sample(sighting.view, point).map(Onward::spread),
+            Some(facets) => facets.sample(sighting.view, point).map(BsdfSample::spread),
             None => self.mirrored(sighting)[0],
         }
     }
 
-    fn strength(&self, sighting: &Sighting) -> f64 {
+    fn strength(&self, sighting: &ShadingContext) -> f64 {
         // Where Fresnel's term vanishes, so does what is reflected; a rough coat may still show tilted facets.
         self.reflected(sighting.view.z).max(if self.facets.is_none() { 0.0 } else { 0.02 })
     }
 
-    fn mirrored(&self, sighting: &Sighting) -> [Option<Onward>; 2] {
-        let mirrored = || Onward::single(sighting.mirrored(), self.shown(sighting));
+    fn mirrored(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
+        let mirrored = || BsdfSample::single(sighting.mirrored(), self.shown(sighting));
         [self.facets.is_none().then(mirrored), None]
     }
 
-    fn shown(&self, sighting: &Sighting) -> Channels {
+    fn shown(&self, sighting: &ShadingContext) -> Channels {
         Channels::splat(self.reflected(sighting.view.z))
     }
 }
@@ -138,8 +138,8 @@ impl Lobe for Coat {
 /// # Source
 /// The geometric series of a coat over a Lambertian ground.
 #[derive(Clone, Debug)]
-pub(super) struct Ground {
-    coat: Arc<Coat>,
+pub(super) struct CoatedDiffuse {
+    coat: Arc<CoatReflection>,
     /// T̄ and R.
     mean: f64,
     back: f64,
@@ -149,26 +149,26 @@ pub(super) struct Ground {
 /// K (1 − R) / (π T̄ (1 − K R)), or K.
 #[derive(Clone, Debug)]
 enum Fraction {
-    Known(Curve),
-    Painted(Shade),
+    Known(SpectralTable),
+    Painted(PreparedPaint),
 }
 
-impl Ground {
+impl CoatedDiffuse {
     /// - `index`: of the coat over that of what is above. `reflectance`: of the ground. `combs`: how many there are.
-    pub(super) fn new(coat: Arc<Coat>, index: f64, reflectance: &Shade, combs: usize) -> Ground {
+    pub(super) fn new(coat: Arc<CoatReflection>, index: f64, reflectance: &PreparedPaint, combs: usize) -> CoatedDiffuse {
         let mean = coat.mean_through();
         // Where the coat is the thinner medium, nothing is reflected back but what Fresnel's term says.
         let back = (1.0 - mean / (index * index)).max(0.0);
         let fraction = match reflectance {
-            Shade::Plain(curve) => {
-                Fraction::Known(Curve::each(combs, |comb| curve.of(comb).map(|k| series(k, mean, back))))
+            PreparedPaint::Plain(curve) => {
+                Fraction::Known(SpectralTable::each(combs, |comb| curve.of(comb).map(|k| series(k, mean, back))))
             }
             painted => Fraction::Painted(painted.clone()),
         };
-        Ground { coat, mean, back, fraction }
+        CoatedDiffuse { coat, mean, back, fraction }
     }
 
-    fn fraction(&self, sighting: &Sighting) -> Channels {
+    fn fraction(&self, sighting: &ShadingContext) -> Channels {
         match &self.fraction {
             Fraction::Known(curve) => curve.of(sighting.comb),
             Fraction::Painted(shade) => shade.of(sighting).map(|k| series(k, self.mean, self.back)),
@@ -176,7 +176,7 @@ impl Ground {
     }
 }
 
-impl Lobe for Ground {
+impl Lobe for CoatedDiffuse {
     fn flags(&self) -> Flags {
         let is_black = match &self.fraction {
             Fraction::Known(curve) => curve.max() <= 0.0,
@@ -185,27 +185,27 @@ impl Lobe for Ground {
         Flags::BROAD | Flags::DIFFUSE | Flags::BLACK.when(is_black)
     }
 
-    fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
+    fn value(&self, sighting: &ShadingContext, light: DVec3) -> Channels {
         if sighting.is_behind(light) {
             return Channels::ZERO;
         }
         self.fraction(sighting) * (self.coat.through(light.z) * self.coat.through(sighting.view.z))
     }
 
-    fn density(&self, sighting: &Sighting, light: DVec3) -> f64 {
+    fn density(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
         cosine_density(sighting, light)
     }
 
-    fn sample(&self, _: &Sighting, _: f64, point: [f64; 2]) -> Option<Onward> {
+    fn sample(&self, _: &ShadingContext, _: f64, point: [f64; 2]) -> Option<BsdfSample> {
         cosine_sample(point)
     }
 
-    fn strength(&self, sighting: &Sighting) -> f64 {
+    fn strength(&self, sighting: &ShadingContext) -> f64 {
         self.fraction(sighting).max() * std::f64::consts::PI * self.coat.through(sighting.view.z)
     }
 
     /// π D T̄² of the D without its two T.
-    fn diffuse(&self, sighting: &Sighting) -> Channels {
+    fn diffuse(&self, sighting: &ShadingContext) -> Channels {
         self.fraction(sighting) * (std::f64::consts::PI * self.mean * self.mean)
     }
 }

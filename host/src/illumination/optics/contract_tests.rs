@@ -2,14 +2,14 @@
 
 use super::lobe::{Flags, Lobe};
 use super::lobes::AnyLobe;
-use super::{Interreflection, Library, Side, Sighting};
-use crate::color::{Channels, Wavelengths, shipped};
+use super::{Interreflection, BsdfBuilder, InterfaceIndices, ShadingContext};
+use crate::color::{Channels, WavelengthSets, shipped};
 use crate::illumination::material::{
-    Body, Classic, Coated, Finish, Form, Index, Material, Metal, Principled, Shaped, Transparent,
+    MaterialKind, Classic, Coated, Finish, DistributionForm, RefractiveIndex, Material, Metal, Principled, Distributed, Transparent,
 };
-use crate::illumination::texture::{Band, Laying, Motif, Number, Paint, Pattern, Varying};
+use crate::illumination::texture::{Band, TextureMapping, Motif, NumberTexture, Paint, Pattern, Varying};
 use crate::numeric::cubature::unit_square;
-use crate::numeric::sampling::Stream;
+use crate::numeric::sampling::RandomStream;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -25,27 +25,27 @@ const BINS: [usize; 2] = [16, 12];
 /// The lanes of two patterns: of a lobe that varies.
 const PAINTED: [Channels; 2] = [Channels([0.25; crate::color::LANES]); 2];
 
-fn varying() -> Number {
+fn varying() -> NumberTexture {
     let paints = vec![Paint::grey(0.0), Paint::grey(1.0)];
-    let pattern = Pattern { motif: Motif::Noise { octaves: 3 }, laying: Laying::default(), paints };
-    Number::Varying(Box::new(Varying { pattern, band: Band::Mean, from: 0.2, to: 0.6 }))
+    let pattern = Pattern { motif: Motif::Noise { octaves: 3 }, laying: TextureMapping::default(), paints };
+    NumberTexture::Varying(Box::new(Varying { pattern, band: Band::Mean, from: 0.2, to: 0.6 }))
 }
 
 /// Lobes of every kind.
 fn lobes() -> Vec<AnyLobe> {
     let grey = Paint::grey;
     let copper = |finish| {
-        let shipped::Metal { n, k } = shipped::metal("copper").expect("a metal");
-        Material::from(Body::Metal(Metal { n, k, finish }))
+        let shipped::ComplexIndex { n, k } = shipped::metal("copper").expect("a metal");
+        Material::from(MaterialKind::Metal(Metal { n, k, finish }))
     };
     let rough = |name: &str, roughness| Finish::Rough { name: name.into(), roughness };
-    let coated = |roughness: Number| Body::Coated(Coated { diffuse: grey(0.6), index: 1.5, roughness }).into();
+    let coated = |roughness: NumberTexture| MaterialKind::Coated(Coated { diffuse: grey(0.6), index: 1.5, roughness }).into();
     let glass = |roughness: f64| {
-        Body::Transparent(Transparent { roughness: roughness.into(), ..Transparent::clear(Index::Constant(1.5)) })
+        MaterialKind::Transparent(Transparent { roughness: roughness.into(), ..Transparent::clear(RefractiveIndex::Constant(1.5)) })
             .into()
     };
     let principled = |transmission: f64, roughness: f64| {
-        Body::Principled(Box::new(Principled {
+        MaterialKind::Principled(Box::new(Principled {
             base_color: grey(0.6),
             metallic: 0.2.into(),
             roughness: roughness.into(),
@@ -64,10 +64,10 @@ fn lobes() -> Vec<AnyLobe> {
         mirror: grey(0.2),
         transparency: grey(0.2),
     };
-    let form = |roughness: f64| Form::Member { name: "GGX".into(), roughness: roughness.into() };
+    let form = |roughness: f64| DistributionForm::Member { name: "GGX".into(), roughness: roughness.into() };
     let materials: Vec<Material> = vec![
         classic.into(),
-        Body::Shaped(Shaped { reflectance: grey(0.8), form: form(0.4) }).into(),
+        MaterialKind::Shaped(Distributed { reflectance: grey(0.8), form: form(0.4) }).into(),
         copper(Finish::Polished),
         copper(rough("GGX", 0.3.into())),
         copper(rough("GGX, all", 0.6.into())),
@@ -80,8 +80,8 @@ fn lobes() -> Vec<AnyLobe> {
         principled(0.8, 0.5),
         principled(0.8, 0.0),
     ];
-    let wavelengths = Wavelengths::bands();
-    let mut library = Library::new(&wavelengths, false);
+    let wavelengths = WavelengthSets::bands();
+    let mut library = BsdfBuilder::new(&wavelengths, false);
     let mut all = Vec::new();
     for material in &materials {
         all.extend(library.optics(material, Interreflection::Followed).expect("a material").lobes().cloned());
@@ -89,14 +89,14 @@ fn lobes() -> Vec<AnyLobe> {
     all
 }
 
-fn sighting(degrees: f64, before: f64, behind: f64) -> Sighting<'static> {
+fn sighting(degrees: f64, before: f64, behind: f64) -> ShadingContext<'static> {
     let (sin, cos) = degrees.to_radians().sin_cos();
-    let side = Side { before: Channels::splat(before), behind: Channels::splat(behind), inside: before > behind };
-    Sighting { view: DVec3::new(sin, 0.0, cos), comb: 0, side, lane: 0, painted: &PAINTED }
+    let side = InterfaceIndices { before: Channels::splat(before), behind: Channels::splat(behind), inside: before > behind };
+    ShadingContext { view: DVec3::new(sin, 0.0, cos), comb: 0, side, lane: 0, painted: &PAINTED }
 }
 
 /// From outside and from inside, steeply and at a flat angle.
-fn sightings() -> impl Iterator<Item = Sighting<'static>> {
+fn sightings() -> impl Iterator<Item = ShadingContext<'static>> {
     [[1.0, 1.5], [1.5, 1.0]].into_iter().flat_map(|[before, behind]| {
         [15.0, 50.0, 80.0].into_iter().map(move |degrees| sighting(degrees, before, behind))
     })
@@ -127,10 +127,10 @@ fn there_is_a_lobe_of_every_kind() {
 ///
 /// - `sample`: draws a direction, or none. `density`: 1/sr.
 fn deviations(
-    mut sample: impl FnMut(&mut Stream) -> Option<DVec3>,
+    mut sample: impl FnMut(&mut RandomStream) -> Option<DVec3>,
     density: impl Fn(DVec3) -> f64,
 ) -> Result<f64, String> {
-    let mut stream = Stream::new(11, 7);
+    let mut stream = RandomStream::new(11, 7);
     // What is drawn in vain counts, too.
     let mut found = vec![0.0; BINS[0] * BINS[1] + 1];
     for _ in 0..SAMPLES {
@@ -175,7 +175,7 @@ fn samples_are_drawn_as_densities_say() {
     let spread: Vec<AnyLobe> = lobes().into_iter().filter(|lobe| !lobe.flags().has(Flags::DELTA)).collect();
     spread.par_iter().for_each(|lobe| {
         for sighting in sightings() {
-            let drawn = |stream: &mut Stream| lobe.sample(&sighting, stream.uniform(), stream.point());
+            let drawn = |stream: &mut RandomStream| lobe.sample(&sighting, stream.uniform(), stream.point());
             let found = deviations(|stream| Some(drawn(stream)?.light), |light| lobe.density(&sighting, light));
             assert!(found.clone().is_ok_and(|d| d < DOUBT), "{} at {}: {found:?}", lobe.kind(), sighting.view);
         }
@@ -186,20 +186,20 @@ fn samples_are_drawn_as_densities_say() {
 fn samples_of_a_tenth_more_roughness_are_told_apart() {
     let metal = |roughness: f64| {
         let finish = Finish::Rough { name: "GGX".into(), roughness: roughness.into() };
-        let shipped::Metal { n, k } = shipped::metal("copper").expect("a metal");
-        let material = Body::Metal(Metal { n, k, finish }).into();
-        let optics = Library::new(&Wavelengths::bands(), false).optics(&material, Interreflection::Followed);
+        let shipped::ComplexIndex { n, k } = shipped::metal("copper").expect("a metal");
+        let material = MaterialKind::Metal(Metal { n, k, finish }).into();
+        let optics = BsdfBuilder::new(&WavelengthSets::bands(), false).optics(&material, Interreflection::Followed);
         optics.expect("a material").lobes().next().expect("a lobe").clone()
     };
     let (one, other, sighting) = (metal(0.3), metal(0.33), sighting(50.0, 1.0, 1.5));
-    let drawn = |stream: &mut Stream| Some(one.sample(&sighting, stream.uniform(), stream.point())?.light);
+    let drawn = |stream: &mut RandomStream| Some(one.sample(&sighting, stream.uniform(), stream.point())?.light);
     let found = deviations(drawn, |light| other.density(&sighting, light));
     assert!(found.clone().is_ok_and(|d| d > DOUBT), "{found:?}");
 }
 
 #[test]
 fn light_goes_to_and_fro_alike() {
-    let mut stream = Stream::new(3, 5);
+    let mut stream = RandomStream::new(3, 5);
     for lobe in lobes().iter().filter(|lobe| !NOT_PHYSICAL.contains(&lobe.kind())) {
         for sighting in sightings() {
             for _ in 0..40 {
@@ -208,13 +208,13 @@ fn light_goes_to_and_fro_alike() {
                 let value = lobe.value(&sighting, light).0[0];
                 // Through the surface, the other side is seen in a frame of its own, and radiance is per square of the index.
                 let flip = |way: DVec3| DVec3::new(way.x, way.y, way.z.abs() * if light.z > 0.0 { 1.0 } else { -1.0 });
-                let Side { before, behind, inside } = sighting.side;
+                let InterfaceIndices { before, behind, inside } = sighting.side;
                 let (back, squares) = match light.z > 0.0 {
-                    true => (Sighting { view: light, ..sighting }, [1.0, 1.0]),
+                    true => (ShadingContext { view: light, ..sighting }, [1.0, 1.0]),
                     false => {
-                        let side = Side { before: behind, behind: before, inside: !inside };
+                        let side = InterfaceIndices { before: behind, behind: before, inside: !inside };
                         let view = DVec3::new(light.x, light.y, -light.z);
-                        (Sighting { view, side, ..sighting }, [behind.0[0].powi(2), before.0[0].powi(2)])
+                        (ShadingContext { view, side, ..sighting }, [behind.0[0].powi(2), before.0[0].powi(2)])
                     }
                 };
                 let other = lobe.value(&back, flip(sighting.view)).0[0];
@@ -231,7 +231,7 @@ fn no_lobe_sends_more_light_than_comes_and_its_strength_is_about_that() {
     let all = lobes();
     all.par_iter().filter(|lobe| !NOT_PHYSICAL.contains(&lobe.kind())).for_each(|lobe| {
         for sighting in sightings() {
-            let Side { before, behind, .. } = sighting.side;
+            let InterfaceIndices { before, behind, .. } = sighting.side;
             let gained = (behind.0[0] / before.0[0]).powi(2);
             let spread =
                 |cosines| over(cosines, [0.0, 1.0], 4_000, |light| lobe.value(&sighting, light).0[0] * light.z.abs());
@@ -247,7 +247,7 @@ fn no_lobe_sends_more_light_than_comes_and_its_strength_is_about_that() {
 
 #[test]
 fn flags_tell_what_lobes_do() {
-    let mut stream = Stream::new(9, 1);
+    let mut stream = RandomStream::new(9, 1);
     for lobe in lobes() {
         let (flags, kind) = (lobe.flags(), lobe.kind());
         assert!(!flags.has(Flags::BLACK), "{kind}");

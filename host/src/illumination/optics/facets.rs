@@ -2,7 +2,7 @@
 
 use super::lobe::{Flags, Lobe};
 use super::polished::reflectance;
-use super::sighting::{Onward, Sighting};
+use super::sighting::{BsdfSample, ShadingContext};
 use crate::color::{Channels, LANES};
 use crate::illumination::distribution::{Compensated, Distribution};
 use crate::illumination::fresnel::Conductor;
@@ -15,18 +15,18 @@ const PARTS: usize = 8;
 
 /// A distribution of facets: one of the family, or one whose further reflections are known apart.
 #[derive(Clone, Debug)]
-pub(super) enum Shape {
+pub(super) enum FacetDistribution {
     /// Reflects once.
     Once(Arc<dyn Distribution>),
     /// With all reflections between facets.
     All(Arc<Compensated>),
 }
 
-impl Shape {
+impl FacetDistribution {
     fn as_distribution(&self) -> &dyn Distribution {
         match self {
-            Shape::Once(distribution) => distribution.as_ref(),
-            Shape::All(compensated) => compensated.as_ref(),
+            FacetDistribution::Once(distribution) => distribution.as_ref(),
+            FacetDistribution::All(compensated) => compensated.as_ref(),
         }
     }
 }
@@ -39,19 +39,19 @@ impl Shape {
 /// # Source
 /// Cook and Torrance 1982; Kulla and Conty 2017 for the further reflections, summed as a geometric series.
 #[derive(Clone, Debug)]
-pub(super) struct Metallic {
-    shape: Shape,
+pub(super) struct RoughConductor {
+    shape: FacetDistribution,
     conductors: Arc<Vec<[Conductor; LANES]>>,
     /// K of further reflections, for each comb.
     further: Vec<Channels>,
 }
 
-impl Metallic {
+impl RoughConductor {
     /// - `conductors`: for each comb, lane by lane.
-    pub(super) fn new(shape: Shape, conductors: Arc<Vec<[Conductor; LANES]>>) -> Metallic {
+    pub(super) fn new(shape: FacetDistribution, conductors: Arc<Vec<[Conductor; LANES]>>) -> RoughConductor {
         let further = match &shape {
-            Shape::Once(_) => Vec::new(),
-            Shape::All(compensated) => {
+            FacetDistribution::Once(_) => Vec::new(),
+            FacetDistribution::All(compensated) => {
                 let left = 1.0 - compensated.mean_lost();
                 let factor = |mean: f64| mean * mean * left / (1.0 - mean * (1.0 - left));
                 conductors
@@ -60,50 +60,50 @@ impl Metallic {
                     .collect()
             }
         };
-        Metallic { shape, conductors, further }
+        RoughConductor { shape, conductors, further }
     }
 }
 
-impl Lobe for Metallic {
+impl Lobe for RoughConductor {
     fn flags(&self) -> Flags {
         Flags::of_density(self.shape.as_distribution().sample_density(DVec3::Z, DVec3::Z))
     }
 
     /// D K / (N·V), 1/sr, for light above the horizon.
-    fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
+    fn value(&self, sighting: &ShadingContext, light: DVec3) -> Channels {
         if sighting.is_behind(light) {
             return Channels::ZERO;
         }
-        let Sighting { view, comb, .. } = *sighting;
+        let ShadingContext { view, comb, .. } = *sighting;
         let comb = comb.min(self.conductors.len() - 1);
         let Some(half) = (light + view).try_normalize() else { return Channels::ZERO };
         let first = reflectance(&self.conductors[comb], half.dot(view));
         match &self.shape {
-            Shape::Once(distribution) => first * (distribution.density(light, view) / view.z),
-            Shape::All(compensated) => {
+            FacetDistribution::Once(distribution) => first * (distribution.density(light, view) / view.z),
+            FacetDistribution::All(compensated) => {
                 let [once, further] = compensated.parts(light, view);
                 first * (once / view.z) + self.further[comb] * (further / view.z)
             }
         }
     }
 
-    fn density(&self, sighting: &Sighting, light: DVec3) -> f64 {
+    fn density(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
         match sighting.is_behind(light) {
             true => 0.0,
             false => self.shape.as_distribution().sample_density(sighting.view, light),
         }
     }
 
-    fn sample(&self, sighting: &Sighting, _: f64, point: [f64; 2]) -> Option<Onward> {
-        self.shape.as_distribution().sample(sighting.view, point).map(Onward::spread)
+    fn sample(&self, sighting: &ShadingContext, _: f64, point: [f64; 2]) -> Option<BsdfSample> {
+        self.shape.as_distribution().sample(sighting.view, point).map(BsdfSample::spread)
     }
 
-    fn strength(&self, _: &Sighting) -> f64 {
+    fn strength(&self, _: &ShadingContext) -> f64 {
         1.0
     }
 
     /// Fresnel's term of a facet that faces halfway.
-    fn shown(&self, sighting: &Sighting) -> Channels {
+    fn shown(&self, sighting: &ShadingContext) -> Channels {
         reflectance(&self.conductors[sighting.comb.min(self.conductors.len() - 1)], sighting.view.z)
     }
 }

@@ -4,9 +4,9 @@
 //! it is drawn, it is drawn for the lane of the [`Sighting`], and a renderer keeps that lane alone.
 
 use super::lobe::{Flags, Lobe};
-use super::sighting::{Onward, Sighting};
+use super::sighting::{BsdfSample, ShadingContext};
 use crate::color::{Channels, LANES};
-use crate::illumination::distribution::Facets;
+use crate::illumination::distribution::SlopeDistribution;
 use crate::illumination::fresnel::Dielectric;
 use glam::{DVec2, DVec3};
 
@@ -17,12 +17,12 @@ const MOST_CHANCE: f64 = 4.0;
 
 /// A smooth interface.
 #[derive(Clone, Debug)]
-pub(super) struct Smooth;
+pub(super) struct SmoothDielectric;
 
 /// A rough interface, of facets that each reflect and refract.
 #[derive(Clone, Debug)]
-pub(super) struct Rough {
-    pub(super) facets: Facets,
+pub(super) struct RoughDielectric {
+    pub(super) facets: SlopeDistribution,
     pub(super) roughness: DVec2,
 }
 
@@ -37,12 +37,12 @@ fn chance_of(reflected: f64, through: f64) -> f64 {
 }
 
 /// The interface for one lane.
-pub(super) fn interface(sighting: &Sighting, lane: usize) -> Option<Dielectric> {
+pub(super) fn interface(sighting: &ShadingContext, lane: usize) -> Option<Dielectric> {
     Dielectric::new(sighting.side.before.0[lane], sighting.side.behind.0[lane]).ok()
 }
 
 /// A value for each lane, found once where all have the same indices.
-fn by_lane(sighting: &Sighting, value: impl Fn(usize) -> f64) -> Channels {
+fn by_lane(sighting: &ShadingContext, value: impl Fn(usize) -> f64) -> Channels {
     let [before, behind] = [sighting.side.before.0, sighting.side.behind.0];
     match before == [before[0]; LANES] && behind == [behind[0]; LANES] {
         true => Channels::splat(value(0)),
@@ -51,78 +51,78 @@ fn by_lane(sighting: &Sighting, value: impl Fn(usize) -> f64) -> Channels {
 }
 
 /// What the lanes reflect at a facet.
-pub(super) fn reflected(sighting: &Sighting, cosine: f64) -> Channels {
+pub(super) fn reflected(sighting: &ShadingContext, cosine: f64) -> Channels {
     by_lane(sighting, |lane| interface(sighting, lane).map_or(0.0, |s| s.reflectance(cosine).mean()))
 }
 
 /// By how much radiance falls as it leaves what is behind: it grows by the square of the index on its way in.
-fn thinned(sighting: &Sighting) -> Channels {
+fn thinned(sighting: &ShadingContext) -> Channels {
     let side = &sighting.side;
     by_lane(sighting, |lane| (side.before.0[lane] / side.behind.0[lane]).powi(2))
 }
 
-impl Lobe for Smooth {
+impl Lobe for SmoothDielectric {
     fn flags(&self) -> Flags {
         Flags::DELTA | Flags::CLEAR
     }
 
-    fn value(&self, _: &Sighting, _: DVec3) -> Channels {
+    fn value(&self, _: &ShadingContext, _: DVec3) -> Channels {
         Channels::ZERO
     }
 
-    fn density(&self, _: &Sighting, _: DVec3) -> f64 {
+    fn density(&self, _: &ShadingContext, _: DVec3) -> f64 {
         0.0
     }
 
     /// One of the two, by its part.
-    fn sample(&self, sighting: &Sighting, choice: f64, _: [f64; 2]) -> Option<Onward> {
+    fn sample(&self, sighting: &ShadingContext, choice: f64, _: [f64; 2]) -> Option<BsdfSample> {
         let [reflection, refraction] = self.mirrored(sighting);
         let (Some(reflection), Some(refraction)) = (reflection, refraction) else { return reflection.or(refraction) };
         let least = reflection.weight.0.into_iter().fold(1.0, f64::min);
         let chance = chance_of(reflection.weight.max(), 1.0 - least);
         Some(if choice < chance {
-            Onward { weight: reflection.weight * chance.recip(), ..reflection }
+            BsdfSample { weight: reflection.weight * chance.recip(), ..reflection }
         } else {
-            Onward { weight: refraction.weight * (1.0 - chance).recip(), ..refraction }
+            BsdfSample { weight: refraction.weight * (1.0 - chance).recip(), ..refraction }
         })
     }
 
-    fn strength(&self, _: &Sighting) -> f64 {
+    fn strength(&self, _: &ShadingContext) -> f64 {
         1.0
     }
 
     /// What is reflected and what comes through.
-    fn mirrored(&self, sighting: &Sighting) -> [Option<Onward>; 2] {
+    fn mirrored(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
         let view = sighting.view;
         let fraction = reflected(sighting, view.z);
-        let reflection = Onward::single(DVec3::new(-view.x, -view.y, view.z), fraction);
+        let reflection = BsdfSample::single(DVec3::new(-view.x, -view.y, view.z), fraction);
         let through = by_lane(sighting, |lane| {
             interface(sighting, lane).map_or(0.0, |surface| surface.transmittance(view.z).mean())
         });
         let refracted = interface(sighting, sighting.lane).and_then(|surface| surface.refracted(view, DVec3::Z));
         let refraction =
-            refracted.filter(|light| light.z < 0.0).map(|light| Onward::single(light, through * thinned(sighting)));
+            refracted.filter(|light| light.z < 0.0).map(|light| BsdfSample::single(light, through * thinned(sighting)));
         [Some(reflection).filter(|onward| onward.weight.max() > 0.0), refraction.filter(|o| o.weight.max() > 0.0)]
     }
 
-    fn shown(&self, sighting: &Sighting) -> Channels {
+    fn shown(&self, sighting: &ShadingContext) -> Channels {
         reflected(sighting, sighting.view.z)
     }
 
-    fn cleared(&self, sighting: &Sighting) -> Channels {
+    fn cleared(&self, sighting: &ShadingContext) -> Channels {
         Channels::ONE - reflected(sighting, sighting.view.z)
     }
 }
 
-impl Rough {
+impl RoughDielectric {
     /// The chance that a facet is taken to reflect.
-    fn chance(&self, sighting: &Sighting, cosine: f64) -> f64 {
+    fn chance(&self, sighting: &ShadingContext, cosine: f64) -> f64 {
         let fraction = interface(sighting, sighting.lane).map_or(1.0, |surface| surface.reflectance(cosine).mean());
         chance_of(fraction, 1.0 - fraction)
     }
 
     /// The facet that would send light to the viewer, through or not, on the side of the viewer.
-    fn facet(&self, sighting: &Sighting, light: DVec3, lane: usize) -> Option<DVec3> {
+    fn facet(&self, sighting: &ShadingContext, light: DVec3, lane: usize) -> Option<DVec3> {
         let view = sighting.view;
         let facet = if light.z > 0.0 {
             light + view
@@ -138,7 +138,7 @@ impl Rough {
     }
 
     /// How much of the directions around a facet goes to one solid angle of light.
-    fn jacobian(&self, sighting: &Sighting, light: DVec3, facet: DVec3, lane: usize) -> f64 {
+    fn jacobian(&self, sighting: &ShadingContext, light: DVec3, facet: DVec3, lane: usize) -> f64 {
         let (to_view, to_light) = (facet.dot(sighting.view), facet.dot(light));
         if light.z > 0.0 {
             return 0.25 / to_light;
@@ -149,13 +149,13 @@ impl Rough {
     }
 }
 
-impl Lobe for Rough {
+impl Lobe for RoughDielectric {
     fn flags(&self) -> Flags {
         // Of facets that all are seen, a quarter of the density of their normals.
         Flags::of_density(0.25 * self.facets.area(DVec3::Z, self.roughness))
     }
 
-    fn density(&self, sighting: &Sighting, light: DVec3) -> f64 {
+    fn density(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
         let view = sighting.view;
         if view.z <= 0.0 || light.z == 0.0 {
             return 0.0;
@@ -173,7 +173,7 @@ impl Lobe for Rough {
     ///
     /// # Source
     /// Walter et al. 2007, equations 20 and 21; heights of light and viewer correlated.
-    fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
+    fn value(&self, sighting: &ShadingContext, light: DVec3) -> Channels {
         let view = sighting.view;
         if view.z <= 0.0 || light.z == 0.0 {
             return Channels::ZERO;
@@ -207,7 +207,7 @@ impl Lobe for Rough {
     }
 
     /// Draws a facet as the viewer sees it, and reflects or refracts there.
-    fn sample(&self, sighting: &Sighting, choice: f64, point: [f64; 2]) -> Option<Onward> {
+    fn sample(&self, sighting: &ShadingContext, choice: f64, point: [f64; 2]) -> Option<BsdfSample> {
         let view = sighting.view;
         let facet = self.facets.visible(view, self.roughness, point)?;
         let cosine = facet.dot(view);
@@ -219,14 +219,14 @@ impl Lobe for Rough {
         } else {
             interface(sighting, sighting.lane)?.refracted(view, facet).filter(|light| light.z < 0.0)
         };
-        light.map(Onward::spread)
+        light.map(BsdfSample::spread)
     }
 
-    fn strength(&self, _: &Sighting) -> f64 {
+    fn strength(&self, _: &ShadingContext) -> f64 {
         1.0
     }
 
-    fn shown(&self, sighting: &Sighting) -> Channels {
+    fn shown(&self, sighting: &ShadingContext) -> Channels {
         reflected(sighting, sighting.view.z)
     }
 }

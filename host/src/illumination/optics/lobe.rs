@@ -1,6 +1,6 @@
 //! What every lobe of a surface tells: its value, its samples with their density, its flags.
 
-use super::sighting::{Onward, Sighting};
+use super::sighting::{BsdfSample, ShadingContext};
 use crate::color::Channels;
 use glam::DVec3;
 use std::ops::BitOr;
@@ -63,37 +63,37 @@ pub(super) trait Lobe {
     fn flags(&self) -> Flags;
 
     /// Radiance towards the viewer for a unit of flux density, 1/sr: D K / (N·V); 0 for what only knows single directions.
-    fn value(&self, sighting: &Sighting, light: DVec3) -> Channels;
+    fn value(&self, sighting: &ShadingContext, light: DVec3) -> Channels;
 
     /// The density of its samples, 1/sr.
-    fn density(&self, sighting: &Sighting, light: DVec3) -> f64;
+    fn density(&self, sighting: &ShadingContext, light: DVec3) -> f64;
 
     /// Draws a direction to light; its weight is right for single directions only, the others have a density.
     ///
     /// - `choice`: uniform in 0..1. `point`: uniform in the unit square.
-    fn sample(&self, sighting: &Sighting, choice: f64, point: [f64; 2]) -> Option<Onward>;
+    fn sample(&self, sighting: &ShadingContext, choice: f64, point: [f64; 2]) -> Option<BsdfSample>;
 
     /// About what it reflects to the viewer of all the light; more than 0 where it reflects anything.
-    fn strength(&self, sighting: &Sighting) -> f64;
+    fn strength(&self, sighting: &ShadingContext) -> f64;
 
     /// Its single directions.
-    fn mirrored(&self, _: &Sighting) -> [Option<Onward>; 2] {
+    fn mirrored(&self, _: &ShadingContext) -> [Option<BsdfSample>; 2] {
         [None, None]
     }
 
     /// The part of light from all around that it reflects alike to everywhere.
-    fn diffuse(&self, _: &Sighting) -> Channels {
+    fn diffuse(&self, _: &ShadingContext) -> Channels {
         Channels::ZERO
     }
 
     /// About the part of light from all around that it reflects to the viewer, where it is one that shows what is around;
     /// nothing of others.
-    fn shown(&self, _: &Sighting) -> Channels {
+    fn shown(&self, _: &ShadingContext) -> Channels {
         Channels::ZERO
     }
 
     /// The part of light that goes through a polished interface.
-    fn cleared(&self, _: &Sighting) -> Channels {
+    fn cleared(&self, _: &ShadingContext) -> Channels {
         Channels::ZERO
     }
 }

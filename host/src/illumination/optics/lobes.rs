@@ -1,18 +1,18 @@
 //! The lobes of all materials, a row each. A new lobe is a file and a row.
 
-use super::coat::{Coat, Ground};
-use super::diffuse::Diffuse;
-use super::facets::Metallic;
-use super::interface::{Rough, Smooth};
+use super::coat::{CoatReflection, CoatedDiffuse};
+use super::diffuse::DiffuseLobe;
+use super::facets::RoughConductor;
+use super::interface::{RoughDielectric, SmoothDielectric};
 use super::lobe::{Flags, Lobe};
-use super::mirror::Mirror;
-use super::polished::Polished;
+use super::mirror::MirrorLobe;
+use super::polished::SmoothConductor;
 use super::principled::PrincipledLobe;
-use super::shade::Quantity;
-use super::shaped::Shaped;
-use super::sighting::{Onward, Sighting};
-use super::straight::Straight;
-use super::varied::Varied;
+use super::shade::PreparedNumber;
+use super::shaped::DistributedLobe;
+use super::sighting::{BsdfSample, ShadingContext};
+use super::straight::StraightLobe;
+use super::varied::VaryingLobe;
 use crate::color::Channels;
 use crate::illumination::distribution::{Distribution, Phong};
 use glam::DVec3;
@@ -47,42 +47,42 @@ macro_rules! lobes {
             }
 
             #[inline]
-            fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
+            fn value(&self, sighting: &ShadingContext, light: DVec3) -> Channels {
                 match self { $(AnyLobe::$kind(lobe) => lobe.value(sighting, light),)* }
             }
 
             #[inline]
-            fn density(&self, sighting: &Sighting, light: DVec3) -> f64 {
+            fn density(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
                 match self { $(AnyLobe::$kind(lobe) => lobe.density(sighting, light),)* }
             }
 
             #[inline]
-            fn sample(&self, sighting: &Sighting, choice: f64, point: [f64; 2]) -> Option<Onward> {
+            fn sample(&self, sighting: &ShadingContext, choice: f64, point: [f64; 2]) -> Option<BsdfSample> {
                 match self { $(AnyLobe::$kind(lobe) => lobe.sample(sighting, choice, point),)* }
             }
 
             #[inline]
-            fn strength(&self, sighting: &Sighting) -> f64 {
+            fn strength(&self, sighting: &ShadingContext) -> f64 {
                 match self { $(AnyLobe::$kind(lobe) => lobe.strength(sighting),)* }
             }
 
             #[inline]
-            fn mirrored(&self, sighting: &Sighting) -> [Option<Onward>; 2] {
+            fn mirrored(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
                 match self { $(AnyLobe::$kind(lobe) => lobe.mirrored(sighting),)* }
             }
 
             #[inline]
-            fn diffuse(&self, sighting: &Sighting) -> Channels {
+            fn diffuse(&self, sighting: &ShadingContext) -> Channels {
                 match self { $(AnyLobe::$kind(lobe) => lobe.diffuse(sighting),)* }
             }
 
             #[inline]
-            fn shown(&self, sighting: &Sighting) -> Channels {
+            fn shown(&self, sighting: &ShadingContext) -> Channels {
                 match self { $(AnyLobe::$kind(lobe) => lobe.shown(sighting),)* }
             }
 
             #[inline]
-            fn cleared(&self, sighting: &Sighting) -> Channels {
+            fn cleared(&self, sighting: &ShadingContext) -> Channels {
                 match self { $(AnyLobe::$kind(lobe) => lobe.cleared(sighting),)* }
             }
         }
@@ -91,41 +91,41 @@ macro_rules! lobes {
 
 lobes! {
     /// Equal radiance everywhere.
-    Diffuse(Diffuse),
+    Diffuse(DiffuseLobe),
     /// Phong's highlight.
-    Phong(Shaped<Phong>),
+    Phong(DistributedLobe<Phong>),
     /// A mirror.
-    Mirror(Mirror),
+    Mirror(MirrorLobe),
     /// What goes straight through.
-    Straight(Straight),
+    Straight(StraightLobe),
     /// A fraction, distributed by a D.
-    Shaped(Shaped<Arc<dyn Distribution>>),
+    Shaped(DistributedLobe<Arc<dyn Distribution>>),
     /// A polished metal.
-    Polished(Polished),
+    Polished(SmoothConductor),
     /// A metal of facets.
-    Metallic(Metallic),
+    Metallic(RoughConductor),
     /// What a transparent coat reflects.
-    Coat(Arc<Coat>),
+    Coat(Arc<CoatReflection>),
     /// What a diffuse ground under a coat reflects.
-    Ground(Ground),
+    Ground(CoatedDiffuse),
     /// A smooth interface between transparent media.
-    Smooth(Smooth),
+    Smooth(SmoothDielectric),
     /// A rough one.
-    Rough(Rough),
+    Rough(RoughDielectric),
     /// A part of a principled material.
     Principled(PrincipledLobe),
     /// One whose roughness changes from place to place.
-    Varied(Box<Varied<AnyLobe>>),
+    Varied(Box<VaryingLobe<AnyLobe>>),
 }
 
 impl AnyLobe {
     /// A lobe for each of several values of a number, or the only one.
     ///
     /// - `nodes`: values, rising; one or more.
-    pub(super) fn varied(quantity: Quantity, mut nodes: Vec<(f64, AnyLobe)>) -> AnyLobe {
+    pub(super) fn varied(quantity: PreparedNumber, mut nodes: Vec<(f64, AnyLobe)>) -> AnyLobe {
         match nodes.len() {
             1 => nodes.remove(0).1,
-            _ => AnyLobe::Varied(Box::new(Varied::new(quantity, nodes))),
+            _ => AnyLobe::Varied(Box::new(VaryingLobe::new(quantity, nodes))),
         }
     }
 }

@@ -1,42 +1,42 @@
 //! A mirror that reflects a fraction of light.
 
 use super::lobe::{Flags, Lobe};
-use super::shade::Shade;
-use super::sighting::{Onward, Sighting};
+use super::shade::PreparedPaint;
+use super::sighting::{BsdfSample, ShadingContext};
 use crate::color::Channels;
 use glam::DVec3;
 
 /// Reflects a fraction of light in one direction.
 #[derive(Clone, Debug)]
-pub(super) struct Mirror(pub(super) Shade);
+pub(super) struct MirrorLobe(pub(super) PreparedPaint);
 
-impl Lobe for Mirror {
+impl Lobe for MirrorLobe {
     fn flags(&self) -> Flags {
         Flags::DELTA | Flags::BLACK.when(self.0.is_black())
     }
 
-    fn value(&self, _: &Sighting, _: DVec3) -> Channels {
+    fn value(&self, _: &ShadingContext, _: DVec3) -> Channels {
         Channels::ZERO
     }
 
-    fn density(&self, _: &Sighting, _: DVec3) -> f64 {
+    fn density(&self, _: &ShadingContext, _: DVec3) -> f64 {
         0.0
     }
 
-    fn sample(&self, sighting: &Sighting, _: f64, _: [f64; 2]) -> Option<Onward> {
+    fn sample(&self, sighting: &ShadingContext, _: f64, _: [f64; 2]) -> Option<BsdfSample> {
         self.mirrored(sighting)[0]
     }
 
     #[inline]
-    fn strength(&self, sighting: &Sighting) -> f64 {
+    fn strength(&self, sighting: &ShadingContext) -> f64 {
         self.0.of(sighting).max()
     }
 
-    fn mirrored(&self, sighting: &Sighting) -> [Option<Onward>; 2] {
-        [Some(Onward::single(sighting.mirrored(), self.0.of(sighting))), None]
+    fn mirrored(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
+        [Some(BsdfSample::single(sighting.mirrored(), self.0.of(sighting))), None]
     }
 
-    fn shown(&self, sighting: &Sighting) -> Channels {
+    fn shown(&self, sighting: &ShadingContext) -> Channels {
         self.0.of(sighting)
     }
 }

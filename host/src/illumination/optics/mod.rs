@@ -28,6 +28,6 @@ mod contract_tests;
 #[cfg(test)]
 mod tests;
 
-pub use bsdf::{Among, Interior, Interreflection, Mixture, Optics, Painting, Which};
-pub use library::Library;
-pub use sighting::{Onward, Side, Sighting};
+pub use bsdf::{LobeSelection, InteriorMedium, Interreflection, TextureMixture, Bsdf, TextureValues, LobeClass};
+pub use library::BsdfBuilder;
+pub use sighting::{BsdfSample, InterfaceIndices, ShadingContext};

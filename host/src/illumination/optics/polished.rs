@@ -1,7 +1,7 @@
 //! A polished metal.
 
 use super::lobe::{Flags, Lobe};
-use super::sighting::{Onward, Sighting};
+use super::sighting::{BsdfSample, ShadingContext};
 use crate::color::{Channels, LANES};
 use crate::illumination::fresnel::Conductor;
 use glam::DVec3;
@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// Reflects Fresnel's part of light in one direction.
 #[derive(Clone, Debug)]
-pub(super) struct Polished {
+pub(super) struct SmoothConductor {
     /// For each set of wavelengths, lane by lane.
     pub(super) conductors: Arc<Vec<[Conductor; LANES]>>,
 }
@@ -19,32 +19,32 @@ pub(super) fn reflectance(metal: &[Conductor; LANES], cosine: f64) -> Channels {
     Channels(metal.map(|conductor| conductor.reflectance(cosine).mean()))
 }
 
-impl Lobe for Polished {
+impl Lobe for SmoothConductor {
     fn flags(&self) -> Flags {
         Flags::DELTA
     }
 
-    fn value(&self, _: &Sighting, _: DVec3) -> Channels {
+    fn value(&self, _: &ShadingContext, _: DVec3) -> Channels {
         Channels::ZERO
     }
 
-    fn density(&self, _: &Sighting, _: DVec3) -> f64 {
+    fn density(&self, _: &ShadingContext, _: DVec3) -> f64 {
         0.0
     }
 
-    fn sample(&self, sighting: &Sighting, _: f64, _: [f64; 2]) -> Option<Onward> {
+    fn sample(&self, sighting: &ShadingContext, _: f64, _: [f64; 2]) -> Option<BsdfSample> {
         self.mirrored(sighting)[0]
     }
 
-    fn strength(&self, _: &Sighting) -> f64 {
+    fn strength(&self, _: &ShadingContext) -> f64 {
         1.0
     }
 
-    fn mirrored(&self, sighting: &Sighting) -> [Option<Onward>; 2] {
-        [Some(Onward::single(sighting.mirrored(), self.shown(sighting))), None]
+    fn mirrored(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
+        [Some(BsdfSample::single(sighting.mirrored(), self.shown(sighting))), None]
     }
 
-    fn shown(&self, sighting: &Sighting) -> Channels {
+    fn shown(&self, sighting: &ShadingContext) -> Channels {
         reflectance(&self.conductors[sighting.comb.min(self.conductors.len() - 1)], sighting.view.z)
     }
 }

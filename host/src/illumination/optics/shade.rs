@@ -1,21 +1,21 @@
 //! Paints and numbers made ready for rendering: paints are tabulated at the wavelengths that rays carry.
 
-use super::sighting::Sighting;
-use crate::color::{Channels, Curve, Wavelengths};
-use crate::illumination::texture::{Number, Paint, Pattern, Place};
+use super::sighting::ShadingContext;
+use crate::color::{Channels, SpectralTable, WavelengthSets};
+use crate::illumination::texture::{NumberTexture, Paint, Pattern, TextureFootprint};
 
 /// A fraction of light, ready.
 #[derive(Clone, Debug)]
-pub(super) enum Shade {
+pub(super) enum PreparedPaint {
     /// One curve, everywhere.
-    Plain(Curve),
+    Plain(SpectralTable),
     /// What the pattern of a number gives at the place that is looked at.
     Painted(usize),
 }
 
 /// A number, ready.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Quantity {
+pub(super) enum PreparedNumber {
     /// One, everywhere.
     Constant(f64),
     /// What the pattern of a number gives at the place that is looked at.
@@ -24,30 +24,30 @@ pub(super) enum Quantity {
 
 /// What changes from place to place: a fraction of light, or a number.
 #[derive(Clone, Debug)]
-pub(super) enum Changing {
-    Paint(Painted),
-    Number(Number),
+pub(super) enum PreparedTexture {
+    Paint(PreparedPattern),
+    Number(NumberTexture),
 }
 
 /// A pattern, ready.
 #[derive(Clone, Debug)]
-pub(super) struct Painted {
+pub(super) struct PreparedPattern {
     pattern: Pattern,
     parts: Vec<Part>,
 }
 
 #[derive(Clone, Debug)]
 enum Part {
-    Plain(Curve),
-    Painted(Painted),
+    Plain(SpectralTable),
+    Painted(PreparedPattern),
 }
 
-impl Painted {
+impl PreparedPattern {
     /// A pattern at some wavelengths.
-    pub(super) fn new(pattern: &Pattern, wavelengths: &Wavelengths) -> Painted {
+    pub(super) fn new(pattern: &Pattern, wavelengths: &WavelengthSets) -> PreparedPattern {
         let part = |paint: &Paint| match paint {
             Paint::Plain(color) => Part::Plain(wavelengths.reflectance(color)),
-            Paint::Pattern(pattern) => Part::Painted(Painted::new(pattern, wavelengths)),
+            Paint::Pattern(pattern) => Part::Painted(PreparedPattern::new(pattern, wavelengths)),
         };
         let parts = if pattern.is_image() {
             wavelengths.primaries().map(Part::Plain).into()
@@ -55,18 +55,18 @@ impl Painted {
             pattern.paints.iter().map(part).collect()
         };
         // The paints are in the parts.
-        Painted { pattern: Pattern { paints: Vec::new(), ..pattern.clone() }, parts }
+        PreparedPattern { pattern: Pattern { paints: Vec::new(), ..pattern.clone() }, parts }
     }
 
     /// The mean over a place.
-    pub(super) fn at(&self, place: &Place, comb: usize) -> Channels {
+    pub(super) fn at(&self, place: &TextureFootprint, comb: usize) -> Channels {
         let mut sum = Channels::ZERO;
         self.each(place, 1.0, &mut |curve, amount| sum += curve.of(comb) * amount);
         sum
     }
 
     /// Gives what it is mixed of in the mean over a place, and how much of each.
-    pub(super) fn each<'a>(&'a self, place: &Place, amount: f64, give: &mut dyn FnMut(&'a Curve, f64)) {
+    pub(super) fn each<'a>(&'a self, place: &TextureFootprint, amount: f64, give: &mut dyn FnMut(&'a SpectralTable, f64)) {
         let amounts = self.pattern.parts(place).map(|part| part * amount);
         for (part, amount) in self.parts.iter().zip(amounts).filter(|(_, amount)| *amount != 0.0) {
             match part {
@@ -77,39 +77,39 @@ impl Painted {
     }
 }
 
-impl Changing {
+impl PreparedTexture {
     /// The mean over a place; a number is in all lanes.
-    pub(super) fn at(&self, place: &Place, comb: usize) -> Channels {
+    pub(super) fn at(&self, place: &TextureFootprint, comb: usize) -> Channels {
         match self {
-            Changing::Paint(painted) => painted.at(place, comb),
-            Changing::Number(number) => Channels::splat(number.at(place)),
+            PreparedTexture::Paint(painted) => painted.at(place, comb),
+            PreparedTexture::Number(number) => Channels::splat(number.at(place)),
         }
     }
 }
 
-impl Quantity {
+impl PreparedNumber {
     /// The number at the place that is looked at.
     #[inline]
-    pub(super) fn of(self, sighting: &Sighting<'_>) -> f64 {
+    pub(super) fn of(self, sighting: &ShadingContext<'_>) -> f64 {
         match self {
-            Quantity::Constant(value) => value,
-            Quantity::Varying(number) => sighting.painted.get(number).map_or(0.0, |channels| channels.0[0]),
+            PreparedNumber::Constant(value) => value,
+            PreparedNumber::Varying(number) => sighting.painted.get(number).map_or(0.0, |channels| channels.0[0]),
         }
     }
 }
 
-impl Shade {
+impl PreparedPaint {
     /// Whether it is nothing, wherever.
     pub(super) fn is_black(&self) -> bool {
-        matches!(self, Shade::Plain(curve) if curve.max() <= 0.0)
+        matches!(self, PreparedPaint::Plain(curve) if curve.max() <= 0.0)
     }
 
     /// The fraction at the place and the wavelengths that are looked at.
     #[inline]
-    pub(super) fn of(&self, sighting: &Sighting<'_>) -> Channels {
+    pub(super) fn of(&self, sighting: &ShadingContext<'_>) -> Channels {
         match self {
-            Shade::Plain(curve) => curve.of(sighting.comb),
-            Shade::Painted(number) => sighting.painted.get(*number).copied().unwrap_or_default(),
+            PreparedPaint::Plain(curve) => curve.of(sighting.comb),
+            PreparedPaint::Painted(number) => sighting.painted.get(*number).copied().unwrap_or_default(),
         }
     }
 }

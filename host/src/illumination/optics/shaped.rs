@@ -1,8 +1,8 @@
 //! A fraction of light, distributed by a D of the family or by a table; Phong's highlight is one of them.
 
 use super::lobe::{Flags, Lobe};
-use super::shade::Shade;
-use super::sighting::{Onward, Sighting};
+use super::shade::PreparedPaint;
+use super::sighting::{BsdfSample, ShadingContext};
 use crate::color::Channels;
 use crate::illumination::distribution::{Distribution, Phong};
 use glam::DVec3;
@@ -10,39 +10,39 @@ use std::sync::Arc;
 
 /// Reflects a fraction of light as a distribution has it.
 #[derive(Clone, Debug)]
-pub(super) struct Shaped<D> {
-    pub(super) fraction: Shade,
+pub(super) struct DistributedLobe<D> {
+    pub(super) fraction: PreparedPaint,
     pub(super) form: D,
 }
 
 /// What a lobe holds a distribution by.
-pub(super) trait Form {
+pub(super) trait HasDistribution {
     /// The distribution.
     fn distribution(&self) -> &dyn Distribution;
 }
 
-impl Form for Phong {
+impl HasDistribution for Phong {
     #[inline]
     fn distribution(&self) -> &dyn Distribution {
         self
     }
 }
 
-impl Form for Arc<dyn Distribution> {
+impl HasDistribution for Arc<dyn Distribution> {
     #[inline]
     fn distribution(&self) -> &dyn Distribution {
         self.as_ref()
     }
 }
 
-impl<D: Form> Lobe for Shaped<D> {
+impl<D: HasDistribution> Lobe for DistributedLobe<D> {
     fn flags(&self) -> Flags {
         let density = self.form.distribution().sample_density(DVec3::Z, DVec3::Z);
         Flags::of_density(density) | Flags::BLACK.when(self.fraction.is_black())
     }
 
     #[inline]
-    fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
+    fn value(&self, sighting: &ShadingContext, light: DVec3) -> Channels {
         if sighting.is_behind(light) {
             return Channels::ZERO;
         }
@@ -51,16 +51,16 @@ impl<D: Form> Lobe for Shaped<D> {
     }
 
     #[inline]
-    fn density(&self, sighting: &Sighting, light: DVec3) -> f64 {
+    fn density(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
         if sighting.is_behind(light) { 0.0 } else { self.form.distribution().sample_density(sighting.view, light) }
     }
 
-    fn sample(&self, sighting: &Sighting, _: f64, point: [f64; 2]) -> Option<Onward> {
-        self.form.distribution().sample(sighting.view, point).map(Onward::spread)
+    fn sample(&self, sighting: &ShadingContext, _: f64, point: [f64; 2]) -> Option<BsdfSample> {
+        self.form.distribution().sample(sighting.view, point).map(BsdfSample::spread)
     }
 
     #[inline]
-    fn strength(&self, sighting: &Sighting) -> f64 {
+    fn strength(&self, sighting: &ShadingContext) -> f64 {
         self.fraction.of(sighting).max()
     }
 }

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 /// The refractive indices on both sides of an element.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Side {
+pub struct InterfaceIndices {
     /// On the side of the viewer, for each lane.
     pub before: Channels,
     /// Behind.
@@ -14,27 +14,27 @@ pub struct Side {
     pub inside: bool,
 }
 
-impl Side {
+impl InterfaceIndices {
     /// Air on both sides.
-    pub const AIR: Side = Side { before: Channels::ONE, behind: Channels::ONE, inside: false };
+    pub const AIR: InterfaceIndices = InterfaceIndices { before: Channels::ONE, behind: Channels::ONE, inside: false };
 }
 
 /// How an element is seen, and what is on its two sides.
 #[derive(Clone, Copy, Debug)]
-pub struct Sighting<'a> {
+pub struct ShadingContext<'a> {
     /// Towards the viewer.
     pub view: DVec3,
     /// The number of the set of wavelengths that are carried.
     pub comb: usize,
     /// The refractive index on the side of the viewer and behind.
-    pub side: Side,
+    pub side: InterfaceIndices,
     /// For which lane refracted directions are drawn.
     pub lane: usize,
     /// What the patterns give at the place, as [`Optics::paint`](super::Optics::paint) tells; nothing for a material that has none.
     pub painted: &'a [Channels],
 }
 
-impl Sighting<'_> {
+impl ShadingContext<'_> {
     /// The direction in which a mirror would see.
     pub(super) fn mirrored(&self) -> DVec3 {
         DVec3::new(-self.view.x, -self.view.y, self.view.z)
@@ -49,7 +49,7 @@ impl Sighting<'_> {
 
 /// Where a ray goes on, backwards to where its light comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Onward {
+pub struct BsdfSample {
     /// Towards the light.
     pub light: DVec3,
     /// What of the radiance from there comes to the viewer, over the density with which the direction was drawn.
@@ -62,14 +62,14 @@ pub struct Onward {
     pub is_broad: bool,
 }
 
-impl Onward {
+impl BsdfSample {
     /// The one direction of a mirror or a smooth interface.
-    pub(super) fn single(light: DVec3, weight: Channels) -> Onward {
-        Onward { light, weight, density: None, is_straight: false, is_broad: false }
+    pub(super) fn single(light: DVec3, weight: Channels) -> BsdfSample {
+        BsdfSample { light, weight, density: None, is_straight: false, is_broad: false }
     }
 
     /// A direction of many: its weight is found when all lobes that could have drawn it were asked.
-    pub(super) fn spread(light: DVec3) -> Onward {
-        Onward { light, weight: Channels::ZERO, density: Some(0.0), is_straight: false, is_broad: true }
+    pub(super) fn spread(light: DVec3) -> BsdfSample {
+        BsdfSample { light, weight: Channels::ZERO, density: Some(0.0), is_straight: false, is_broad: true }
     }
 }

@@ -2,29 +2,29 @@
 
 use super::*;
 use crate::color::Channels;
-use crate::color::{Color, Wavelengths, shipped};
-use crate::illumination::material::{Body, Classic, Coated, Finish, Form, Index, Material, Metal, Shaped, Transparent};
-use crate::illumination::texture::{Band, Laying, Motif, Number, Paint, Pattern, Varying};
+use crate::color::{Color, WavelengthSets, shipped};
+use crate::illumination::material::{MaterialKind, Classic, Coated, Finish, DistributionForm, RefractiveIndex, Material, Metal, Distributed, Transparent};
+use crate::illumination::texture::{Band, TextureMapping, Motif, NumberTexture, Paint, Pattern, Varying};
 use crate::numeric::cubature::unit_square;
-use crate::numeric::sampling::{Stream, sphere};
+use crate::numeric::sampling::{RandomStream, sphere};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-fn ready(material: &Material, wavelengths: &Wavelengths) -> Optics {
-    Library::new(wavelengths, false)
+fn ready(material: &Material, wavelengths: &WavelengthSets) -> Bsdf {
+    BsdfBuilder::new(wavelengths, false)
         .optics(material, Interreflection::Followed)
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn sighting(degrees: f64, before: f64, behind: f64) -> Sighting<'static> {
+fn sighting(degrees: f64, before: f64, behind: f64) -> ShadingContext<'static> {
     let (sin, cos) = degrees.to_radians().sin_cos();
-    let side = Side { before: Channels::splat(before), behind: Channels::splat(behind), inside: before > behind };
-    Sighting { view: DVec3::new(sin, 0.0, cos), comb: 0, side, lane: 0, painted: &[] }
+    let side = InterfaceIndices { before: Channels::splat(before), behind: Channels::splat(behind), inside: before > behind };
+    ShadingContext { view: DVec3::new(sin, 0.0, cos), comb: 0, side, lane: 0, painted: &[] }
 }
 
 fn copper(finish: Finish) -> Material {
-    let shipped::Metal { n, k } = shipped::metal("copper").expect("a metal");
-    Body::Metal(Metal { n, k, finish }).into()
+    let shipped::ComplexIndex { n, k } = shipped::metal("copper").expect("a metal");
+    MaterialKind::Metal(Metal { n, k, finish }).into()
 }
 
 fn rough(name: &str, roughness: f64) -> Finish {
@@ -32,11 +32,11 @@ fn rough(name: &str, roughness: f64) -> Finish {
 }
 
 /// Light that comes to the viewer of a radiance of 1 from everywhere, by samples that are spread evenly.
-fn furnace(optics: &Optics, sighting: &Sighting) -> f64 {
+fn furnace(optics: &Bsdf, sighting: &ShadingContext) -> f64 {
     let mirrored: f64 = optics.mirrored(sighting).map(|onward| onward.weight.0[0]).sum();
     let spread = |choice: f64| {
         let drawn =
-            |point| optics.onward(sighting, choice, point, Among::Spread).map_or(0.0, |onward| onward.weight.0[0]);
+            |point| optics.onward(sighting, choice, point, LobeSelection::Spread).map_or(0.0, |onward| onward.weight.0[0]);
         unit_square(drawn, 1e-4, 20_000).value
     };
     // Lobes are chosen by the first number; it is averaged over evenly.
@@ -45,14 +45,14 @@ fn furnace(optics: &Optics, sighting: &Sighting) -> f64 {
 }
 
 /// The integral of value times cosine over all directions, by cubature.
-fn integral(optics: &Optics, sighting: &Sighting) -> f64 {
+fn integral(optics: &Bsdf, sighting: &ShadingContext) -> f64 {
     let half = |below: f64| {
         let term = |[x, y]: [f64; 2]| {
             let cosine = x.sqrt();
             let (sin, cos) = (TAU * y).sin_cos();
             let sine = (1.0 - x).max(0.0).sqrt();
             let light = DVec3::new(sine * cos, sine * sin, cosine * below);
-            PI * [Which::Broad, Which::Narrow, Which::Ended]
+            PI * [LobeClass::Broad, LobeClass::Narrow, LobeClass::Ended]
                 .map(|which| optics.value(which, sighting, light).0[0])
                 .iter()
                 .sum::<f64>()
@@ -64,10 +64,10 @@ fn integral(optics: &Optics, sighting: &Sighting) -> f64 {
 
 #[test]
 fn a_white_coated_ground_returns_what_it_gets() {
-    let wavelengths = Wavelengths::bands();
+    let wavelengths = WavelengthSets::bands();
     for (index, roughness) in [(1.5, 0.0), (1.33, 0.0), (2.4, 0.0), (1.0, 0.0), (1.5, 0.1), (1.5, 0.7)] {
         let material =
-            Body::Coated(Coated { diffuse: Paint::grey(1.0), index, roughness: f64::into(roughness) }).into();
+            MaterialKind::Coated(Coated { diffuse: Paint::grey(1.0), index, roughness: f64::into(roughness) }).into();
         let optics = ready(&material, &wavelengths);
         for degrees in [0.0, 40.0, 75.0, 88.0] {
             let sighting = sighting(degrees, 1.0, 1.0);
@@ -80,23 +80,23 @@ fn a_white_coated_ground_returns_what_it_gets() {
 
 #[test]
 fn samples_and_values_tell_the_same_of_every_material() {
-    let wavelengths = Wavelengths::bands();
+    let wavelengths = WavelengthSets::bands();
     let classic =
         Classic { diffuse: Paint::grey(0.4), specular: Paint::grey(0.3), exponent: 20.0.into(), ..Classic::default() };
     let glass = |roughness| {
-        Material::from(Body::Transparent(Transparent {
+        Material::from(MaterialKind::Transparent(Transparent {
             roughness: f64::into(roughness),
-            ..Transparent::clear(Index::Constant(1.5))
+            ..Transparent::clear(RefractiveIndex::Constant(1.5))
         }))
     };
-    let shaped = Form::Member { name: "Blinn".into(), roughness: 0.4.into() };
+    let shaped = DistributionForm::Member { name: "Blinn".into(), roughness: 0.4.into() };
     let materials = [
         (Material::from(classic), 1.0),
         (copper(rough("Beckmann", 0.3)), 1.0),
         (copper(rough("GGX, all", 0.6)), 1.0),
         (copper(rough("improved (7)", 0.4)), 1.0),
-        (Body::Shaped(Shaped { reflectance: Paint::grey(0.8), form: shaped }).into(), 1.0),
-        (Body::Coated(Coated { diffuse: Paint::grey(0.6), index: 1.5, roughness: 0.2.into() }).into(), 1.0),
+        (MaterialKind::Shaped(Distributed { reflectance: Paint::grey(0.8), form: shaped }).into(), 1.0),
+        (MaterialKind::Coated(Coated { diffuse: Paint::grey(0.6), index: 1.5, roughness: 0.2.into() }).into(), 1.0),
         (glass(0.3), 1.5),
         (glass(0.15), 1.5),
     ];
@@ -114,28 +114,28 @@ fn samples_and_values_tell_the_same_of_every_material() {
 }
 
 /// A number that a pattern tells, from one to another.
-fn varying(from: f64, to: f64) -> Number {
+fn varying(from: f64, to: f64) -> NumberTexture {
     let paints = vec![Paint::grey(0.0), Paint::grey(1.0)];
     let pattern =
-        Pattern { motif: Motif::Noise { octaves: 3 }, laying: Laying { solid: true, ..Laying::default() }, paints };
-    Number::Varying(Box::new(Varying { pattern, band: Band::Mean, from, to }))
+        Pattern { motif: Motif::Noise { octaves: 3 }, laying: TextureMapping { solid: true, ..TextureMapping::default() }, paints };
+    NumberTexture::Varying(Box::new(Varying { pattern, band: Band::Mean, from, to }))
 }
 
 #[test]
 fn a_lobe_that_varies_is_that_of_the_value_at_the_place() {
-    let wavelengths = Wavelengths::bands();
+    let wavelengths = WavelengthSets::bands();
     let metal = |roughness| copper(Finish::Rough { name: "GGX".into(), roughness });
-    let coated = |roughness| Body::Coated(Coated { diffuse: Paint::grey(0.6), index: 1.5, roughness }).into();
+    let coated = |roughness| MaterialKind::Coated(Coated { diffuse: Paint::grey(0.6), index: 1.5, roughness }).into();
     let glass =
-        |roughness| Body::Transparent(Transparent { roughness, ..Transparent::clear(Index::Constant(1.5)) }).into();
-    let kinds: [&dyn Fn(Number) -> Material; 3] = [&metal, &coated, &glass];
+        |roughness| MaterialKind::Transparent(Transparent { roughness, ..Transparent::clear(RefractiveIndex::Constant(1.5)) }).into();
+    let kinds: [&dyn Fn(NumberTexture) -> Material; 3] = [&metal, &coated, &glass];
     for made in kinds {
         let varied = ready(&made(varying(0.1, 0.5)), &wavelengths);
         assert!(varied.is_textured());
         for roughness in [0.1, 0.17, 0.3, 0.5] {
             let painted = [Channels::splat(roughness); 2];
             let of = sighting(40.0, 1.0, 1.5);
-            let at = Sighting { painted: &painted, ..of };
+            let at = ShadingContext { painted: &painted, ..of };
             let same = ready(&made(roughness.into()), &wavelengths);
             let (drawn, sum) = (furnace(&varied, &at), integral(&varied, &at));
             assert!((drawn - sum).abs() < 0.01, "{roughness}: {drawn} {sum}");
@@ -153,21 +153,21 @@ fn a_lobe_that_varies_is_that_of_the_value_at_the_place() {
     let light = DVec3::new(-0.4, 0.1, 0.8).normalize();
     for beyond in [0.5, 0.9] {
         let painted = [Channels::splat(beyond)];
-        let [a, b] = [varied.response(&Sighting { painted: &painted, ..of }, light), same.response(&of, light)];
+        let [a, b] = [varied.response(&ShadingContext { painted: &painted, ..of }, light), same.response(&of, light)];
         assert_eq!(a, b);
     }
 }
 
 #[test]
 fn a_metal_may_be_brushed_as_patterns_tell() {
-    let wavelengths = Wavelengths::bands();
+    let wavelengths = WavelengthSets::bands();
     let brushed = |roughness| copper(Finish::Brushed { roughness, along: DVec3::X });
     let varied = ready(&brushed([varying(0.05, 0.2), varying(0.2, 0.6)]), &wavelengths);
     let same = ready(&brushed([0.1.into(), 0.4.into()]), &wavelengths);
     let of = sighting(30.0, 1.0, 1.0);
     // The pattern of the roughness across is the first.
     let painted = [Channels::splat(0.4), Channels::splat(0.1)];
-    let at = Sighting { painted: &painted, ..of };
+    let at = ShadingContext { painted: &painted, ..of };
     for light in [DVec3::new(-0.5, 0.0, 0.86), DVec3::new(-0.45, 0.3, 0.8)] {
         let [a, b] = [varied.response(&at, light.normalize()), same.response(&of, light.normalize())];
         assert!((a.0[0] / b.0[0] - 1.0).abs() < 0.04, "{a:?} {b:?}");
@@ -176,34 +176,34 @@ fn a_metal_may_be_brushed_as_patterns_tell() {
 
 #[test]
 fn densities_are_those_with_which_directions_are_drawn() {
-    let wavelengths = Wavelengths::bands();
-    let rough_glass = Transparent { roughness: 0.4.into(), ..Transparent::clear(Index::Constant(1.5)) };
+    let wavelengths = WavelengthSets::bands();
+    let rough_glass = Transparent { roughness: 0.4.into(), ..Transparent::clear(RefractiveIndex::Constant(1.5)) };
     let materials = [
         copper(rough("GGX", 0.4)),
-        Body::Coated(Coated { diffuse: Paint::grey(0.6), index: 1.5, roughness: 0.3.into() }).into(),
-        Body::Transparent(rough_glass).into(),
+        MaterialKind::Coated(Coated { diffuse: Paint::grey(0.6), index: 1.5, roughness: 0.3.into() }).into(),
+        MaterialKind::Transparent(rough_glass).into(),
     ];
     for material in materials {
         let optics = ready(&material, &wavelengths);
         for (before, behind) in [(1.0, 1.5), (1.5, 1.0)] {
             let sighting = sighting(35.0, before, behind);
             // Share of samples in a cap, counted and integrated.
-            let mut stream = Stream::new(5, 1);
-            let axis = DVec3::new(-0.4, 0.3, if matches!(material.body, Body::Transparent(_)) { -0.6 } else { 0.6 });
+            let mut stream = RandomStream::new(5, 1);
+            let axis = DVec3::new(-0.4, 0.3, if matches!(material.body, MaterialKind::Transparent(_)) { -0.6 } else { 0.6 });
             let (axis, cosine) = (axis.normalize(), 0.8);
             let count = 40_000;
             let mut inside = 0.0;
             for _ in 0..count {
-                let onward = optics.onward(&sighting, stream.uniform(), stream.point(), Among::All);
+                let onward = optics.onward(&sighting, stream.uniform(), stream.point(), LobeSelection::All);
                 inside += f64::from(u8::from(onward.is_some_and(|onward| onward.light.dot(axis) > cosine)));
             }
-            let frame = crate::illumination::distribution::Frame::about(axis);
+            let frame = crate::illumination::distribution::ShadingFrame::about(axis);
             let term = |[x, y]: [f64; 2]| {
                 let z = 1.0 - x * (1.0 - cosine);
                 let (sin, cos) = (TAU * y).sin_cos();
                 let sine = (1.0 - z * z).sqrt();
                 let light = frame.world(DVec3::new(sine * cos, sine * sin, z));
-                Which::CONTINUED.iter().map(|which| optics.density(*which, &sighting, light, Among::All)).sum::<f64>()
+                LobeClass::CONTINUED.iter().map(|which| optics.density(*which, &sighting, light, LobeSelection::All)).sum::<f64>()
             };
             let expected = TAU * (1.0 - cosine) * unit_square(term, 1e-5, 100_000).value;
             let found = inside / f64::from(count);
@@ -215,18 +215,18 @@ fn densities_are_those_with_which_directions_are_drawn() {
 
 #[test]
 fn smooth_glass_splits_light_without_loss_and_bends_it_by_snells_law() {
-    let wavelengths = Wavelengths::bands();
-    let glass = Transparent::clear(Index::Constant(1.5));
-    let optics = ready(&Body::Transparent(glass).into(), &wavelengths);
+    let wavelengths = WavelengthSets::bands();
+    let glass = Transparent::clear(RefractiveIndex::Constant(1.5));
+    let optics = ready(&MaterialKind::Transparent(glass).into(), &wavelengths);
     for degrees in [0.0, 30.0, 80.0, 89.9] {
         let sighting = sighting(degrees, 1.0, 1.5);
-        let both: Vec<Onward> = optics.mirrored(&sighting).collect();
+        let both: Vec<BsdfSample> = optics.mirrored(&sighting).collect();
         let [reflected, refracted] = both.try_into().expect("two directions");
         let all = reflected.weight.0[0] + refracted.weight.0[0] * 2.25;
         assert!((all - 1.0).abs() < 1e-12, "{degrees}: {all}");
         assert!((refracted.light.x + degrees.to_radians().sin() / 1.5).abs() < 1e-12);
     }
-    let total: Vec<Onward> = optics.mirrored(&sighting(60.0, 1.5, 1.0)).collect();
+    let total: Vec<BsdfSample> = optics.mirrored(&sighting(60.0, 1.5, 1.0)).collect();
     assert_eq!((total.len(), total[0].weight.0[0]), (1, 1.0), "total reflection");
 }
 
@@ -234,12 +234,12 @@ fn smooth_glass_splits_light_without_loss_and_bends_it_by_snells_law() {
 fn a_rough_metal_with_all_reflections_loses_only_what_it_absorbs() {
     // A metal that reflects everything: n = 0, k > 0.
     let flat = |value: f64| {
-        crate::color::Spectrum::regular(300.0, 600.0, vec![value; 2], crate::color::Beyond::Held).expect("a spectrum")
+        crate::color::Spectrum::regular(300.0, 600.0, vec![value; 2], crate::color::Extrapolation::Held).expect("a spectrum")
     };
-    let wavelengths = Wavelengths::bands();
+    let wavelengths = WavelengthSets::bands();
     for roughness in [0.1, 0.5, 1.0] {
         let metal = Metal { n: flat(0.0), k: flat(3.0), finish: rough("GGX, all", roughness) };
-        let optics = ready(&Body::Metal(metal).into(), &wavelengths);
+        let optics = ready(&MaterialKind::Metal(metal).into(), &wavelengths);
         for degrees in [0.0, 45.0, 80.0] {
             let all = integral(&optics, &sighting(degrees, 1.0, 1.0));
             assert!((all - 1.0).abs() < 3e-4, "{roughness} at {degrees}: {all}");
@@ -249,13 +249,13 @@ fn a_rough_metal_with_all_reflections_loses_only_what_it_absorbs() {
 
 #[test]
 fn copper_under_white_light_has_the_color_of_its_reflectance() {
-    let wavelengths = Wavelengths::spectral();
+    let wavelengths = WavelengthSets::spectral();
     let optics = ready(&copper(Finish::Polished), &wavelengths);
     let white = wavelengths.light(&Color::grey(1.0));
     let combs = wavelengths.combs();
     let seen: DVec3 = (0..combs)
         .map(|comb| {
-            let sighting = Sighting { comb, ..sighting(0.0, 1.0, 1.0) };
+            let sighting = ShadingContext { comb, ..sighting(0.0, 1.0, 1.0) };
             let mirrored = optics.mirrored(&sighting).next().expect("a mirror");
             wavelengths.seen(comb, mirrored.weight * white.of(comb))
         })
@@ -272,12 +272,12 @@ fn copper_under_white_light_has_the_color_of_its_reflectance() {
 
 #[test]
 fn straight_light_goes_on_and_impossible_materials_are_errors() {
-    let wavelengths = Wavelengths::bands();
+    let wavelengths = WavelengthSets::bands();
     let curtain = Classic { transparency: Paint::grey(0.25), ..Classic::default() };
     let optics = ready(&curtain.into(), &wavelengths);
-    let straight: Vec<Onward> = optics.mirrored(&sighting(30.0, 1.0, 1.0)).collect();
+    let straight: Vec<BsdfSample> = optics.mirrored(&sighting(30.0, 1.0, 1.0)).collect();
     assert!(straight[0].is_straight && straight[0].weight.0[0] == 0.25 && optics.passing.is_some());
-    let mut library = Library::new(&wavelengths, false);
+    let mut library = BsdfBuilder::new(&wavelengths, false);
     let mut refused =
         |material: Material| library.optics(&material, Interreflection::Followed).unwrap_err().to_string();
     let loud = Classic { diffuse: Paint::grey(1.5), ..Classic::default() };
@@ -285,16 +285,16 @@ fn straight_light_goes_on_and_impossible_materials_are_errors() {
     assert!(refused(copper(rough("Beckman", 0.3))).contains("did you mean Beckmann?"));
     assert!(refused(copper(rough("Beckmann", -0.3))).contains("roughness"));
     let hollow = Coated { diffuse: Paint::grey(0.5), index: 0.0, roughness: 0.0.into() };
-    assert!(refused(Body::Coated(hollow).into()).contains("index"));
+    assert!(refused(MaterialKind::Coated(hollow).into()).contains("index"));
 }
 
 #[test]
 fn nothing_is_infinite_at_the_extremes() {
-    let wavelengths = Wavelengths::bands();
+    let wavelengths = WavelengthSets::bands();
     let glass = |index, roughness| {
-        Material::from(Body::Transparent(Transparent {
+        Material::from(MaterialKind::Transparent(Transparent {
             roughness: f64::into(roughness),
-            ..Transparent::clear(Index::Constant(index))
+            ..Transparent::clear(RefractiveIndex::Constant(index))
         }))
     };
     let mut materials =
@@ -304,7 +304,7 @@ fn nothing_is_infinite_at_the_extremes() {
             ["Beckmann", "GGX, all", "Cook-Torrance", "improved (7)"].map(|name| copper(rough(name, roughness))),
         );
     }
-    let mut stream = Stream::new(3, 3);
+    let mut stream = RandomStream::new(3, 3);
     for material in materials {
         let optics = ready(&material, &wavelengths);
         let index = optics.interior.as_ref().map_or(1.0, |interior| interior.index.of(0).0[0]);
@@ -316,11 +316,11 @@ fn nothing_is_infinite_at_the_extremes() {
                     let value = optics.response(&sighting, light);
                     assert!(value.is_finite() && value.0.iter().all(|v| *v >= 0.0));
                     assert!(
-                        Which::CONTINUED
+                        LobeClass::CONTINUED
                             .iter()
-                            .all(|which| optics.density(*which, &sighting, light, Among::All) >= 0.0)
+                            .all(|which| optics.density(*which, &sighting, light, LobeSelection::All) >= 0.0)
                     );
-                    let onward = optics.onward(&sighting, stream.uniform(), stream.point(), Among::All);
+                    let onward = optics.onward(&sighting, stream.uniform(), stream.point(), LobeSelection::All);
                     assert!(onward.is_none_or(|o| o.weight.is_finite() && (o.light.length() - 1.0).abs() < 1e-6));
                 }
             }
@@ -330,13 +330,13 @@ fn nothing_is_infinite_at_the_extremes() {
 
 #[test]
 fn absorption_over_the_wavelength_has_its_colour_however_strong_it_is() {
-    let wavelengths = Wavelengths::spectral();
+    let wavelengths = WavelengthSets::spectral();
     let white = wavelengths.light(&Color::grey(1.0));
     let combs = wavelengths.combs();
     for scale in [0.1, 1.0, 100.0] {
         let bands = glam::DVec3::new(0.2, 9.0, 7.0) * scale;
-        let glass = Transparent { absorption: Color::Bands(bands), ..Transparent::clear(Index::Constant(1.5)) };
-        let absorption = ready(&Body::Transparent(glass).into(), &wavelengths).interior.expect("glass").absorption;
+        let glass = Transparent { absorption: Color::Bands(bands), ..Transparent::clear(RefractiveIndex::Constant(1.5)) };
+        let absorption = ready(&MaterialKind::Transparent(glass).into(), &wavelengths).interior.expect("glass").absorption;
         let seen: DVec3 =
             (0..combs).map(|comb| wavelengths.seen(comb, absorption.of(comb) * white.of(comb))).sum::<DVec3>()
                 / combs as f64;

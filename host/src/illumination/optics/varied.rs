@@ -1,10 +1,10 @@
 //! A lobe whose roughness, or another number, changes from place to place.
 
 use super::lobe::{Flags, Lobe};
-use super::shade::Quantity;
-use super::sighting::{Onward, Sighting};
+use super::shade::PreparedNumber;
+use super::sighting::{BsdfSample, ShadingContext};
 use crate::color::Channels;
-use crate::illumination::texture::Number;
+use crate::illumination::texture::NumberTexture;
 use glam::DVec3;
 
 /// The greatest ratio of one node to the one before it, as far as [`MOST_NODES`] allow.
@@ -17,8 +17,8 @@ const MOST_NODES: usize = 24;
 /// A mixture of two lobes keeps their energy, is reciprocal if they are, and is drawn as exactly as they are. Of lobes
 /// whose roughness is in a ratio of 1.2 it differs from that of the roughness between them by at most 2 % of its peak.
 #[derive(Clone, Debug)]
-pub(super) struct Varied<L> {
-    quantity: Quantity,
+pub(super) struct VaryingLobe<L> {
+    quantity: PreparedNumber,
     /// The values of the number, at even ratios, and the lobe of each.
     nodes: Vec<(f64, L)>,
 }
@@ -26,7 +26,7 @@ pub(super) struct Varied<L> {
 /// The values for which lobes are made, at even ratios over the range of a number.
 ///
 /// - `least`: the least that is told apart, above 0.
-pub(super) fn nodes(number: &Number, least: f64) -> Vec<f64> {
+pub(super) fn nodes(number: &NumberTexture, least: f64) -> Vec<f64> {
     let [from, to] = number.range().map(|value| value.max(least));
     let steps = ((to / from).ln() / RATIO.ln()).ceil().min((MOST_NODES - 1) as f64);
     match steps as usize {
@@ -35,14 +35,14 @@ pub(super) fn nodes(number: &Number, least: f64) -> Vec<f64> {
     }
 }
 
-impl<L: Lobe> Varied<L> {
+impl<L: Lobe> VaryingLobe<L> {
     /// - `nodes`: values, rising, and the lobe of each; one or more.
-    pub(super) fn new(quantity: Quantity, nodes: Vec<(f64, L)>) -> Varied<L> {
-        Varied { quantity, nodes }
+    pub(super) fn new(quantity: PreparedNumber, nodes: Vec<(f64, L)>) -> VaryingLobe<L> {
+        VaryingLobe { quantity, nodes }
     }
 
     /// The two lobes about the value at a place, and how much there is of each; they are the same at the ends.
-    fn parts(&self, sighting: &Sighting<'_>) -> [(&L, f64); 2] {
+    fn parts(&self, sighting: &ShadingContext<'_>) -> [(&L, f64); 2] {
         let value = self.quantity.of(sighting);
         let above = self.nodes.partition_point(|(node, _)| *node <= value).min(self.nodes.len() - 1);
         let below = above.saturating_sub(1);
@@ -57,33 +57,33 @@ impl<L: Lobe> Varied<L> {
     }
 
     /// The mixture of what lobes tell.
-    fn mixed(&self, sighting: &Sighting<'_>, of: impl Fn(&L) -> Channels) -> Channels {
+    fn mixed(&self, sighting: &ShadingContext<'_>, of: impl Fn(&L) -> Channels) -> Channels {
         let [(a, less), (b, more)] = self.parts(sighting);
         if less == 0.0 { of(b) } else { of(a) * less + of(b) * more }
     }
 
     /// The mixture of a number that lobes tell.
-    fn mixed_number(&self, sighting: &Sighting<'_>, of: impl Fn(&L) -> f64) -> f64 {
+    fn mixed_number(&self, sighting: &ShadingContext<'_>, of: impl Fn(&L) -> f64) -> f64 {
         let [(a, less), (b, more)] = self.parts(sighting);
         if less == 0.0 { of(b) } else { of(a) * less + of(b) * more }
     }
 }
 
-impl<L: Lobe> Lobe for Varied<L> {
+impl<L: Lobe> Lobe for VaryingLobe<L> {
     fn flags(&self) -> Flags {
         self.typical().flags()
     }
 
-    fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
+    fn value(&self, sighting: &ShadingContext, light: DVec3) -> Channels {
         self.mixed(sighting, |lobe| lobe.value(sighting, light))
     }
 
-    fn density(&self, sighting: &Sighting, light: DVec3) -> f64 {
+    fn density(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
         self.mixed_number(sighting, |lobe| lobe.density(sighting, light))
     }
 
     /// Draws a direction from one of the two lobes.
-    fn sample(&self, sighting: &Sighting<'_>, choice: f64, point: [f64; 2]) -> Option<Onward> {
+    fn sample(&self, sighting: &ShadingContext<'_>, choice: f64, point: [f64; 2]) -> Option<BsdfSample> {
         let [(a, less), (b, more)] = self.parts(sighting);
         let rest = |below: f64, part: f64| ((choice - below) / part).clamp(0.0, 1.0_f64.next_down());
         if choice < less {
@@ -93,33 +93,33 @@ impl<L: Lobe> Lobe for Varied<L> {
         }
     }
 
-    fn strength(&self, sighting: &Sighting) -> f64 {
+    fn strength(&self, sighting: &ShadingContext) -> f64 {
         self.mixed_number(sighting, |lobe| lobe.strength(sighting))
     }
 
     /// The single directions of lobes that are polished alike, and differ in what lies on them.
-    fn mirrored(&self, sighting: &Sighting<'_>) -> [Option<Onward>; 2] {
+    fn mirrored(&self, sighting: &ShadingContext<'_>) -> [Option<BsdfSample>; 2] {
         let [(a, less), (b, more)] = self.parts(sighting);
         let [one, other] = [a, b].map(|lobe| lobe.mirrored(sighting));
-        let mixed = |(a, b): (Option<Onward>, Option<Onward>)| match (a, b) {
-            (Some(a), Some(b)) => Some(Onward { weight: a.weight * less + b.weight * more, ..b }),
+        let mixed = |(a, b): (Option<BsdfSample>, Option<BsdfSample>)| match (a, b) {
+            (Some(a), Some(b)) => Some(BsdfSample { weight: a.weight * less + b.weight * more, ..b }),
             (a, b) => a
-                .map(|a| Onward { weight: a.weight * less, ..a })
-                .or(b.map(|b| Onward { weight: b.weight * more, ..b })),
+                .map(|a| BsdfSample { weight: a.weight * less, ..a })
+                .or(b.map(|b| BsdfSample { weight: b.weight * more, ..b })),
         };
         let [[a, c], [b, d]] = [one, other];
         [mixed((a, b)), mixed((c, d))]
     }
 
-    fn diffuse(&self, sighting: &Sighting) -> Channels {
+    fn diffuse(&self, sighting: &ShadingContext) -> Channels {
         self.mixed(sighting, |lobe| lobe.diffuse(sighting))
     }
 
-    fn shown(&self, sighting: &Sighting) -> Channels {
+    fn shown(&self, sighting: &ShadingContext) -> Channels {
         self.mixed(sighting, |lobe| lobe.shown(sighting))
     }
 
-    fn cleared(&self, sighting: &Sighting) -> Channels {
+    fn cleared(&self, sighting: &ShadingContext) -> Channels {
         self.mixed(sighting, |lobe| lobe.cleared(sighting))
     }
 }

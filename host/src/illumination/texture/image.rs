@@ -1,9 +1,9 @@
 //! Images as textures: smaller and smaller copies of them, from which the mean over a part is had quickly.
 
-use super::Place;
-use super::texels::{Kind, Texels};
+use super::TextureFootprint;
+use super::texels::{TexelStorage, Texels};
 use crate::memory;
-use crate::picture::source::{Precision, Source, Texel};
+use crate::picture::source::{TexelFormat, PictureReader, Texel};
 use crate::picture::{Picture, PictureError};
 use glam::{DVec2, DVec3};
 use protocol::raster::light_of_srgb;
@@ -38,7 +38,7 @@ struct Level {
 
 /// What the numbers of an image mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Content {
+pub enum ImageContent {
     /// Fractions of light.
     Color,
     /// Numbers, that were taken for light of sRGB when they were read: they are encoded again.
@@ -68,14 +68,14 @@ impl Image {
     /// # Errors
     /// [`PictureError`], also for a file with a number that is not finite, and where the image would take more memory than
     /// there is.
-    pub fn read(path: &Path, content: Content) -> Result<Image, PictureError> {
-        let source = Source::open(path)?;
+    pub fn read(path: &Path, content: ImageContent) -> Result<Image, PictureError> {
+        let source = PictureReader::open(path)?;
         let [width, height] = source.size();
         let kind = match (source.precision(), content) {
-            (Precision::Eight, Content::Color) => Kind::Light,
-            (Precision::Eight, Content::Numbers) => Kind::Numbers,
-            (Precision::Sixteen { grey: true } | Precision::Float { grey: true }, _) => Kind::Grey,
-            (Precision::Sixteen { .. } | Precision::Float { .. }, _) => Kind::Bands,
+            (TexelFormat::Eight, ImageContent::Color) => TexelStorage::Light,
+            (TexelFormat::Eight, ImageContent::Numbers) => TexelStorage::Numbers,
+            (TexelFormat::Sixteen { grey: true } | TexelFormat::Float { grey: true }, _) => TexelStorage::Grey,
+            (TexelFormat::Sixteen { .. } | TexelFormat::Float { .. }, _) => TexelStorage::Bands,
         };
         let pixels = Picture::pixels_of(width, height)?;
         memory::ask(bytes_of(kind, pixels), || format!("{}: an image of {width} x {height} pixels", path.display()))?;
@@ -89,7 +89,7 @@ impl Image {
                 Texel::Eight([r, g, b, _]) => finest.texels.set_bytes(at, [r, g, b]),
                 Texel::Sixteen([r, g, b, _]) => {
                     let numbers = DVec3::from_array([r, g, b].map(|number| f64::from(number) / f64::from(u16::MAX)));
-                    let is_light = content == Content::Color;
+                    let is_light = content == ImageContent::Color;
                     finest.texels.set(at, if is_light { numbers.map(light_of_srgb) } else { numbers });
                 }
                 Texel::Float([r, g, b, a, _]) => {
@@ -109,12 +109,12 @@ impl Image {
     }
 
     /// An image of a picture. What is below 0 or above 1 is cut off; coverage is not heeded.
-    pub fn of_picture(name: String, picture: &Picture, content: Content) -> Image {
+    pub fn of_picture(name: String, picture: &Picture, content: ImageContent) -> Image {
         let texel = |x: u32, y: u32| {
             let pixel = picture.get(x, y).unwrap_or_default();
             let cover = if pixel.coverage > 0.0 { f64::from(pixel.coverage) } else { 1.0 };
             let linear = DVec3::from_array(pixel.radiance.map(f64::from)) / cover;
-            if content == Content::Numbers { linear.map(encoded) } else { linear }
+            if content == ImageContent::Numbers { linear.map(encoded) } else { linear }
         };
         Image::new(name, picture.width(), picture.height(), texel)
     }
@@ -124,7 +124,7 @@ impl Image {
     /// - `width`, `height`: 1 and more.
     pub fn new(name: String, width: u32, height: u32, texel: impl Fn(u32, u32) -> DVec3) -> Image {
         let (width, height) = (width.max(1), height.max(1));
-        let mut texels = Texels::new(Kind::Bands, width as usize * height as usize);
+        let mut texels = Texels::new(TexelStorage::Bands, width as usize * height as usize);
         let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
         places.enumerate().for_each(|(at, (x, y))| texels.set(at, texel(x, y)));
         Image::of(name, Level { width: width as usize, height: height as usize, texels })
@@ -181,7 +181,7 @@ impl Image {
     ///
     /// # Source
     /// Williams 1983, pyramidal parametrics; McCormack and others 1999, Feline: several looks along the longer axis.
-    pub fn at(&self, place: &Place) -> DVec3 {
+    pub fn at(&self, place: &TextureFootprint) -> DVec3 {
         let [width, height] = self.size().map(|n| n as f64);
         let texels = DVec2::new(width, height);
         let sides = place.sides.map(|side| side.uv * texels);
@@ -264,8 +264,8 @@ fn shares(from: usize, to: usize) -> Vec<impl Iterator<Item = (usize, f64)> + Cl
 }
 
 /// Bytes of an image and its smaller copies, a little more than it takes.
-fn bytes_of(kind: Kind, pixels: usize) -> u64 {
-    let copies = if kind == Kind::Grey { Kind::Grey } else { Kind::Bands };
+fn bytes_of(kind: TexelStorage, pixels: usize) -> u64 {
+    let copies = if kind == TexelStorage::Grey { TexelStorage::Grey } else { TexelStorage::Bands };
     // A copy has a quarter of the pixels; in sixteen bits there are fewer of them.
     (Texels::bytes_of(kind, pixels) + Texels::bytes_of(copies, pixels / 3)) as u64
 }
@@ -309,12 +309,12 @@ impl<'de> Deserialize<'de> for Image {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Side;
+    use super::super::FootprintSide;
     use super::*;
 
-    fn part(uv: DVec2, across: DVec2, up: DVec2) -> Place {
-        let side = |uv| Side { uv, ..Side::default() };
-        Place { uv, sides: [side(across), side(up)], ..Place::default() }
+    fn part(uv: DVec2, across: DVec2, up: DVec2) -> TextureFootprint {
+        let side = |uv| FootprintSide { uv, ..FootprintSide::default() };
+        TextureFootprint { uv, sides: [side(across), side(up)], ..TextureFootprint::default() }
     }
 
     fn ramp(width: u32, height: u32) -> Image {
@@ -339,9 +339,9 @@ mod tests {
         for y in 0..4 {
             for x in 0..8 {
                 let uv = DVec2::new((f64::from(x) + 0.5) / 8.0, 1.0 - (f64::from(y) + 0.5) / 4.0);
-                let found = image.at(&Place::point(uv, DVec3::ZERO));
+                let found = image.at(&TextureFootprint::point(uv, DVec3::ZERO));
                 assert!((found - DVec3::new(uv.x, 1.0 - uv.y, 0.25)).abs().max_element() < 1e-5);
-                let again = image.at(&Place::point(uv + DVec2::new(3.0, -5.0), DVec3::ZERO));
+                let again = image.at(&TextureFootprint::point(uv + DVec2::new(3.0, -5.0), DVec3::ZERO));
                 assert!((found - again).length() < 1e-9, "it repeats");
             }
         }
@@ -367,12 +367,12 @@ mod tests {
         let path = folder.path().join("numbers.png");
         let bytes: Vec<u8> = (0..=255).flat_map(|i| [i, 255 - i, 128]).collect();
         image::save_buffer(&path, &bytes, 256, 1, image::ColorType::Rgb8).expect("written");
-        let numbers = Image::read(&path, Content::Numbers).expect("read");
+        let numbers = Image::read(&path, ImageContent::Numbers).expect("read");
         for i in 0..256usize {
             let found = numbers.levels[0].texel(i, 0) * 255.0;
             assert!((found - DVec3::new(i as f64, 255.0 - i as f64, 128.0)).abs().max_element() < 0.02, "{i} {found}");
         }
-        let color = Image::read(&path, Content::Color).expect("read");
+        let color = Image::read(&path, ImageContent::Color).expect("read");
         assert!((color.levels[0].texel(128, 0).x - 0.2158).abs() < 1e-3);
     }
 

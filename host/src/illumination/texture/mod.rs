@@ -13,10 +13,10 @@ mod texels;
 #[cfg(test)]
 mod tests;
 
-pub use image::{Content, Image};
+pub use image::{ImageContent, Image};
 pub use motif::Motif;
-pub use number::{Band, Number, Varying};
-pub use place::{Place, Side};
+pub use number::{Band, NumberTexture, Varying};
+pub use place::{TextureFootprint, FootprintSide};
 
 use crate::color::Color;
 use glam::{DMat3, DVec2, DVec3};
@@ -47,7 +47,7 @@ pub struct Pattern {
     /// The kind.
     pub motif: Motif,
     /// How it lies.
-    pub laying: Laying,
+    pub laying: TextureMapping,
     /// The paints: two, or none for an image, which has its own.
     #[serde(deserialize_with = "nested")]
     pub paints: Vec<Paint>,
@@ -71,7 +71,7 @@ fn nested<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Paint>, D::E
 /// How a pattern lies.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Laying {
+pub struct TextureMapping {
     /// Whether it goes through the body, in the coordinates of the object. If not, it lies on the surface, in parameters
     /// (u, v), of which z is 0.
     pub solid: bool,
@@ -99,7 +99,7 @@ pub enum Relief {
         /// The image.
         image: Image,
         /// How it lies.
-        laying: Laying,
+        laying: TextureMapping,
     },
 }
 
@@ -140,15 +140,15 @@ impl From<Color> for Paint {
     }
 }
 
-impl Default for Laying {
-    fn default() -> Laying {
-        Laying { solid: false, size: DVec3::ONE, at: DVec3::ZERO, up: DVec3::Y }
+impl Default for TextureMapping {
+    fn default() -> TextureMapping {
+        TextureMapping { solid: false, size: DVec3::ONE, at: DVec3::ZERO, up: DVec3::Y }
     }
 }
 
-impl Laying {
+impl TextureMapping {
     /// A place of the surface as the pattern counts it.
-    fn place(&self, place: &Place) -> Place {
+    fn place(&self, place: &TextureFootprint) -> TextureFootprint {
         let turn = self.turned();
         let lay = |uv: DVec2, own: DVec3| {
             let solid = if self.solid { turn * own } else { turn * uv.extend(0.0) };
@@ -157,11 +157,11 @@ impl Laying {
         let begin = if self.solid { place.own - self.at } else { place.own };
         let uv = if self.solid { place.uv } else { place.uv - self.at.truncate() };
         let own = lay(uv, begin);
-        let side = |side: Side| {
+        let side = |side: FootprintSide| {
             let own = lay(side.uv, side.own);
-            Side { scene: side.scene, uv: own.truncate(), own }
+            FootprintSide { scene: side.scene, uv: own.truncate(), own }
         };
-        Place { uv: own.truncate(), own, sides: place.sides.map(side), along: place.along }
+        TextureFootprint { uv: own.truncate(), own, sides: place.sides.map(side), along: place.along }
     }
 
     /// From the coordinates of the object to those of the pattern; on a surface it turns about the normal.
@@ -266,7 +266,7 @@ impl Paint {
 
 impl Pattern {
     /// How much there is of each paint, in the mean over a place: fractions; of the bands of an image, three.
-    pub fn parts(&self, place: &Place) -> [f64; MOST_PAINTS] {
+    pub fn parts(&self, place: &TextureFootprint) -> [f64; MOST_PAINTS] {
         self.motif.parts(&self.laying.place(place), self.laying.solid)
     }
 
@@ -276,7 +276,7 @@ impl Pattern {
     }
 
     /// How high a place is, 0..=1.
-    fn height(&self, place: &Place) -> f64 {
+    fn height(&self, place: &TextureFootprint) -> f64 {
         let [a, b, c] = self.parts(place);
         if self.is_image() { (a + b + c) / 3.0 } else { b }
     }
@@ -322,12 +322,12 @@ impl Relief {
     ///
     /// # Source
     /// Blinn 1978, simulation of wrinkled surfaces: N − h_s s − h_t t for heights along two tangents at right angles.
-    pub fn normal(&self, place: &Place, normal: DVec3) -> DVec3 {
+    pub fn normal(&self, place: &TextureFootprint, normal: DVec3) -> DVec3 {
         let tilted = match self {
             Relief::Bumps { pattern, height } => {
-                let slope = |side: &Side| {
+                let slope = |side: &FootprintSide| {
                     let length = side.scene.length();
-                    let laid = pattern.laying.place(&Place { sides: [*side; 2], ..*place }).sides[0];
+                    let laid = pattern.laying.place(&TextureFootprint { sides: [*side; 2], ..*place }).sides[0];
                     let extent = if pattern.laying.solid { laid.own.length() } else { laid.uv.length() };
                     if length == 0.0 || extent == 0.0 {
                         return DVec3::ZERO;

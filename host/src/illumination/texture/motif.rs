@@ -1,7 +1,7 @@
 //! The kinds of pattern.
 
 use super::noise::octaves;
-use super::{Image, MOST_PAINTS, Place, TextureError, positive};
+use super::{Image, MOST_PAINTS, TextureFootprint, TextureError, positive};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -83,7 +83,7 @@ impl Motif {
     }
 
     /// How much there is of each paint in the mean over a place, in the coordinates of the pattern.
-    pub(super) fn parts(&self, place: &Place, solid: bool) -> [f64; MOST_PAINTS] {
+    pub(super) fn parts(&self, place: &TextureFootprint, solid: bool) -> [f64; MOST_PAINTS] {
         let [a, b] = place.sides.map(|side| side.own);
         let width = a.length().max(b.length());
         let at = place.own;

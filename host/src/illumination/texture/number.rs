@@ -1,13 +1,13 @@
 //! Numbers of a surface that may change from place to place: roughness, metalness, weights.
 
-use super::{Motif, Paint, Pattern, Place, TextureError};
+use super::{Motif, Paint, Pattern, TextureFootprint, TextureError};
 use crate::color::Color;
 use glam::DVec3;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// A number of a surface: the same everywhere, or as a pattern has it.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Number {
+pub enum NumberTexture {
     /// One everywhere.
     Constant(f64),
     /// What a pattern tells at each place.
@@ -59,26 +59,26 @@ impl Band {
     }
 }
 
-impl From<f64> for Number {
-    fn from(value: f64) -> Number {
-        Number::Constant(value)
+impl From<f64> for NumberTexture {
+    fn from(value: f64) -> NumberTexture {
+        NumberTexture::Constant(value)
     }
 }
 
-impl Number {
+impl NumberTexture {
     /// The mean of the number over a place.
-    pub fn at(&self, place: &Place) -> f64 {
+    pub fn at(&self, place: &TextureFootprint) -> f64 {
         match self {
-            Number::Constant(value) => *value,
-            Number::Varying(varying) => varying.between(varying.band.of(bands(&varying.pattern, place))),
+            NumberTexture::Constant(value) => *value,
+            NumberTexture::Varying(varying) => varying.between(varying.band.of(bands(&varying.pattern, place))),
         }
     }
 
     /// The mean over all places.
     pub fn mean(&self) -> f64 {
         match self {
-            Number::Constant(value) => *value,
-            Number::Varying(varying) => {
+            NumberTexture::Constant(value) => *value,
+            NumberTexture::Varying(varying) => {
                 let bands = Paint::Pattern(Box::new(varying.pattern.clone())).mean_bands();
                 varying.between(varying.band.of(bands))
             }
@@ -88,8 +88,8 @@ impl Number {
     /// The least and the greatest value that it may have somewhere.
     pub fn range(&self) -> [f64; 2] {
         match self {
-            Number::Constant(value) => [*value; 2],
-            Number::Varying(varying) => {
+            NumberTexture::Constant(value) => [*value; 2],
+            NumberTexture::Varying(varying) => {
                 let [a, b] = range(&varying.pattern, varying.band).map(|part| varying.between(part));
                 [a.min(b), a.max(b)]
             }
@@ -98,14 +98,14 @@ impl Number {
 
     /// Whether it changes from place to place.
     pub fn is_varying(&self) -> bool {
-        matches!(self, Number::Varying(_))
+        matches!(self, NumberTexture::Varying(_))
     }
 
     /// Whether parameters of the surface are needed to tell it.
     pub fn needs_parameters(&self) -> bool {
         match self {
-            Number::Constant(_) => false,
-            Number::Varying(varying) => Paint::Pattern(Box::new(varying.pattern.clone())).needs_parameters(),
+            NumberTexture::Constant(_) => false,
+            NumberTexture::Varying(varying) => Paint::Pattern(Box::new(varying.pattern.clone())).needs_parameters(),
         }
     }
 
@@ -114,7 +114,7 @@ impl Number {
     /// # Errors
     /// [`TextureError`].
     pub fn check(&self) -> Result<(), TextureError> {
-        let Number::Varying(varying) = self else { return Ok(()) };
+        let NumberTexture::Varying(varying) = self else { return Ok(()) };
         for value in [varying.from, varying.to] {
             if !value.is_finite() {
                 return Err(TextureError::Number { what: "end", value, range: "a finite number" });
@@ -135,7 +135,7 @@ impl Varying {
 }
 
 /// The mean bands of a pattern over a place.
-fn bands(pattern: &Pattern, place: &Place) -> DVec3 {
+fn bands(pattern: &Pattern, place: &TextureFootprint) -> DVec3 {
     let parts = pattern.parts(place);
     if pattern.is_image() {
         return DVec3::from_array(parts);
@@ -181,29 +181,29 @@ enum Plain {
     Varying(Box<Varying>),
 }
 
-impl Serialize for Number {
+impl Serialize for NumberTexture {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let number = self.clone();
         match (serializer.is_human_readable(), number) {
-            (true, Number::Constant(value)) => Plain::Constant(value).serialize(serializer),
-            (true, Number::Varying(varying)) => Plain::Varying(varying).serialize(serializer),
-            (false, Number::Constant(value)) => Tagged::Constant(value).serialize(serializer),
-            (false, Number::Varying(varying)) => Tagged::Varying(varying).serialize(serializer),
+            (true, NumberTexture::Constant(value)) => Plain::Constant(value).serialize(serializer),
+            (true, NumberTexture::Varying(varying)) => Plain::Varying(varying).serialize(serializer),
+            (false, NumberTexture::Constant(value)) => Tagged::Constant(value).serialize(serializer),
+            (false, NumberTexture::Varying(varying)) => Tagged::Varying(varying).serialize(serializer),
         }
     }
 }
 
-impl<'de> Deserialize<'de> for Number {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Number, D::Error> {
+impl<'de> Deserialize<'de> for NumberTexture {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<NumberTexture, D::Error> {
         if deserializer.is_human_readable() {
             Plain::deserialize(deserializer).map(|plain| match plain {
-                Plain::Constant(value) => Number::Constant(value),
-                Plain::Varying(varying) => Number::Varying(varying),
+                Plain::Constant(value) => NumberTexture::Constant(value),
+                Plain::Varying(varying) => NumberTexture::Varying(varying),
             })
         } else {
             Tagged::deserialize(deserializer).map(|tagged| match tagged {
-                Tagged::Constant(value) => Number::Constant(value),
-                Tagged::Varying(varying) => Number::Varying(varying),
+                Tagged::Constant(value) => NumberTexture::Constant(value),
+                Tagged::Varying(varying) => NumberTexture::Varying(varying),
             })
         }
     }
@@ -211,21 +211,21 @@ impl<'de> Deserialize<'de> for Number {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Laying;
+    use super::super::TextureMapping;
     use super::*;
     use crate::encoding::{Integers, decode, encode};
     use glam::{DVec2, DVec3};
 
-    fn checks(from: f64, to: f64) -> Number {
+    fn checks(from: f64, to: f64) -> NumberTexture {
         let paints = vec![Paint::grey(0.25), Paint::grey(0.75)];
-        let pattern = Pattern { motif: Motif::Checker, laying: Laying::default(), paints };
-        Number::Varying(Box::new(Varying { pattern, band: Band::Mean, from, to }))
+        let pattern = Pattern { motif: Motif::Checker, laying: TextureMapping::default(), paints };
+        NumberTexture::Varying(Box::new(Varying { pattern, band: Band::Mean, from, to }))
     }
 
     #[test]
     fn a_number_is_between_its_ends_as_bright_as_its_pattern() {
         let number = checks(0.0, 2.0);
-        let at = |x: f64| number.at(&Place::point(DVec2::new(x, 0.2), DVec3::ZERO));
+        let at = |x: f64| number.at(&TextureFootprint::point(DVec2::new(x, 0.2), DVec3::ZERO));
         let mut both = [at(0.2), at(0.7)];
         both.sort_by(f64::total_cmp);
         assert_eq!(both, [0.5, 1.5]);
@@ -237,13 +237,13 @@ mod tests {
 
     #[test]
     fn a_number_that_is_written_is_read_again_as_text_and_as_bytes() {
-        for number in [Number::Constant(0.3), checks(0.1, 0.4)] {
+        for number in [NumberTexture::Constant(0.3), checks(0.1, 0.4)] {
             let text = serde_json::to_string(&number).expect("plain data");
-            assert_eq!(serde_json::from_str::<Number>(&text).expect("the same"), number);
+            assert_eq!(serde_json::from_str::<NumberTexture>(&text).expect("the same"), number);
             let bytes = encode(&number, Integers::Compact).expect("plain data");
-            let read = decode::<Number, 1_000_000>(&bytes, Integers::Compact).expect("the number").0;
+            let read = decode::<NumberTexture, 1_000_000>(&bytes, Integers::Compact).expect("the number").0;
             assert_eq!(read, number);
         }
-        assert_eq!(serde_json::to_string(&Number::Constant(0.5)).expect("plain data"), "0.5");
+        assert_eq!(serde_json::to_string(&NumberTexture::Constant(0.5)).expect("plain data"), "0.5");
     }
 }

@@ -4,20 +4,20 @@ use glam::{DVec2, DVec3};
 
 /// A point of a surface with the parallelogram about it whose mean is wanted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Place {
+pub struct TextureFootprint {
     /// Parameters of the exact surface, of which the domain is 0..1, or texture coordinates of a file.
     pub uv: DVec2,
     /// The point in the coordinates of the object.
     pub own: DVec3,
     /// The sides of the parallelogram, whose middle is the point; tangents of the surface, at right angles in the scene.
-    pub sides: [Side; 2],
+    pub sides: [FootprintSide; 2],
     /// The derivatives of the point in the scene by u and v, as far as the triangle tells; 0 where it does not.
     pub along: [DVec3; 2],
 }
 
 /// A way along the surface, in three coordinate systems.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Side {
+pub struct FootprintSide {
     /// In the scene.
     pub scene: DVec3,
     /// In parameters.
@@ -26,21 +26,21 @@ pub struct Side {
     pub own: DVec3,
 }
 
-impl Side {
+impl FootprintSide {
     /// A multiple of the way.
-    pub fn scaled(&self, factor: f64) -> Side {
-        Side { scene: self.scene * factor, uv: self.uv * factor, own: self.own * factor }
+    pub fn scaled(&self, factor: f64) -> FootprintSide {
+        FootprintSide { scene: self.scene * factor, uv: self.uv * factor, own: self.own * factor }
     }
 }
 
-impl Place {
+impl TextureFootprint {
     /// A place without extent.
-    pub fn point(uv: DVec2, own: DVec3) -> Place {
-        Place { uv, own, ..Place::default() }
+    pub fn point(uv: DVec2, own: DVec3) -> TextureFootprint {
+        TextureFootprint { uv, own, ..TextureFootprint::default() }
     }
 
     /// The place at the end of a way, as large as this one.
-    pub fn moved(&self, way: &Side) -> Place {
-        Place { uv: self.uv + way.uv, own: self.own + way.own, ..*self }
+    pub fn moved(&self, way: &FootprintSide) -> TextureFootprint {
+        TextureFootprint { uv: self.uv + way.uv, own: self.own + way.own, ..*self }
     }
 }

@@ -3,7 +3,7 @@
 use super::*;
 use std::f64::consts::TAU;
 
-fn pattern(motif: Motif, laying: Laying) -> Pattern {
+fn pattern(motif: Motif, laying: TextureMapping) -> Pattern {
     Pattern { motif, laying, paints: vec![Paint::grey(0.0), Paint::grey(1.0)] }
 }
 
@@ -16,15 +16,15 @@ fn motifs() -> Vec<Motif> {
     ]
 }
 
-fn solid() -> Laying {
-    Laying { solid: true, ..Laying::default() }
+fn solid() -> TextureMapping {
+    TextureMapping { solid: true, ..TextureMapping::default() }
 }
 
 /// A place on the plane z = 0 whose parameters are its coordinates.
-fn on_plane(at: DVec2, width: f64) -> Place {
-    let side = |way: DVec2| Side { scene: way.extend(0.0), uv: way, own: way.extend(0.0) };
+fn on_plane(at: DVec2, width: f64) -> TextureFootprint {
+    let side = |way: DVec2| FootprintSide { scene: way.extend(0.0), uv: way, own: way.extend(0.0) };
     let sides = [side(DVec2::X * width), side(DVec2::Y * width)];
-    Place { uv: at, own: at.extend(0.0), sides, along: [DVec3::X, DVec3::Y] }
+    TextureFootprint { uv: at, own: at.extend(0.0), sides, along: [DVec3::X, DVec3::Y] }
 }
 
 fn points(count: u32) -> impl Iterator<Item = DVec2> {
@@ -58,7 +58,7 @@ fn the_mean_over_many_periods_is_the_mean_of_the_pattern() {
 
 #[test]
 fn the_mean_of_a_checker_is_exact() {
-    let checker = pattern(Motif::Checker, Laying { size: DVec3::new(0.5, 0.25, 1.0), ..Laying::default() });
+    let checker = pattern(Motif::Checker, TextureMapping { size: DVec3::new(0.5, 0.25, 1.0), ..TextureMapping::default() });
     for at in points(50) {
         let width = 0.07;
         let steps = 400;
@@ -66,7 +66,7 @@ fn the_mean_of_a_checker_is_exact() {
         for i in 0..steps {
             for j in 0..steps {
                 let aside = DVec2::new(f64::from(i) + 0.5, f64::from(j) + 0.5) / f64::from(steps) - 0.5;
-                sum += checker.parts(&Place::point(at + aside * width, DVec3::ZERO))[1];
+                sum += checker.parts(&TextureFootprint::point(at + aside * width, DVec3::ZERO))[1];
             }
         }
         let found = checker.parts(&on_plane(at, width))[1];
@@ -76,11 +76,11 @@ fn the_mean_of_a_checker_is_exact() {
 
 #[test]
 fn a_pattern_lies_where_it_is_laid() {
-    let laying = Laying { size: DVec3::splat(2.0), at: DVec3::new(0.3, 0.1, 0.0), up: DVec3::X, ..Laying::default() };
+    let laying = TextureMapping { size: DVec3::splat(2.0), at: DVec3::new(0.3, 0.1, 0.0), up: DVec3::X, ..TextureMapping::default() };
     let image = Image::new("quarters".into(), 64, 64, |x, y| DVec3::new(f64::from(x / 32), f64::from(y / 32), 0.0));
     let pattern = Pattern { motif: Motif::Image { image }, laying, paints: Vec::new() };
     // The image stands with its upper edge towards +u: what is to its right is towards -v.
-    let at = |uv: DVec2| pattern.parts(&Place::point(uv, DVec3::ZERO));
+    let at = |uv: DVec2| pattern.parts(&TextureFootprint::point(uv, DVec3::ZERO));
     let begin = DVec2::new(0.3, 0.1);
     assert_eq!(at(begin + DVec2::new(0.5, -0.5)), [0.0, 1.0, 0.0], "lower left quarter");
     assert_eq!(at(begin + DVec2::new(1.5, -0.5)), [0.0, 0.0, 0.0], "upper left quarter");
@@ -90,8 +90,8 @@ fn a_pattern_lies_where_it_is_laid() {
 #[test]
 fn a_solid_pattern_knows_no_parameters() {
     let paint = |laying| Paint::Pattern(Box::new(pattern(Motif::Checker, laying)));
-    assert!(!paint(solid()).needs_parameters() && paint(Laying::default()).needs_parameters());
-    let inner = paint(Laying::default());
+    assert!(!paint(solid()).needs_parameters() && paint(TextureMapping::default()).needs_parameters());
+    let inner = paint(TextureMapping::default());
     let outer = Pattern { paints: vec![inner, Paint::grey(0.5)], ..pattern(Motif::Checker, solid()) };
     assert!(Paint::Pattern(Box::new(outer)).needs_parameters());
 }
@@ -100,7 +100,7 @@ fn a_solid_pattern_knows_no_parameters() {
 fn bumps_tilt_the_normal_by_their_slope() {
     // A wave of known slope: marble without turbulence is (1 + sin(2 pi x))/2.
     let motif = Motif::Marble { turbulence: 0.0, sharpness: 1.0 };
-    for laying in [solid(), Laying::default()] {
+    for laying in [solid(), TextureMapping::default()] {
         let relief = Relief::Bumps { pattern: pattern(motif.clone(), laying), height: 0.1 };
         for at in points(100) {
             let slope = 0.1 * 0.5 * TAU * (TAU * at.x).cos();
@@ -110,27 +110,27 @@ fn bumps_tilt_the_normal_by_their_slope() {
         }
         // So far away that it is flat; and without any extent, too.
         assert!((relief.normal(&on_plane(DVec2::ONE, 100.0), DVec3::Z) - DVec3::Z).length() < 1e-3);
-        assert_eq!(relief.normal(&Place::point(DVec2::ONE, DVec3::ONE), DVec3::Z), DVec3::Z);
+        assert_eq!(relief.normal(&TextureFootprint::point(DVec2::ONE, DVec3::ONE), DVec3::Z), DVec3::Z);
     }
 }
 
 #[test]
 fn an_image_of_normals_tilts_along_the_parameters() {
     let image = Image::new("tilted".into(), 1, 1, |_, _| DVec3::new(0.8, 0.5, 0.9));
-    let relief = Relief::Normals { image, laying: Laying::default() };
+    let relief = Relief::Normals { image, laying: TextureMapping::default() };
     let found = relief.normal(&on_plane(DVec2::splat(0.2), 0.1), DVec3::Z);
     assert!((found - DVec3::new(0.6, 0.0, 0.8)).length() < 1e-4, "{found}");
 }
 
 #[test]
 fn impossible_textures_are_refused_in_words() {
-    let wrong = |motif: Motif, laying: Laying| pattern(motif, laying).check().map_err(|e| e.to_string());
-    let small = Laying { size: DVec3::new(1.0, 0.0, 1.0), ..Laying::default() };
+    let wrong = |motif: Motif, laying: TextureMapping| pattern(motif, laying).check().map_err(|e| e.to_string());
+    let small = TextureMapping { size: DVec3::new(1.0, 0.0, 1.0), ..TextureMapping::default() };
     assert_eq!(wrong(Motif::Checker, small).unwrap_err(), "size 0 of a pattern is not above 0 and finite");
     assert!(wrong(Motif::Noise { octaves: 17 }, solid()).is_err());
     assert!(wrong(Motif::Marble { turbulence: -1.0, sharpness: 1.0 }, solid()).is_err());
     assert!(wrong(Motif::Wood { turbulence: 0.1, grain: f64::NAN }, solid()).is_err());
-    assert!(wrong(Motif::Checker, Laying { up: DVec3::Z, ..Laying::default() }).is_err(), "up is not on the surface");
+    assert!(wrong(Motif::Checker, TextureMapping { up: DVec3::Z, ..TextureMapping::default() }).is_err(), "up is not on the surface");
     let mut paint = Paint::grey(0.5);
     for _ in 0..=MAX_NESTING {
         paint = Paint::Pattern(Box::new(Pattern {

@@ -36,7 +36,7 @@ pub(super) enum Texels {
 
 /// How the pixels of an image are held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum TexelStorage {
     /// Bytes of sRGB, exactly.
     Light,
     /// Bytes of numbers, exactly.
@@ -49,33 +49,33 @@ pub(super) enum Kind {
 
 impl Texels {
     /// Black pixels.
-    pub(super) fn new(kind: Kind, count: usize) -> Texels {
+    pub(super) fn new(kind: TexelStorage, count: usize) -> Texels {
         match kind {
-            Kind::Light => Texels::Bytes { bytes: vec![[0; 3]; count], table: &LIGHT },
-            Kind::Numbers => Texels::Bytes { bytes: vec![[0; 3]; count], table: &NUMBERS },
-            Kind::Grey => Texels::Grey(vec![0; count]),
-            Kind::Bands if count <= MOST_WORDS => Texels::Words(vec![[0; 3]; count]),
-            Kind::Bands => Texels::Packed(vec![0; count]),
+            TexelStorage::Light => Texels::Bytes { bytes: vec![[0; 3]; count], table: &LIGHT },
+            TexelStorage::Numbers => Texels::Bytes { bytes: vec![[0; 3]; count], table: &NUMBERS },
+            TexelStorage::Grey => Texels::Grey(vec![0; count]),
+            TexelStorage::Bands if count <= MOST_WORDS => Texels::Words(vec![[0; 3]; count]),
+            TexelStorage::Bands => Texels::Packed(vec![0; count]),
         }
     }
 
     /// Bytes that so many pixels take.
-    pub(super) fn bytes_of(kind: Kind, count: usize) -> usize {
+    pub(super) fn bytes_of(kind: TexelStorage, count: usize) -> usize {
         count
             * match kind {
-                Kind::Light | Kind::Numbers => size_of::<[u8; 3]>(),
-                Kind::Grey => size_of::<u16>(),
-                Kind::Bands if count <= MOST_WORDS => size_of::<[u16; 3]>(),
-                Kind::Bands => size_of::<u32>(),
+                TexelStorage::Light | TexelStorage::Numbers => size_of::<[u8; 3]>(),
+                TexelStorage::Grey => size_of::<u16>(),
+                TexelStorage::Bands if count <= MOST_WORDS => size_of::<[u16; 3]>(),
+                TexelStorage::Bands => size_of::<u32>(),
             }
     }
 
     /// Black pixels for means of these, of which there are fewer. Bytes are too coarse for means.
     pub(super) fn for_means(&self, count: usize) -> Texels {
         match self {
-            Texels::Grey(_) => Texels::new(Kind::Grey, count),
+            Texels::Grey(_) => Texels::new(TexelStorage::Grey, count),
             Texels::Packed(_) => Texels::Packed(vec![0; count]),
-            Texels::Bytes { .. } | Texels::Words(_) => Texels::new(Kind::Bands, count),
+            Texels::Bytes { .. } | Texels::Words(_) => Texels::new(TexelStorage::Bands, count),
         }
     }
 
@@ -160,7 +160,7 @@ impl Texels {
         if words.len() <= MOST_WORDS {
             return Texels::Words(words);
         }
-        let mut packed = Texels::new(Kind::Bands, words.len());
+        let mut packed = Texels::new(TexelStorage::Bands, words.len());
         for (index, pixel) in words.iter().enumerate() {
             packed.set(index, DVec3::from_array(pixel.map(|word| f64::from(word) / WHOLE)));
         }
@@ -186,7 +186,7 @@ mod tests {
 
     #[test]
     fn bytes_are_held_exactly_and_found_again_in_words() {
-        for kind in [Kind::Light, Kind::Numbers] {
+        for kind in [TexelStorage::Light, TexelStorage::Numbers] {
             let mut texels = Texels::new(kind, 256);
             (0..=255).for_each(|byte: u8| texels.set_bytes(usize::from(byte), [byte, 255 - byte, 7]));
             let again = Texels::of_words(texels.words().collect());
@@ -204,7 +204,7 @@ mod tests {
     fn each_kind_rounds_as_finely_as_it_says() {
         let fractions = (0..4096).map(|i| DVec3::new(f64::from(i) / 4095.0, f64::from(i * i) / 4095f64.powi(2), 0.3));
         let mut large = Texels::Packed(vec![0; 1]);
-        for (kind, most) in [(Kind::Light, 0.005), (Kind::Numbers, 0.002), (Kind::Bands, 0.5001 / WHOLE)] {
+        for (kind, most) in [(TexelStorage::Light, 0.005), (TexelStorage::Numbers, 0.002), (TexelStorage::Bands, 0.5001 / WHOLE)] {
             let mut texels = Texels::new(kind, 1);
             for fraction in fractions.clone() {
                 texels.set(0, fraction);
@@ -217,7 +217,7 @@ mod tests {
             let most = fraction.map(|fraction| (fraction / 900.0).max(fraction.sqrt() / 900.0));
             assert!(off.cmple(most.max(DVec3::splat(2.5e-7))).all(), "{fraction} {off}");
         }
-        let mut grey = Texels::new(Kind::Grey, 1);
+        let mut grey = Texels::new(TexelStorage::Grey, 1);
         grey.set(0, DVec3::splat(0.25));
         assert!((grey.at(0) - 0.25).abs().max_element() < 1.0 / WHOLE);
         grey.set(0, DVec3::splat(f64::INFINITY));

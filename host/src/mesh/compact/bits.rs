@@ -1,12 +1,12 @@
 //! Bits, and numbers of few bits, most significant bit first.
 
-use super::super::Problem;
+use super::super::MeshProblem;
 
 /// The longest quotient of a Rice number; longer ones are written plainly.
 const MAX_QUOTIENT: u32 = 20;
 /// Bits of a number that is written plainly.
 const PLAIN_BITS: u32 = 20;
-const ENDS: Problem = Problem::Ends("a bit");
+const ENDS: MeshProblem = MeshProblem::Ends("a bit");
 
 #[derive(Default)]
 pub(super) struct BitWriter {
@@ -64,14 +64,14 @@ impl<'a> BitReader<'a> {
         self.bit / 8
     }
 
-    fn bit(&mut self) -> Result<u32, Problem> {
+    fn bit(&mut self) -> Result<u32, MeshProblem> {
         let byte = *self.bytes.get(self.bit / 8).ok_or(ENDS)?;
         let bit = byte >> (7 - self.bit % 8) & 1;
         self.bit += 1;
         Ok(bit.into())
     }
 
-    fn take(&mut self, count: u32) -> Result<u64, Problem> {
+    fn take(&mut self, count: u32) -> Result<u64, MeshProblem> {
         let mut value = 0;
         for _ in 0..count {
             value = value << 1 | u64::from(self.bit()?);
@@ -80,7 +80,7 @@ impl<'a> BitReader<'a> {
     }
 
     /// Counts ones up to a zero or to `limit`.
-    pub fn ones(&mut self, limit: u32) -> Result<u32, Problem> {
+    pub fn ones(&mut self, limit: u32) -> Result<u32, MeshProblem> {
         let mut count = 0;
         while count < limit && self.bit()? == 1 {
             count += 1;
@@ -89,12 +89,12 @@ impl<'a> BitReader<'a> {
     }
 
     /// Reads a number of at least 1 in Elias' gamma code.
-    pub fn gamma(&mut self) -> Result<u32, Problem> {
+    pub fn gamma(&mut self) -> Result<u32, MeshProblem> {
         let mut width = 0;
         while self.bit()? == 0 {
             width += 1;
             if width > 31 {
-                return Err(Problem::Unsuited("a number has more than 32 bits"));
+                return Err(MeshProblem::Unsuited("a number has more than 32 bits"));
             }
         }
         Ok(1 << width | self.take(width)? as u32)
@@ -132,7 +132,7 @@ impl Rice {
         self.learn(folded);
     }
 
-    pub fn read(&mut self, bits: &mut BitReader<'_>) -> Result<i64, Problem> {
+    pub fn read(&mut self, bits: &mut BitReader<'_>) -> Result<i64, MeshProblem> {
         let parameter = self.parameter();
         let folded = match bits.ones(MAX_QUOTIENT)? {
             MAX_QUOTIENT => bits.take(PLAIN_BITS)?,

@@ -21,7 +21,7 @@ use self::bits::{BitReader, BitWriter, Rice};
 use self::front::{Front, Step};
 use super::edges::EdgeTable;
 use super::triangles::MAX_COUNT;
-use super::{Fault, Mesh, Place, Problem};
+use super::{Fault, Mesh, FaultLocation, MeshProblem};
 
 /// The first bytes of a file.
 const MAGIC: &[u8; 8] = b"PERIScm1";
@@ -34,11 +34,11 @@ const WALK_PER_TRIANGLE: u64 = 256;
 
 /// Understands a compact mesh.
 pub(super) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
-    let ends = || Place::Byte(bytes.len()).fault(Problem::Ends("the header"));
+    let ends = || FaultLocation::Byte(bytes.len()).fault(MeshProblem::Ends("the header"));
     let (header, body) = bytes.split_at_checked(HEADER_BYTES).ok_or_else(ends)?;
     if !header.starts_with(MAGIC) {
         let found = String::from_utf8_lossy(&header[..8]).into_owned();
-        return Err(Place::Byte(0).fault(Problem::Expected { expected: "PERIScm1", found }));
+        return Err(FaultLocation::Byte(0).fault(MeshProblem::Expected { expected: "PERIScm1", found }));
     }
     let count = |at: usize| u32::from_le_bytes([0, 1, 2, 3].map(|k| header[at + k]));
     let real = |at: usize| f64::from_le_bytes([0, 1, 2, 3, 4, 5, 6, 7].map(|k| header[at + k]));
@@ -48,13 +48,13 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
     let limit = (body.len() as u64 * 8).min(MAX_COUNT as u64);
     if u64::from(vertices.max(triangles)) > limit {
         let count = u64::from(vertices.max(triangles));
-        return Err(Place::Byte(8).fault(Problem::TooMany { what: "vertices or triangles announced", count, limit }));
+        return Err(FaultLocation::Byte(8).fault(MeshProblem::TooMany { what: "vertices or triangles announced", count, limit }));
     }
     if !(origin.is_finite() && step.is_finite()) {
-        return Err(Place::Byte(16).fault(Problem::NotFinite));
+        return Err(FaultLocation::Byte(16).fault(MeshProblem::NotFinite));
     }
     let mut decoder = Decoder::new(body, vertices, triangles);
-    decoder.run().map_err(|problem| Place::Byte(HEADER_BYTES + decoder.bits.byte()).fault(problem))?;
+    decoder.run().map_err(|problem| FaultLocation::Byte(HEADER_BYTES + decoder.bits.byte()).fault(problem))?;
     let vertices = decoder.positions.iter().map(|position| origin + position.as_dvec3() * step).collect();
     Ok(Mesh { vertices, triangles: decoder.triangles, ..Mesh::default() })
 }
@@ -86,7 +86,7 @@ impl<'a> Decoder<'a> {
         }
     }
 
-    fn run(&mut self) -> Result<(), Problem> {
+    fn run(&mut self) -> Result<(), MeshProblem> {
         while (self.triangles.len() as u32) < self.triangle_count {
             let Some(gate) = self.front.pop() else {
                 let mut corner = || self.vertex(self.last);
@@ -121,15 +121,15 @@ impl<'a> Decoder<'a> {
         Ok(())
     }
 
-    fn vertex(&mut self, predicted: I64Vec3) -> Result<u32, Problem> {
+    fn vertex(&mut self, predicted: I64Vec3) -> Result<u32, MeshProblem> {
         if self.positions.len() == self.vertex_count as usize {
             let limit = u64::from(self.vertex_count);
-            return Err(Problem::TooMany { what: "vertices", count: limit + 1, limit });
+            return Err(MeshProblem::TooMany { what: "vertices", count: limit + 1, limit });
         }
         let mut next = || self.rice.read(&mut self.bits);
         let position = predicted + I64Vec3::new(next()?, next()?, next()?);
         if position.cmplt(I64Vec3::ZERO).any() || position.cmpgt(I64Vec3::splat(STEPS as i64)).any() {
-            return Err(Problem::Expected { expected: "a coordinate of 0..=65535", found: position.to_string() });
+            return Err(MeshProblem::Expected { expected: "a coordinate of 0..=65535", found: position.to_string() });
         }
         self.positions.push(position);
         self.last = position;
@@ -138,14 +138,14 @@ impl<'a> Decoder<'a> {
 }
 
 /// A step that the border does not allow.
-const MISFIT: Problem = Problem::Unsuited("the triangles do not fit together");
+const MISFIT: MeshProblem = MeshProblem::Unsuited("the triangles do not fit together");
 
 /// The compact form of `mesh`.
 ///
 /// # Errors
 /// If the mesh is not closed, or has a handle or a vertex where two of its parts only touch.
 pub(super) fn print(mesh: &Mesh) -> Result<Vec<u8>, Fault> {
-    let unsuited = |reason| Place::Mesh.fault(Problem::Unsuited(reason));
+    let unsuited = |reason| FaultLocation::Mesh.fault(MeshProblem::Unsuited(reason));
     let report = mesh.edge_report();
     if !report.is_closed() || report.collapsed > 0 {
         return Err(unsuited("the compact form holds closed meshes without collapsed triangles only"));

@@ -1,7 +1,7 @@
 //! Tables of numbers in the buffers of a file.
 
-use super::super::{Fault, Problem};
-use super::document::At;
+use super::super::{Fault, MeshProblem};
+use super::document::LocatedValue;
 
 /// The type of a component.
 #[derive(Clone, Copy)]
@@ -15,7 +15,7 @@ enum Component {
 }
 
 impl Component {
-    fn of(at: At) -> Result<Component, Fault> {
+    fn of(at: LocatedValue) -> Result<Component, Fault> {
         Ok(match at.count()? {
             5120 => Component::I8,
             5121 => Component::U8,
@@ -54,7 +54,7 @@ impl Component {
 /// The buffers of a file.
 pub struct Buffers<'a> {
     /// The document.
-    pub root: At<'a>,
+    pub root: LocatedValue<'a>,
     /// The bytes of each buffer.
     pub bytes: Vec<Vec<u8>>,
     /// Bytes of all of them and of the document: no table has more rows.
@@ -78,15 +78,15 @@ impl Rows<'_> {
 
 impl<'a> Buffers<'a> {
     /// Rows `count` from the buffer view that `view` names on; `owner` says where they begin in it.
-    fn rows(&self, owner: At<'a>, view: At<'a>, count: usize, columns: usize) -> Result<Rows<'_>, Fault> {
+    fn rows(&self, owner: LocatedValue<'a>, view: LocatedValue<'a>, count: usize, columns: usize) -> Result<Rows<'_>, Fault> {
         let component = Component::of(owner.need("componentType")?)?;
         self.rows_of(owner, view, count, columns, component)
     }
 
     fn rows_of(
         &self,
-        owner: At<'a>,
-        view: At<'a>,
+        owner: LocatedValue<'a>,
+        view: LocatedValue<'a>,
         count: usize,
         columns: usize,
         component: Component,
@@ -96,12 +96,12 @@ impl<'a> Buffers<'a> {
         let buffer = buffer_at.count()?;
         let outside = || {
             let count = self.bytes.len();
-            buffer_at.fault(Problem::Index { index: buffer as i64, count, table: "buffers" })
+            buffer_at.fault(MeshProblem::Index { index: buffer as i64, count, table: "buffers" })
         };
         let bytes = self.bytes.get(buffer).ok_or_else(outside)?;
         let (begin, length) = (place.count_or("byteOffset", 0)?, place.need("byteLength")?.count()?);
         let end = begin.checked_add(length).filter(|end| *end <= bytes.len());
-        let end = end.ok_or_else(|| place.fault(Problem::Outside { length: bytes.len() }))?;
+        let end = end.ok_or_else(|| place.fault(MeshProblem::Outside { length: bytes.len() }))?;
         let view = &bytes[begin..end];
         let width = columns * component.bytes();
         let stride = match place.get("byteStride") {
@@ -115,7 +115,7 @@ impl<'a> Buffers<'a> {
         let needed = if count == 0 { Some(0) } else { needed };
         let is_inside = needed.and_then(|needed| needed.checked_add(offset)).is_some_and(|end| end <= view.len());
         if !is_inside {
-            return Err(owner.fault(Problem::Outside { length: view.len() }));
+            return Err(owner.fault(MeshProblem::Outside { length: view.len() }));
         }
         let normalized = owner.flag("normalized")?;
         Ok(Rows { bytes: &view[offset..], stride, component, normalized })
@@ -124,7 +124,7 @@ impl<'a> Buffers<'a> {
     /// All rows of the accessor that `at` names.
     ///
     /// - `kind`: the type that it must have, such as VEC3, of N columns.
-    pub fn table<const N: usize>(&self, at: At<'a>, kind: &'static str) -> Result<Vec<[f64; N]>, Fault> {
+    pub fn table<const N: usize>(&self, at: LocatedValue<'a>, kind: &'static str) -> Result<Vec<[f64; N]>, Fault> {
         let accessor = at.named(&self.root, "accessors")?;
         let found = accessor.need("type")?;
         if found.text()? != kind {
@@ -134,7 +134,7 @@ impl<'a> Buffers<'a> {
         let count = count_at.count()?;
         if count > self.total {
             let (count, limit) = (count as u64, self.total as u64);
-            return Err(count_at.fault(Problem::TooMany { what: "rows", count, limit }));
+            return Err(count_at.fault(MeshProblem::TooMany { what: "rows", count, limit }));
         }
         let mut table = vec![[0.0; N]; count];
         if let Some(view) = accessor.get("bufferView") {
@@ -150,7 +150,7 @@ impl<'a> Buffers<'a> {
     }
 
     /// Replaces some rows of a table.
-    fn replace<const N: usize>(&self, accessor: At<'a>, sparse: At<'a>, table: &mut [[f64; N]]) -> Result<(), Fault> {
+    fn replace<const N: usize>(&self, accessor: LocatedValue<'a>, sparse: LocatedValue<'a>, table: &mut [[f64; N]]) -> Result<(), Fault> {
         let count = sparse.need("count")?.count()?;
         let (indices, values) = (sparse.need("indices")?, sparse.need("values")?);
         let places = self.rows(indices, indices.need("bufferView")?, count, 1)?;
@@ -160,7 +160,7 @@ impl<'a> Buffers<'a> {
         for k in 0..count {
             let index = places.number(k, 0);
             let length = table.len();
-            let outside = || indices.fault(Problem::Index { index: index as i64, count: length, table: "rows" });
+            let outside = || indices.fault(MeshProblem::Index { index: index as i64, count: length, table: "rows" });
             let row = table.get_mut(index as usize).filter(|_| index >= 0.0).ok_or_else(outside)?;
             *row = std::array::from_fn(|column| rows.number(k, column));
         }
@@ -168,7 +168,7 @@ impl<'a> Buffers<'a> {
     }
 
     /// The indices of the accessor that `at` names.
-    pub fn indices(&self, at: At<'a>) -> Result<Vec<u32>, Fault> {
+    pub fn indices(&self, at: LocatedValue<'a>) -> Result<Vec<u32>, Fault> {
         let component = at.named(&self.root, "accessors")?.need("componentType")?;
         if !matches!(component.count()?, 5121 | 5123 | 5125) {
             return Err(component.expected("an unsigned component type, 5121, 5123 or 5125"));

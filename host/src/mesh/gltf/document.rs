@@ -3,55 +3,55 @@
 use serde_json::Value;
 
 use super::super::error::shortened;
-use super::super::{Fault, JsonPath, Place, Problem};
+use super::super::{Fault, JsonPath, FaultLocation, MeshProblem};
 
 /// A value and where it stands.
 #[derive(Clone, Copy)]
-pub struct At<'a> {
+pub struct LocatedValue<'a> {
     value: &'a Value,
     path: JsonPath,
 }
 
-impl<'a> At<'a> {
+impl<'a> LocatedValue<'a> {
     /// The whole document.
-    pub fn root(value: &'a Value) -> At<'a> {
-        At { value, path: JsonPath::default() }
+    pub fn root(value: &'a Value) -> LocatedValue<'a> {
+        LocatedValue { value, path: JsonPath::default() }
     }
 
     /// A problem here.
-    pub fn fault(&self, problem: Problem) -> Fault {
-        Place::Json(self.path).fault(problem)
+    pub fn fault(&self, problem: MeshProblem) -> Fault {
+        FaultLocation::Json(self.path).fault(problem)
     }
 
     /// Something else stands here.
     pub fn expected(&self, expected: &'static str) -> Fault {
-        self.fault(Problem::Expected { expected, found: shortened(&self.value.to_string()) })
+        self.fault(MeshProblem::Expected { expected, found: shortened(&self.value.to_string()) })
     }
 
     /// A member.
-    pub fn get(&self, key: &'static str) -> Option<At<'a>> {
+    pub fn get(&self, key: &'static str) -> Option<LocatedValue<'a>> {
         let value = self.value.get(key)?;
-        Some(At { value, path: self.path.with(key, None) })
+        Some(LocatedValue { value, path: self.path.with(key, None) })
     }
 
     /// A member that must be there.
-    pub fn need(&self, key: &'static str) -> Result<At<'a>, Fault> {
-        let missing = || Place::Json(self.path.with(key, None)).fault(Problem::Missing);
+    pub fn need(&self, key: &'static str) -> Result<LocatedValue<'a>, Fault> {
+        let missing = || FaultLocation::Json(self.path.with(key, None)).fault(MeshProblem::Missing);
         self.get(key).ok_or_else(missing)
     }
 
     /// The elements of a list that is a member; none if there is no such member.
-    pub fn list(&self, key: &'static str) -> Result<Vec<At<'a>>, Fault> {
+    pub fn list(&self, key: &'static str) -> Result<Vec<LocatedValue<'a>>, Fault> {
         let Some(list) = self.get(key) else { return Ok(Vec::new()) };
         let values = list.value.as_array().ok_or_else(|| list.expected("a list"))?;
-        let element = |(index, value)| At { value, path: self.path.with(key, Some(index)) };
+        let element = |(index, value)| LocatedValue { value, path: self.path.with(key, Some(index)) };
         Ok(values.iter().enumerate().map(element).collect())
     }
 
     /// Element `index` of a list that is a member.
-    pub fn element(&self, key: &'static str, index: usize) -> Option<At<'a>> {
+    pub fn element(&self, key: &'static str, index: usize) -> Option<LocatedValue<'a>> {
         let value = self.value.get(key)?.get(index)?;
-        Some(At { value, path: self.path.with(key, Some(index)) })
+        Some(LocatedValue { value, path: self.path.with(key, Some(index)) })
     }
 
     /// A whole number, 0 or more.
@@ -67,7 +67,7 @@ impl<'a> At<'a> {
 
     /// A member that is true or false; false without it.
     pub fn flag(&self, key: &'static str) -> Result<bool, Fault> {
-        let read = |at: At| at.value.as_bool().ok_or_else(|| at.expected("true or false"));
+        let read = |at: LocatedValue| at.value.as_bool().ok_or_else(|| at.expected("true or false"));
         self.get(key).map_or(Ok(false), read)
     }
 
@@ -83,7 +83,7 @@ impl<'a> At<'a> {
 
     /// A member that is a finite number.
     pub fn number(&self, key: &'static str) -> Result<Option<f64>, Fault> {
-        let read = |at: At| at.value.as_f64().filter(|x| x.is_finite()).ok_or_else(|| at.expected("a number"));
+        let read = |at: LocatedValue| at.value.as_f64().filter(|x| x.is_finite()).ok_or_else(|| at.expected("a number"));
         self.get(key).map(read).transpose()
     }
 
@@ -91,19 +91,19 @@ impl<'a> At<'a> {
     pub fn numbers<const N: usize>(&self, key: &'static str) -> Result<Option<[f64; N]>, Fault> {
         let Some(at) = self.get(key) else { return Ok(None) };
         let values = at.value.as_array().filter(|values| values.len() == N);
-        let values = values.ok_or_else(|| at.fault(Problem::Numbers(N)))?;
+        let values = values.ok_or_else(|| at.fault(MeshProblem::Numbers(N)))?;
         let mut numbers = [0.0; N];
         for (number, value) in numbers.iter_mut().zip(values) {
-            *number = value.as_f64().filter(|x| x.is_finite()).ok_or_else(|| at.fault(Problem::Numbers(N)))?;
+            *number = value.as_f64().filter(|x| x.is_finite()).ok_or_else(|| at.fault(MeshProblem::Numbers(N)))?;
         }
         Ok(Some(numbers))
     }
 
     /// The element of a list of `root` that the number here names.
-    pub fn named(&self, root: &At<'a>, key: &'static str) -> Result<At<'a>, Fault> {
+    pub fn named(&self, root: &LocatedValue<'a>, key: &'static str) -> Result<LocatedValue<'a>, Fault> {
         let index = self.count()?;
         let length = root.value.get(key).and_then(Value::as_array).map_or(0, Vec::len);
-        let outside = || self.fault(Problem::Index { index: index as i64, count: length, table: key });
+        let outside = || self.fault(MeshProblem::Index { index: index as i64, count: length, table: key });
         root.element(key, index).ok_or_else(outside)
     }
 }

@@ -4,10 +4,10 @@ use glam::{DAffine3, DMat4, DQuat, DVec2, DVec3, DVec4};
 use serde_json::Value;
 
 use super::super::fan::strip;
-use super::super::groups::{Grouped, Groups, Look};
-use super::super::{Fault, Mesh, Place, Problem};
+use super::super::groups::{Grouped, Groups, MetallicRoughness};
+use super::super::{Fault, Mesh, FaultLocation, MeshProblem};
 use super::accessor::Buffers;
-use super::document::At;
+use super::document::LocatedValue;
 use super::{BINARY_CHUNK, JSON_CHUNK, MAGIC, base64};
 
 /// Extensions without which the triangles are the same, or which need nothing further.
@@ -23,15 +23,15 @@ const MAX_DEPTH: usize = 1000;
 pub fn parse(bytes: &[u8], neighbour: &dyn Fn(&str) -> Result<Vec<u8>, String>) -> Result<Grouped, Fault> {
     let (json, binary) = if bytes.starts_with(MAGIC) { chunks(bytes)? } else { (bytes, None) };
     let document: Value = serde_json::from_slice(json).map_err(|error| {
-        let problem = Problem::Syntax(error.to_string());
+        let problem = MeshProblem::Syntax(error.to_string());
         if binary.is_some() || bytes.starts_with(MAGIC) {
-            Place::Byte(20 + error.column())
+            FaultLocation::Byte(20 + error.column())
         } else {
-            Place::Line(error.line())
+            FaultLocation::Line(error.line())
         }
         .fault(problem)
     })?;
-    let root = At::root(&document);
+    let root = LocatedValue::root(&document);
     let version = root.need("asset")?.need("version")?;
     if !version.text()?.starts_with("2.") {
         return Err(version.expected("version 2"));
@@ -63,13 +63,13 @@ pub fn parse(bytes: &[u8], neighbour: &dyn Fn(&str) -> Result<Vec<u8>, String>) 
 
 /// The JSON and the binary chunk of a binary file.
 fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Fault> {
-    let ends = |at: usize, what| Place::Byte(at).fault(Problem::Ends(what));
+    let ends = |at: usize, what| FaultLocation::Byte(at).fault(MeshProblem::Ends(what));
     let word = |at: usize| {
         let field = bytes.get(at..at + 4).and_then(|field| field.try_into().ok());
         field.map(u32::from_le_bytes).ok_or_else(|| ends(bytes.len(), "a header"))
     };
     if word(4)? != 2 {
-        return Err(Place::Byte(4).fault(Problem::Expected { expected: "version 2", found: word(4)?.to_string() }));
+        return Err(FaultLocation::Byte(4).fault(MeshProblem::Expected { expected: "version 2", found: word(4)?.to_string() }));
     }
     let mut found = [None, None];
     let mut at = 12;
@@ -90,7 +90,7 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Fault> {
 
 /// The bytes of a buffer.
 fn content_of(
-    buffer: At<'_>,
+    buffer: LocatedValue<'_>,
     index: usize,
     binary: Option<&[u8]>,
     neighbour: &dyn Fn(&str) -> Result<Vec<u8>, String>,
@@ -98,7 +98,7 @@ fn content_of(
     let length = buffer.need("byteLength")?.count()?;
     let mut content = match (buffer.get("uri"), binary) {
         (None, Some(binary)) if index == 0 => binary.to_vec(),
-        (None, _) => return Err(buffer.need("uri").err().unwrap_or_else(|| buffer.fault(Problem::Missing))),
+        (None, _) => return Err(buffer.need("uri").err().unwrap_or_else(|| buffer.fault(MeshProblem::Missing))),
         (Some(uri), _) => {
             let text = uri.text()?;
             match text.strip_prefix("data:") {
@@ -109,13 +109,13 @@ fn content_of(
                 }
                 None => {
                     let name = unescaped(text).ok_or_else(|| uri.expected("a file beside this one"))?;
-                    neighbour(&name).map_err(|why| uri.fault(Problem::Neighbour { name, why }))?
+                    neighbour(&name).map_err(|why| uri.fault(MeshProblem::Neighbour { name, why }))?
                 }
             }
         }
     };
     if content.len() < length {
-        return Err(buffer.fault(Problem::Outside { length: content.len() }));
+        return Err(buffer.fault(MeshProblem::Outside { length: content.len() }));
     }
     content.truncate(length);
     Ok(content)
@@ -140,7 +140,7 @@ fn unescaped(uri: &str) -> Option<String> {
 /// What is read.
 struct Scene<'a> {
     buffers: Buffers<'a>,
-    root: At<'a>,
+    root: LocatedValue<'a>,
     mesh: Mesh,
     /// Whether normals or texture coordinates are missing somewhere.
     lacks: [bool; 2],
@@ -162,7 +162,7 @@ impl<'a> Scene<'a> {
             }
             return Ok(());
         };
-        let mut waiting: Vec<(At<'a>, DAffine3, usize)> = Vec::new();
+        let mut waiting: Vec<(LocatedValue<'a>, DAffine3, usize)> = Vec::new();
         let mut is_reached = vec![false; self.root.list("nodes")?.len()];
         for at in scene.list("nodes")?.into_iter().rev() {
             waiting.push((at, DAffine3::IDENTITY, 0));
@@ -174,7 +174,7 @@ impl<'a> Scene<'a> {
             }
             let placed = to_scene * placement(node)?;
             if !placed.is_finite() {
-                return Err(node.fault(Problem::NotFinite));
+                return Err(node.fault(MeshProblem::NotFinite));
             }
             if let Some(mesh) = node.get("mesh") {
                 self.add(mesh.named(&self.root, "meshes")?, node.text_of("name")?, &placed)?;
@@ -187,7 +187,7 @@ impl<'a> Scene<'a> {
     }
 
     /// Adds the triangles of a mesh.
-    fn add(&mut self, mesh: At<'a>, node: Option<&str>, placement: &DAffine3) -> Result<(), Fault> {
+    fn add(&mut self, mesh: LocatedValue<'a>, node: Option<&str>, placement: &DAffine3) -> Result<(), Fault> {
         let own = mesh.text_of("name")?.or(node).unwrap_or_default();
         for primitive in mesh.list("primitives")? {
             let Some(part) = self.primitive(primitive)? else { continue };
@@ -199,13 +199,13 @@ impl<'a> Scene<'a> {
             let triangles = self.mesh.triangles.len() + part.triangles.len();
             if triangles > self.most {
                 let (count, limit) = (triangles as u64, self.most as u64);
-                return Err(mesh.fault(Problem::TooMany { what: "triangles", count, limit }));
+                return Err(mesh.fault(MeshProblem::TooMany { what: "triangles", count, limit }));
             }
             let lacks = [part.corner_normals.is_empty(), part.corner_parameters.is_empty()];
             self.lacks = [0, 1].map(|k| self.lacks[k] || lacks[k] && !part.triangles.is_empty());
             self.mesh.append(&part.transformed(placement), 0);
             if self.mesh.vertices.iter().rev().take(part.vertices.len()).any(|vertex| !vertex.is_finite()) {
-                return Err(mesh.fault(Problem::NotFinite));
+                return Err(mesh.fault(MeshProblem::NotFinite));
             }
             self.groups.extend(&name, look, triangles);
         }
@@ -213,7 +213,7 @@ impl<'a> Scene<'a> {
     }
 
     /// The triangles of a primitive; none if it is made of points or lines.
-    fn primitive(&self, primitive: At<'a>) -> Result<Option<Mesh>, Fault> {
+    fn primitive(&self, primitive: LocatedValue<'a>) -> Result<Option<Mesh>, Fault> {
         let mode = primitive.count_or("mode", 4)?;
         let attributes = primitive.need("attributes")?;
         let Some(position) = attributes.get("POSITION").filter(|_| (4..=6).contains(&mode)) else {
@@ -222,7 +222,7 @@ impl<'a> Scene<'a> {
         let vertices: Vec<DVec3> =
             self.buffers.table::<3>(position, "VEC3")?.into_iter().map(DVec3::from_array).collect();
         if vertices.iter().any(|vertex| !vertex.is_finite()) {
-            return Err(position.fault(Problem::NotFinite));
+            return Err(position.fault(MeshProblem::NotFinite));
         }
         let indices = match primitive.get("indices") {
             Some(at) => self.buffers.indices(at)?,
@@ -230,7 +230,7 @@ impl<'a> Scene<'a> {
         };
         let count = vertices.len();
         if let Some(&index) = indices.iter().find(|index| **index as usize >= count) {
-            let problem = Problem::Index { index: index.into(), count, table: "vertices" };
+            let problem = MeshProblem::Index { index: index.into(), count, table: "vertices" };
             return Err(primitive.get("indices").unwrap_or(primitive).fault(problem));
         }
         let triangles: Vec<[u32; 3]> = match mode {
@@ -268,15 +268,15 @@ impl<'a> Scene<'a> {
 }
 
 /// What a material looks like, textures left out; none if it does not say.
-fn look(material: At<'_>) -> Result<Option<Look>, Fault> {
+fn look(material: LocatedValue<'_>) -> Result<Option<MetallicRoughness>, Fault> {
     let Some(at) = material.get("pbrMetallicRoughness") else { return Ok(None) };
     let factor = |key| Ok::<f64, Fault>(at.number(key)?.unwrap_or(1.0).clamp(0.0, 1.0));
     let [r, g, b, _] = at.numbers::<4>("baseColorFactor")?.unwrap_or([1.0; 4]);
     let base = DVec3::new(r, g, b).clamp(DVec3::ZERO, DVec3::ONE);
-    Ok(Some(Look { base, metallic: factor("metallicFactor")?, roughness: factor("roughnessFactor")? }))
+    Ok(Some(MetallicRoughness { base, metallic: factor("metallicFactor")?, roughness: factor("roughnessFactor")? }))
 }
 
-fn short(at: At<'_>) -> Fault {
+fn short(at: LocatedValue<'_>) -> Fault {
     at.expected("as many rows as positions")
 }
 
@@ -292,7 +292,7 @@ fn per_corner<T, const N: usize>(
 }
 
 /// Where a node stands in its parent.
-fn placement(node: At<'_>) -> Result<DAffine3, Fault> {
+fn placement(node: LocatedValue<'_>) -> Result<DAffine3, Fault> {
     if let Some(matrix) = node.numbers::<16>("matrix")? {
         let matrix = DMat4::from_cols_array(&matrix);
         if matrix.row(3) != DVec4::W {

@@ -1,7 +1,7 @@
 //! glTF files by hand, through both forms and back, and broken in every way.
 
 use super::super::samples::{ball, tetrahedron};
-use super::super::{Format, Grouped, Look, Mesh, Problem, parse_grouped, print, print_grouped, read_grouped};
+use super::super::{Format, Grouped, MetallicRoughness, Mesh, MeshProblem, parse_grouped, print, print_grouped, read_grouped};
 use super::*;
 use glam::{DVec2, DVec3};
 use serde_json::{Value, json};
@@ -44,7 +44,7 @@ fn both_forms_keep_triangles_normals_parameters_and_groups() {
     let mut mesh = ball(12, 8);
     mesh.surfaces = (0..mesh.triangles.len() as u32).map(|k| k % 3).collect();
     let names = vec!["front".to_owned(), "back side".to_owned()];
-    let looks = vec![None, Some(Look { base: DVec3::new(0.5, 0.25, 1.0), metallic: 0.125, roughness: 0.75 })];
+    let looks = vec![None, Some(MetallicRoughness { base: DVec3::new(0.5, 0.25, 1.0), metallic: 0.125, roughness: 0.75 })];
     let grouped = Grouped { mesh: mesh.clone(), names, looks };
     for format in [Format::Gltf, Format::Glb] {
         let back = parse_grouped(&print_grouped(&grouped, format).unwrap(), format).unwrap();
@@ -244,5 +244,5 @@ fn corners_without_a_normal_are_written_with_that_of_their_triangle() {
     let back = parse_grouped(&print(&mesh, Format::Gltf).unwrap(), Format::Gltf).unwrap().mesh;
     assert!((0..4).all(|t| back.corner_normals[t][0].dot(mesh.face_normal(t).unwrap()) > 0.999));
     let far = tetrahedron().transformed(&glam::DAffine3::from_scale(DVec3::splat(1e300)));
-    assert!(matches!(print(&far, Format::Glb).unwrap_err().problem, Problem::Range { .. }));
+    assert!(matches!(print(&far, Format::Glb).unwrap_err().problem, MeshProblem::Range { .. }));
 }

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use glam::{DVec2, DVec3};
 use serde_json::{Value, json};
 
-use super::super::groups::{Grouped, Look, has_groups, name_of};
-use super::super::{Fault, Mesh, Place, Problem};
+use super::super::groups::{Grouped, MetallicRoughness, has_groups, name_of};
+use super::super::{Fault, Mesh, FaultLocation, MeshProblem};
 use super::{BINARY_CHUNK, JSON_CHUNK, MAGIC, base64};
 
 /// Types of components.
@@ -39,7 +39,7 @@ pub fn print_binary(grouped: &Grouped) -> Result<Vec<u8>, Fault> {
     let whole = 12 + 8 + json.len() + 8 + binary.len();
     let length = |length: usize| {
         let too_long =
-            || Place::Mesh.fault(Problem::TooMany { what: "bytes", count: whole as u64, limit: u32::MAX.into() });
+            || FaultLocation::Mesh.fault(MeshProblem::TooMany { what: "bytes", count: whole as u64, limit: u32::MAX.into() });
         u32::try_from(length).map_err(|_| too_long())
     };
     let mut bytes = MAGIC.to_vec();
@@ -62,7 +62,7 @@ fn document(grouped: &Grouped) -> Result<(Value, Vec<u8>), Fault> {
     let Grouped { mesh, names, looks } = grouped;
     for (vertex, position) in mesh.vertices.iter().enumerate() {
         if let Some(&value) = position.to_array().iter().find(|value| !(**value as f32).is_finite()) {
-            return Err(Place::Vertex(vertex).fault(Problem::Range { value }));
+            return Err(FaultLocation::Vertex(vertex).fault(MeshProblem::Range { value }));
         }
     }
     let (corners, indices) = corners(mesh);
@@ -109,14 +109,14 @@ fn document(grouped: &Grouped) -> Result<(Value, Vec<u8>), Fault> {
         document["materials"] = Value::from(materials);
     }
     if mesh.triangles.is_empty() {
-        return Err(Place::Mesh.fault(Problem::NoTriangles));
+        return Err(FaultLocation::Mesh.fault(MeshProblem::NoTriangles));
     }
     Ok((document, file.binary))
 }
 
 /// A material of this name.
-fn material(name: &str, look: Option<Look>) -> Value {
-    let Some(Look { base, metallic, roughness }) = look else { return json!({ "name": name }) };
+fn material(name: &str, look: Option<MetallicRoughness>) -> Value {
+    let Some(MetallicRoughness { base, metallic, roughness }) = look else { return json!({ "name": name }) };
     let [r, g, b] = base.to_array();
     json!({
         "name": name,

@@ -1,7 +1,7 @@
 //! The header of a polygon file.
 
 use super::super::error::shortened;
-use super::super::{Fault, Place, Problem};
+use super::super::{Fault, FaultLocation, MeshProblem};
 
 /// The most elements, and the most properties of an element, that a header may declare.
 const MAX_DECLARED: usize = 1000;
@@ -30,7 +30,7 @@ pub(super) enum Scalar {
 /// What a header says.
 pub(super) struct Header {
     pub encoding: Encoding,
-    pub elements: Vec<Element>,
+    pub elements: Vec<PlyElement>,
     /// Bytes of the header, and so where the tables begin.
     pub bytes: usize,
     /// Lines of the header.
@@ -40,7 +40,7 @@ pub(super) struct Header {
 }
 
 /// A table.
-pub(super) struct Element {
+pub(super) struct PlyElement {
     pub name: String,
     pub count: u64,
     pub properties: Vec<Property>,
@@ -64,10 +64,10 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, Fault> {
         let length = rest.iter().position(|&byte| byte == b'\n').map_or(rest.len(), |end| end + 1);
         header.bytes += length;
         header.lines += 1;
-        let place = Place::Line(header.lines);
+        let place = FaultLocation::Line(header.lines);
         let text = String::from_utf8_lossy(&rest[..length]);
         let words: Vec<&str> = text.split_ascii_whitespace().collect();
-        let expected = |expected| place.fault(Problem::Expected { expected, found: shortened(text.trim()) });
+        let expected = |expected| place.fault(MeshProblem::Expected { expected, found: shortened(text.trim()) });
         match words[..] {
             ["ply"] if header.lines == 1 => {}
             _ if header.lines == 1 => return Err(expected("ply")),
@@ -84,7 +84,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, Fault> {
             }
             ["element", name, count] => {
                 let count = count.parse().map_err(|_| expected("element NAME COUNT"))?;
-                header.elements.push(Element { name: name.to_owned(), count, properties: Vec::new() });
+                header.elements.push(PlyElement { name: name.to_owned(), count, properties: Vec::new() });
             }
             ["property", ref declaration @ ..] => {
                 let property = property(declaration).map_err(|problem| place.fault(problem))?;
@@ -102,13 +102,13 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, Fault> {
         let declared = header.elements.last().map_or(0, |element| element.properties.len()).max(header.elements.len());
         if declared > MAX_DECLARED {
             let (count, limit) = (declared as u64, MAX_DECLARED as u64);
-            return Err(place.fault(Problem::TooMany { what: "declarations", count, limit }));
+            return Err(place.fault(MeshProblem::TooMany { what: "declarations", count, limit }));
         }
     }
-    Err(Place::Line(header.lines + 1).fault(Problem::Ends("end_header")))
+    Err(FaultLocation::Line(header.lines + 1).fault(MeshProblem::Ends("end_header")))
 }
 
-fn property(words: &[&str]) -> Result<Property, Problem> {
+fn property(words: &[&str]) -> Result<Property, MeshProblem> {
     match *words {
         ["list", length, item, name] => {
             Ok(Property { name: name.to_owned(), scalar: scalar(item)?, length: Some(scalar(length)?) })
@@ -116,12 +116,12 @@ fn property(words: &[&str]) -> Result<Property, Problem> {
         [item, name] => Ok(Property { name: name.to_owned(), scalar: scalar(item)?, length: None }),
         _ => {
             let expected = "property TYPE NAME or property list TYPE TYPE NAME";
-            Err(Problem::Expected { expected, found: shortened(&words.join(" ")) })
+            Err(MeshProblem::Expected { expected, found: shortened(&words.join(" ")) })
         }
     }
 }
 
-fn scalar(word: &str) -> Result<Scalar, Problem> {
+fn scalar(word: &str) -> Result<Scalar, MeshProblem> {
     match word {
         "char" | "int8" => Ok(Scalar::I8),
         "uchar" | "uint8" => Ok(Scalar::U8),
@@ -131,6 +131,6 @@ fn scalar(word: &str) -> Result<Scalar, Problem> {
         "uint" | "uint32" => Ok(Scalar::U32),
         "float" | "float32" => Ok(Scalar::F32),
         "double" | "float64" => Ok(Scalar::F64),
-        _ => Err(Problem::Expected { expected: "a number type", found: shortened(word) }),
+        _ => Err(MeshProblem::Expected { expected: "a number type", found: shortened(word) }),
     }
 }

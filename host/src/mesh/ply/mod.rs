@@ -14,12 +14,12 @@ mod table;
 
 use glam::{DVec2, DVec3};
 
-use self::header::{Element, Encoding, Header, Property, Scalar};
+use self::header::{PlyElement, Encoding, Header, Property, Scalar};
 use self::table::{Binary, Table, Text};
 use super::fan::{fan, strip};
 use super::groups::{Grouped, has_groups, name_of};
 use super::triangles::MAX_COUNT;
-use super::{Fault, Mesh, Place, Problem};
+use super::{Fault, Mesh, FaultLocation, MeshProblem};
 
 /// Understands a PLY file.
 pub(super) fn parse(bytes: &[u8]) -> Result<Grouped, Fault> {
@@ -49,17 +49,17 @@ fn tables<T: Table>(header: &Header, mut table: T) -> Result<Grouped, Fault> {
 }
 
 /// Refuses a count that the rest of the file cannot hold, before anything is reserved for it.
-fn check_count<T: Table>(element: &Element, table: &T) -> Result<(), Fault> {
+fn check_count<T: Table>(element: &PlyElement, table: &T) -> Result<(), Fault> {
     let row = element.properties.iter().map(|property| table.least_bytes(property)).sum::<u64>();
     let limit = (table.bytes_left() / row.max(1)).min(MAX_COUNT as u64);
     if element.count > limit {
-        let problem = Problem::TooMany { what: "rows announced", count: element.count, limit };
+        let problem = MeshProblem::TooMany { what: "rows announced", count: element.count, limit };
         return Err(table.place().fault(problem));
     }
     Ok(())
 }
 
-fn skip<T: Table>(element: &Element, table: &mut T) -> Result<(), Fault> {
+fn skip<T: Table>(element: &PlyElement, table: &mut T) -> Result<(), Fault> {
     for _ in 0..element.count {
         for property in &element.properties {
             table.skip(property)?;
@@ -79,13 +79,13 @@ struct Content {
 }
 
 impl Content {
-    fn read_vertices<T: Table>(&mut self, element: &Element, table: &mut T) -> Result<(), Fault> {
+    fn read_vertices<T: Table>(&mut self, element: &PlyElement, table: &mut T) -> Result<(), Fault> {
         let slot = |names: &[&str]| {
             let is_named = |property: &Property| names.contains(&property.name.as_str()) && property.length.is_none();
             element.properties.iter().position(is_named)
         };
         let all = |slots: [Option<usize>; 3]| slots.into_iter().collect::<Option<Vec<_>>>();
-        let missing = || table.place().fault(Problem::Ends("the vertex properties x, y and z"));
+        let missing = || table.place().fault(MeshProblem::Ends("the vertex properties x, y and z"));
         let position = all([slot(&["x"]), slot(&["y"]), slot(&["z"])]).ok_or_else(missing)?;
         let normal = all([slot(&["nx"]), slot(&["ny"]), slot(&["nz"])]);
         let (s, t) = (slot(&["s", "u", "texture_u"]), slot(&["t", "v", "texture_v"]));
@@ -101,7 +101,7 @@ impl Content {
             let point = |slots: &[usize]| DVec3::new(row[slots[0]], row[slots[1]], row[slots[2]]);
             let point_here = point(&position);
             if !point_here.is_finite() {
-                return Err(place.fault(Problem::NotFinite));
+                return Err(place.fault(MeshProblem::NotFinite));
             }
             self.positions.push(point_here);
             self.normals.extend(normal.as_deref().map(|slots| point(slots).normalize_or_zero()));
@@ -110,7 +110,7 @@ impl Content {
         Ok(())
     }
 
-    fn read_faces<T: Table>(&mut self, element: &Element, table: &mut T) -> Result<(), Fault> {
+    fn read_faces<T: Table>(&mut self, element: &PlyElement, table: &mut T) -> Result<(), Fault> {
         let mut polygon: Vec<u32> = Vec::new();
         for _ in 0..element.count {
             let (first, mut surface) = (self.triangles.len(), None);
@@ -126,7 +126,7 @@ impl Content {
                 let place = table.place();
                 let corners = table.count(length)?;
                 if corners < 3 {
-                    return Err(place.fault(Problem::FewCorners(corners as usize)));
+                    return Err(place.fault(MeshProblem::FewCorners(corners as usize)));
                 }
                 polygon.clear();
                 for _ in 0..corners {
@@ -142,7 +142,7 @@ impl Content {
         Ok(())
     }
 
-    fn read_strips<T: Table>(&mut self, element: &Element, table: &mut T) -> Result<(), Fault> {
+    fn read_strips<T: Table>(&mut self, element: &PlyElement, table: &mut T) -> Result<(), Fault> {
         let mut corners: Vec<u32> = Vec::new();
         for _ in 0..element.count {
             for property in &element.properties {
@@ -171,7 +171,7 @@ impl Content {
         let count = self.positions.len();
         // Faces may stand before the vertices, so that indices can only be checked here.
         if let Some(&index) = self.triangles.iter().flatten().find(|&&index| index as usize >= count) {
-            return Err(table.place().fault(Problem::Index { index: index.into(), count, table: "vertices" }));
+            return Err(table.place().fault(MeshProblem::Index { index: index.into(), count, table: "vertices" }));
         }
         let parameters_are_finite = self.parameters.iter().all(|parameter| parameter.is_finite());
         let parameters = if parameters_are_finite { self.parameters } else { Vec::new() };
@@ -196,9 +196,9 @@ fn index<T: Table>(table: &mut T, property: &Property, count: usize, what: &'sta
     as_index(table.number(property.scalar)?, place, count, what)
 }
 
-fn as_index(number: f64, place: Place, count: usize, what: &'static str) -> Result<u32, Fault> {
+fn as_index(number: f64, place: FaultLocation, count: usize, what: &'static str) -> Result<u32, Fault> {
     if !(0.0..=f64::from(u32::MAX)).contains(&number) || number.fract() != 0.0 {
-        return Err(place.fault(Problem::Index { index: number as i64, count, table: what }));
+        return Err(place.fault(MeshProblem::Index { index: number as i64, count, table: what }));
     }
     Ok(number as u32)
 }
@@ -335,7 +335,7 @@ mod tests {
     fn absurd_counts_are_refused_before_anything_is_reserved() {
         for absurd in ["4294967295", "18446744073709551615"] {
             let fault = parse(TEXT.replace("vertex 4", &format!("vertex {absurd}")).as_bytes()).unwrap_err();
-            assert!(matches!(fault.problem, Problem::TooMany { .. }), "{fault}");
+            assert!(matches!(fault.problem, MeshProblem::TooMany { .. }), "{fault}");
         }
     }
 }

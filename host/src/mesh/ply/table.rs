@@ -1,7 +1,7 @@
 //! The numbers of the tables, whatever their encoding.
 
 use super::super::error::shortened;
-use super::super::{Fault, Place, Problem};
+use super::super::{Fault, FaultLocation, MeshProblem};
 use super::header::{Property, Scalar};
 
 /// A stream of numbers. Every type of the format fits into `f64` without loss.
@@ -10,7 +10,7 @@ pub(super) trait Table {
     fn number(&mut self, scalar: Scalar) -> Result<f64, Fault>;
 
     /// Where the next number stands.
-    fn place(&self) -> Place;
+    fn place(&self) -> FaultLocation;
 
     /// Bytes from here to the end.
     fn bytes_left(&self) -> u64;
@@ -30,7 +30,7 @@ pub(super) trait Table {
         if value >= 0.0 && value.fract() == 0.0 && value <= self.bytes_left() as f64 {
             return Ok(value as u64);
         }
-        Err(place.fault(Problem::Expected { expected: "the length of a list", found: value.to_string() }))
+        Err(place.fault(MeshProblem::Expected { expected: "the length of a list", found: value.to_string() }))
     }
 
     /// Reads past a property.
@@ -71,20 +71,20 @@ impl<'a> Text<'a> {
 impl Table for Text<'_> {
     fn number(&mut self, _: Scalar) -> Result<f64, Fault> {
         if self.rest.is_empty() {
-            return Err(self.place().fault(Problem::Ends("a number")));
+            return Err(self.place().fault(MeshProblem::Ends("a number")));
         }
         let end = self.rest.iter().position(u8::is_ascii_whitespace).unwrap_or(self.rest.len());
         let (word, rest) = self.rest.split_at(end);
         let value = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
-        let found = || Problem::Expected { expected: "a number", found: shortened(&String::from_utf8_lossy(word)) };
+        let found = || MeshProblem::Expected { expected: "a number", found: shortened(&String::from_utf8_lossy(word)) };
         let value = value.ok_or_else(|| self.place().fault(found()))?;
         self.rest = rest;
         self.skip_space();
         Ok(value)
     }
 
-    fn place(&self) -> Place {
-        Place::Line(self.line)
+    fn place(&self) -> FaultLocation {
+        FaultLocation::Line(self.line)
     }
 
     fn bytes_left(&self) -> u64 {
@@ -111,7 +111,7 @@ impl<'a> Binary<'a> {
     }
 
     fn take<const N: usize>(&mut self) -> Result<[u8; N], Fault> {
-        let ends = self.place().fault(Problem::Ends("a number"));
+        let ends = self.place().fault(MeshProblem::Ends("a number"));
         let (field, rest) = self.rest.split_first_chunk::<N>().ok_or(ends)?;
         self.rest = rest;
         let mut field = *field;
@@ -136,8 +136,8 @@ impl Table for Binary<'_> {
         })
     }
 
-    fn place(&self) -> Place {
-        Place::Byte(self.end - self.rest.len())
+    fn place(&self) -> FaultLocation {
+        FaultLocation::Byte(self.end - self.rest.len())
     }
 
     fn bytes_left(&self) -> u64 {

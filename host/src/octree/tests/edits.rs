@@ -5,7 +5,7 @@ use crate::numeric::bounds::Bounds;
 use crate::octree::{MAX_DEPTH, OctreeError};
 
 /// The octree of some objects in a modelling cube from -2 to 2, built of each in order or of all at once.
-fn built(objects: &[Shape], settings: &Settings, at_once: bool) -> Octree {
+fn built(objects: &[Shape], settings: &OctreeSettings, at_once: bool) -> Octree {
     let frame = Bounds { min: DVec3::splat(-2.0), max: DVec3::splat(2.0) };
     let mut octree = Octree::around(frame, settings).expect("a sound box");
     let joined = objects.iter().fold(Shape { vertices: vec![], triangles: vec![] }, Shape::joined);
@@ -28,7 +28,7 @@ fn assert_same(one: &Octree, other: &Octree) {
 }
 
 /// A small object somewhere: a ball, a torus, a soup, a crowd of equal triangles, a needle.
-fn object(stream: &mut Stream) -> Shape {
+fn object(stream: &mut RandomStream) -> Shape {
     let shape = match stream.below(5) {
         0 => ball(3),
         1 => torus(6),
@@ -49,8 +49,8 @@ fn object(stream: &mut Stream) -> Shape {
 #[test]
 fn any_sequence_of_edits_gives_the_octree_of_the_final_objects() {
     for (seed, depth, leaf_triangles) in [(1, 16, 8), (2, MAX_DEPTH, 1), (3, 6, 0), (4, 16, 100)] {
-        let mut stream = Stream::new(51, seed);
-        let settings = Settings { depth, leaf_triangles, ..Settings::default() };
+        let mut stream = RandomStream::new(51, seed);
+        let settings = OctreeSettings { depth, leaf_triangles, ..OctreeSettings::default() };
         let mut objects: Vec<Shape> = Vec::new();
         let mut octree = built(&objects, &settings, false);
         for step in 0..40 {
@@ -77,9 +77,9 @@ fn any_sequence_of_edits_gives_the_octree_of_the_final_objects() {
 
 #[test]
 fn rays_hit_what_is_in_the_octree_after_edits() {
-    let mut stream = Stream::new(52, 0);
+    let mut stream = RandomStream::new(52, 0);
     let objects: Vec<Shape> = (0..12).map(|_| object(&mut stream)).collect();
-    let mut octree = built(&objects, &Settings::default(), false);
+    let mut octree = built(&objects, &OctreeSettings::default(), false);
     for victim in [7, 0, 3] {
         octree.remove(victim);
     }
@@ -95,7 +95,7 @@ fn rays_hit_what_is_in_the_octree_after_edits() {
 #[test]
 fn an_edit_leaves_the_nodes_elsewhere_alone() {
     let frame = Bounds { min: DVec3::splat(-2.0), max: DVec3::splat(2.0) };
-    let mut octree = Octree::around(frame, &Settings::default()).expect("a sound box");
+    let mut octree = Octree::around(frame, &OctreeSettings::default()).expect("a sound box");
     let large = ball(5).moved(|p| p * 0.5 - DVec3::ONE);
     octree.insert(&large.vertices, &large.triangles).expect("inside");
     let before = octree.codes().to_vec();
@@ -110,12 +110,12 @@ fn an_edit_leaves_the_nodes_elsewhere_alone() {
 #[test]
 fn what_cannot_be_put_in_changes_nothing() {
     let objects = [ball(2)];
-    let mut octree = built(&objects, &Settings::default(), false);
+    let mut octree = built(&objects, &OctreeSettings::default(), false);
     let far = ball(1).moved(|p| p * 9.0);
     assert!(matches!(octree.insert(&far.vertices, &far.triangles), Err(OctreeError::VertexOutside { .. })));
     let bad = octree.insert(&[DVec3::ZERO], &[[0, 0, 1]]);
     assert_eq!(bad, Err(OctreeError::IndexOutOfRange { triangle: 0, index: 1, vertices: 1 }));
-    assert_same(&octree, &built(&objects, &Settings::default(), false));
+    assert_same(&octree, &built(&objects, &OctreeSettings::default(), false));
     let endless = Bounds { min: DVec3::ZERO, max: DVec3::INFINITY };
-    assert!(Octree::around(endless, &Settings::default()).is_err());
+    assert!(Octree::around(endless, &OctreeSettings::default()).is_err());
 }

@@ -50,7 +50,7 @@ fn a_ray_in_the_plane_of_triangles_hits_the_sides_that_it_meets() {
 fn rays_from_far_away_hit_what_all_triangles_say() {
     let shape = ball(4);
     let octrees = walks(&shape);
-    let mut stream = Stream::new(31, 0);
+    let mut stream = RandomStream::new(31, 0);
     for distance in [1e2, 1e4, 1e6, 1e9, 1e12, 1e13] {
         let mut hits = 0;
         for _ in 0..100 {
@@ -73,7 +73,7 @@ fn rays_from_far_away_hit_what_all_triangles_say() {
 fn the_length_of_the_direction_changes_t_only() {
     let shape = ball(3);
     let octrees = walks(&shape);
-    let mut stream = Stream::new(32, 0);
+    let mut stream = RandomStream::new(32, 0);
     for _ in 0..50 {
         let ray = chord(DVec3::ZERO, 1.0, &mut stream);
         for exponent in [-1000, -100, -1, 1, 100, 900] {
@@ -114,7 +114,7 @@ fn what_is_no_ray_hits_nothing() {
 #[test]
 fn a_power_of_two_of_scale_changes_no_digit() {
     let shape = torus(24);
-    let mut stream = Stream::new(33, 0);
+    let mut stream = RandomStream::new(33, 0);
     let rays: Vec<Ray> = (0..2000).map(|_| chord(DVec3::ZERO, 1.4, &mut stream)).collect();
     let plain = shape.octree();
     for exponent in [-400, -20, -1, 1, 20, 400] {
@@ -137,7 +137,7 @@ fn a_power_of_two_of_scale_changes_no_digit() {
 fn other_scales_and_distant_places_hit_the_same_triangles() {
     let shape = torus(24);
     let plain = shape.octree();
-    let mut stream = Stream::new(34, 0);
+    let mut stream = RandomStream::new(34, 0);
     let rays: Vec<Ray> = (0..3000).map(|_| chord(DVec3::ZERO, 1.4, &mut stream)).collect();
     for (scale, offset) in [(1e-6, 0.0), (1e6, 0.0), (1.0, 1e7)] {
         let moved = shape.moved(|p| p * scale + DVec3::splat(offset));
@@ -168,7 +168,7 @@ fn degenerate_triangles_are_never_hit_and_hide_nothing() {
     shape.vertices.extend([DVec3::NEG_ONE, DVec3::ZERO, DVec3::ONE]);
     shape.triangles.push([start, start + 1, start + 2]);
     let octrees = walks(&shape);
-    let mut stream = Stream::new(35, 0);
+    let mut stream = RandomStream::new(35, 0);
     for _ in 0..500 {
         let ray = Ray { origin: sphere(stream.point()) * 0.5, direction: sphere(stream.point()) };
         let hit = assert_exact(&shape, &octrees, &ray, f64::INFINITY).expect("it leaves the ball");

@@ -26,7 +26,7 @@ fn what_is_written_is_read_again() {
     assert_eq!(again.to_bytes().expect("written"), bytes);
     assert_eq!(again.statistics(), octree.statistics());
     assert_eq!((again.leaves(), &again.nodes().homes), (octree.leaves(), &octree.nodes().homes));
-    let mut stream = Stream::new(61, 0);
+    let mut stream = RandomStream::new(61, 0);
     for _ in 0..500 {
         let ray = chord(DVec3::ZERO, 1.4, &mut stream);
         assert_eq!(again.closest(&ray, 0.0, f64::INFINITY), octree.closest(&ray, 0.0, f64::INFINITY));
@@ -35,7 +35,7 @@ fn what_is_written_is_read_again() {
     let (mut one, mut other) = (octree, again);
     assert!(one.remove(0) && other.remove(0));
     assert_eq!(one.leaves(), other.leaves());
-    let nothing = Octree::build(&[], &[], &Settings::default()).expect("nothing is fine");
+    let nothing = Octree::build(&[], &[], &OctreeSettings::default()).expect("nothing is fine");
     assert!(Octree::from_bytes(&nothing.to_bytes().expect("written")).is_ok());
 }
 
@@ -92,7 +92,7 @@ fn files_that_lack_a_reference_or_a_node_are_refused() {
 fn no_change_of_bytes_makes_it_panic() {
     let octree = octree();
     let bytes = octree.to_bytes().expect("written");
-    let mut stream = Stream::new(62, 0);
+    let mut stream = RandomStream::new(62, 0);
     let mut refused = 0;
     for _ in 0..800 {
         let mut changed = bytes.clone();

@@ -23,13 +23,13 @@ fn compare(shape: &Shape, rays: &[Ray]) -> usize {
 }
 
 fn chords(count: usize, centre: DVec3, radius: f64, seed: u64) -> Vec<Ray> {
-    let mut stream = Stream::new(seed, 1);
+    let mut stream = RandomStream::new(seed, 1);
     (0..count).map(|_| chord(centre, radius, &mut stream)).collect()
 }
 
 #[test]
 fn random_soups_agree_with_brute_force() {
-    let mut stream = Stream::new(11, 0);
+    let mut stream = RandomStream::new(11, 0);
     for (count, smallest) in [(1, 0.5), (7, 0.5), (300, 0.1), (3000, 0.01), (3000, 1e-5)] {
         let shape = soup(count, smallest, &mut stream);
         let rays = if count < 100 {
@@ -70,7 +70,7 @@ fn a_small_thing_on_a_large_one_agrees_with_brute_force() {
 
 #[test]
 fn both_walks_find_bit_for_bit_what_all_triangles_say() {
-    let mut stream = Stream::new(18, 0);
+    let mut stream = RandomStream::new(18, 0);
     for shape in [soup(400, 0.01, &mut stream), ball(3), torus(12), block(8)] {
         let octrees = walks(&shape);
         for _ in 0..1500 {

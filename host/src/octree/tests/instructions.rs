@@ -3,11 +3,11 @@
 use super::*;
 use crate::octree::WalkCount;
 use crate::octree::descend::{is_any_by, nearest_by};
-use crate::octree::lanes::Plain;
+use crate::octree::lanes::ScalarLanes;
 
 #[test]
 fn plain_and_wide_instructions_find_the_same() {
-    let mut stream = Stream::new(91, 0);
+    let mut stream = RandomStream::new(91, 0);
     for shape in [soup(300, 0.01, &mut stream), ball(4), torus(12), block(8)] {
         let octree = shape.octree();
         let mut hits = 0;
@@ -17,9 +17,9 @@ fn plain_and_wide_instructions_find_the_same() {
             let ray = if i % 2 == 0 { chord } else { Ray { direction: corner - chord.origin, ..chord } };
             for t_max in [0.3, 1.0, f64::INFINITY] {
                 let hit = octree.closest(&ray, 0.0, t_max);
-                assert_eq!(nearest_by::<Plain>(&octree, &ray, [0.0, t_max], &mut WalkCount::default()), hit);
+                assert_eq!(nearest_by::<ScalarLanes>(&octree, &ray, [0.0, t_max], &mut WalkCount::default()), hit);
                 assert_eq!(octree.occluded(&ray, 0.0, t_max), hit.is_some());
-                assert_eq!(is_any_by::<Plain>(&octree, &ray, [0.0, t_max]), hit.is_some());
+                assert_eq!(is_any_by::<ScalarLanes>(&octree, &ray, [0.0, t_max]), hit.is_some());
                 hits += usize::from(hit.is_some());
             }
         }
@@ -30,7 +30,7 @@ fn plain_and_wide_instructions_find_the_same() {
 #[test]
 fn slanted_needles_are_hit_as_all_triangles_say() {
     // Long and thin: these are held as pieces.
-    let mut stream = Stream::new(92, 0);
+    let mut stream = RandomStream::new(92, 0);
     let mut shape = ball(4).moved(|p| p * 0.3);
     for _ in 0..40 {
         let first = shape.vertices.len() as u32;

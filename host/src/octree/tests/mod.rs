@@ -16,8 +16,8 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-use super::{Hit, Octree, Ray, Settings, Walk};
-use crate::numeric::sampling::{Stream, sphere};
+use super::{Hit, Octree, Ray, OctreeSettings, Walk};
+use crate::numeric::sampling::{RandomStream, sphere};
 use crate::numeric::triangle::Shear;
 
 /// Vertices and triangles.
@@ -44,7 +44,7 @@ impl Shape {
     }
 
     fn octree(&self) -> Octree {
-        Octree::build(&self.vertices, &self.triangles, &Settings::default()).expect("a sound mesh")
+        Octree::build(&self.vertices, &self.triangles, &OctreeSettings::default()).expect("a sound mesh")
     }
 
     /// The nearest hit among all triangles by the same exact test that the octree uses, without any cell.
@@ -160,7 +160,7 @@ fn block(n: u32) -> Shape {
 }
 
 /// Triangles of all sizes, from the whole unit cube down to `smallest`, anywhere in it.
-fn soup(count: u32, smallest: f64, stream: &mut Stream) -> Shape {
+fn soup(count: u32, smallest: f64, stream: &mut RandomStream) -> Shape {
     let mut vertices = Vec::new();
     for _ in 0..count {
         let centre = DVec3::new(stream.uniform(), stream.uniform(), stream.uniform());
@@ -171,7 +171,7 @@ fn soup(count: u32, smallest: f64, stream: &mut Stream) -> Shape {
 }
 
 /// A ray from somewhere around a sphere towards somewhere in it.
-fn chord(centre: DVec3, radius: f64, stream: &mut Stream) -> Ray {
+fn chord(centre: DVec3, radius: f64, stream: &mut RandomStream) -> Ray {
     let origin = centre + sphere(stream.point()) * radius * (0.2 + 2.0 * stream.uniform());
     let target = centre + sphere(stream.point()) * radius * stream.uniform();
     Ray { origin, direction: target - origin }

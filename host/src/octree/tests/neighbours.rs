@@ -25,10 +25,10 @@ fn is_beside(cube: LocationalCode, towards: [i8; 3], node: LocationalCode) -> bo
 
 #[test]
 fn neighbours_are_those_that_a_search_of_all_finds() {
-    let mut stream = Stream::new(71, 0);
+    let mut stream = RandomStream::new(71, 0);
     let shape = torus(12).joined(&soup(200, 0.001, &mut stream));
     for (depth, leaf_triangles) in [(16, 4), (4, 0), (MAX_DEPTH, 1)] {
-        let settings = Settings { depth, leaf_triangles, ..Settings::default() };
+        let settings = OctreeSettings { depth, leaf_triangles, ..OctreeSettings::default() };
         let octree = Octree::build(&shape.vertices, &shape.triangles, &settings).expect("a sound mesh");
         let (mut smaller, mut larger) = (0, 0);
         for &cube in octree.codes().iter().step_by(5) {

@@ -28,7 +28,7 @@ fn points_are_met_about_a_voxel_from_where_the_surface_is() {
     for depth in [5, 6, 7] {
         let points = points(&octree, depth);
         assert!(points.points() as f64 > 0.9 * points.voxels() as f64, "{} of {}", points.points(), points.voxels());
-        let mut stream = Stream::new(3, 0);
+        let mut stream = RandomStream::new(3, 0);
         let (mut sum, mut count, mut differ) = (0.0, 0, 0);
         for _ in 0..20_000 {
             let ray = chord(DVec3::ZERO, 1.5, &mut stream);
@@ -62,7 +62,7 @@ fn no_ray_leaves_a_closed_room_or_a_ball() {
         let octree = shape.octree();
         let points = points(&octree, depth);
         assert!(points.points() > 0);
-        let mut stream = Stream::new(7, depth.into());
+        let mut stream = RandomStream::new(7, depth.into());
         for _ in 0..20_000 {
             let ray = Ray { origin: sphere(stream.point()) * 0.5, direction: sphere(stream.point()) };
             let exact = octree.closest(&ray, 0.0, f64::INFINITY).expect("it is closed");
@@ -76,7 +76,7 @@ fn no_ray_leaves_a_closed_room_or_a_ball() {
 fn rays_that_leave_a_ball_do_not_meet_it_again() {
     let ball = outward(5);
     let points = points(&ball.octree(), 6);
-    let mut stream = Stream::new(9, 0);
+    let mut stream = RandomStream::new(9, 0);
     for _ in 0..20_000 {
         let inwards = chord(DVec3::ZERO, 1.5, &mut stream);
         let Some(hit) = points.closest(&inwards, 0.0, f64::INFINITY) else { continue };
@@ -103,7 +103,7 @@ fn voxels_that_hold_more_than_one_surface_or_one_that_bends_keep_their_triangles
         let octree = shape.octree();
         let last = shape.triangles.len() as u32 - 1;
         let points = SurfacePoints::new(&octree, 7, |triangle| (triangle < last).then_some(triangle < of), 1);
-        let mut stream = Stream::new(2, 0);
+        let mut stream = RandomStream::new(2, 0);
         for _ in 0..2000 {
             let ray = chord(DVec3::ZERO, 0.01, &mut stream);
             assert_eq!(points.closest(&ray, 0.0, f64::INFINITY), octree.closest(&ray, 0.0, f64::INFINITY));

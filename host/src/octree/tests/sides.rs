@@ -1,21 +1,21 @@
 //! The inside test against closed forms and the winding of the whole surface.
 
 use super::*;
-use crate::octree::{Side, Sorted};
+use crate::octree::{Containment, TriangleBvh};
 
 /// The octree and the sorted triangles of a shape, which must agree.
 struct Both<'a> {
     shape: &'a Shape,
     octree: Octree,
-    sorted: Sorted,
+    sorted: TriangleBvh,
 }
 
 impl Both<'_> {
     fn new(shape: &Shape) -> Both<'_> {
-        Both { shape, octree: shape.octree(), sorted: Sorted::new(&shape.vertices, &shape.triangles) }
+        Both { shape, octree: shape.octree(), sorted: TriangleBvh::new(&shape.vertices, &shape.triangles) }
     }
 
-    fn side(&self, point: DVec3) -> Side {
+    fn side(&self, point: DVec3) -> Containment {
         let side = self.octree.side(point);
         assert_eq!(self.sorted.side(point, |triangle| self.shape.corners(triangle as usize)), side, "{point}");
         side
@@ -63,9 +63,9 @@ fn points_of_a_grid_lie_inside_a_cube_on_it_or_outside() {
             let steps = [i % 13 - 6, i / 13 % 13 - 6, i / 169 - 6];
             let point = DVec3::from_array(steps.map(f64::from)) * 0.25;
             let expected = match steps.iter().map(|s| s.abs()).max() {
-                Some(4) => Side::Surface,
-                Some(0..4) => Side::Inside,
-                _ => Side::Outside,
+                Some(4) => Containment::Surface,
+                Some(0..4) => Containment::Inside,
+                _ => Containment::Outside,
             };
             assert_eq!(both.side(place(point)), expected, "{point} times {scale} and {offset}");
             counts[expected as usize] += 1;
@@ -76,7 +76,7 @@ fn points_of_a_grid_lie_inside_a_cube_on_it_or_outside() {
 
 #[test]
 fn the_side_is_that_of_the_solid_angle() {
-    let mut stream = Stream::new(81, 0);
+    let mut stream = RandomStream::new(81, 0);
     let golden = outward(ball(3), |p| p);
     let shell = golden.clone().joined(&outward(ball(2).moved(|p| p * 0.5), |p| -p));
     let twice = golden.clone().joined(&golden.clone().moved(|p| p + DVec3::X * 0.7));
@@ -93,9 +93,9 @@ fn the_side_is_that_of_the_solid_angle() {
             if (winding - winding.round()).abs() > 1e-6 {
                 continue;
             }
-            let expected = if winding.round() == 0.0 { Side::Outside } else { Side::Inside };
+            let expected = if winding.round() == 0.0 { Containment::Outside } else { Containment::Inside };
             let side = both.side(point);
-            if side != Side::Surface {
+            if side != Containment::Surface {
                 assert_eq!(side, expected, "{point}: {winding}");
                 counts[side as usize] += 1;
             }
@@ -109,12 +109,12 @@ fn corners_and_middles_of_edges_lie_on_the_surface_and_a_last_digit_beside_it() 
     let shape = outward(ball(3), |p| p);
     let both = Both::new(&shape);
     for &corner in &shape.vertices {
-        assert_eq!(both.side(corner), Side::Surface);
+        assert_eq!(both.side(corner), Containment::Surface);
         // The ball is convex and has its centre at the origin.
         let pressed =
             |toward: f64| DVec3::from_array(corner.to_array().map(|x| if x.abs() > 0.5 { x * toward } else { x }));
-        assert_eq!(both.side(pressed(1.0 + f64::EPSILON * 2.0)), Side::Outside);
-        assert_eq!(both.side(pressed(1.0 - f64::EPSILON * 2.0)), Side::Inside);
+        assert_eq!(both.side(pressed(1.0 + f64::EPSILON * 2.0)), Containment::Outside);
+        assert_eq!(both.side(pressed(1.0 - f64::EPSILON * 2.0)), Containment::Inside);
     }
     let block = outward_block(5);
     let both = Both::new(&block);
@@ -122,19 +122,19 @@ fn corners_and_middles_of_edges_lie_on_the_surface_and_a_last_digit_beside_it() 
         let [a, b, c] = block.corners(triangle);
         // Coordinates of one side are equal, so that the middle lies in its plane exactly.
         for point in [(a + b) * 0.5, (b + c) * 0.5, a * 0.25 + b * 0.25 + c * 0.5] {
-            assert_eq!(both.side(point), Side::Surface);
+            assert_eq!(both.side(point), Containment::Surface);
         }
     }
 }
 
 #[test]
 fn without_a_surface_everything_is_outside() {
-    let nothing = Octree::build(&[], &[], &Settings::default()).expect("nothing is fine");
+    let nothing = Octree::build(&[], &[], &OctreeSettings::default()).expect("nothing is fine");
     let both = ball(2);
     let octree = both.octree();
     for point in [DVec3::ZERO, DVec3::splat(f64::NAN), DVec3::INFINITY, DVec3::splat(1e300)] {
-        assert_eq!(nothing.side(point), Side::Outside);
-        assert_eq!(Sorted::default().side(point, |_| [DVec3::ZERO; 3]), Side::Outside);
-        assert_eq!(octree.side(point) == Side::Outside, point != DVec3::ZERO);
+        assert_eq!(nothing.side(point), Containment::Outside);
+        assert_eq!(TriangleBvh::default().side(point, |_| [DVec3::ZERO; 3]), Containment::Outside);
+        assert_eq!(octree.side(point) == Containment::Outside, point != DVec3::ZERO);
     }
 }

@@ -13,7 +13,7 @@ fn codes_are_sorted_and_none_contains_another() {
 
 #[test]
 fn points_of_the_surface_lie_in_stored_nodes() {
-    for settings in [Settings::default(), Settings { depth: 4, leaf_triangles: 1, ..Settings::default() }] {
+    for settings in [OctreeSettings::default(), OctreeSettings { depth: 4, leaf_triangles: 1, ..OctreeSettings::default() }] {
         let shape = torus(30);
         let octree = Octree::build(&shape.vertices, &shape.triangles, &settings).expect("a sound mesh");
         for triangle in 0..shape.triangles.len() {
@@ -37,7 +37,7 @@ fn points_of_the_surface_lie_in_stored_nodes() {
 #[test]
 fn an_empty_region_is_the_largest_cube_without_surface() {
     let octree = ball(4).octree();
-    let mut stream = Stream::new(41, 0);
+    let mut stream = RandomStream::new(41, 0);
     let mut empty = 0;
     for _ in 0..20_000 {
         let point = DVec3::new(stream.uniform(), stream.uniform(), stream.uniform()) * 4.4 - 2.2;
@@ -68,7 +68,7 @@ fn holds(octree: &Octree, code: LocationalCode, point: DVec3) -> bool {
 
 #[test]
 fn no_triangles_make_an_octree_without_nodes() {
-    let octree = Octree::build(&[], &[], &Settings::default()).expect("nothing is fine");
+    let octree = Octree::build(&[], &[], &OctreeSettings::default()).expect("nothing is fine");
     assert!(octree.codes().is_empty());
     assert_eq!(octree.closest(&Ray { origin: DVec3::ZERO, direction: DVec3::X }, 0.0, 1.0), None);
     assert_eq!(octree.statistics().triangles, 0);
@@ -79,7 +79,7 @@ fn no_triangles_make_an_octree_without_nodes() {
 #[test]
 fn bad_input_is_named() {
     let build = |vertices: &[DVec3], triangles: &[[u32; 3]]| {
-        Octree::build(vertices, triangles, &Settings::default()).map(|_| ())
+        Octree::build(vertices, triangles, &OctreeSettings::default()).map(|_| ())
     };
     let good = [DVec3::ZERO, DVec3::X, DVec3::Y];
     assert_eq!(build(&good, &[[0, 1, 2]]), Ok(()));
@@ -97,11 +97,11 @@ fn bad_input_is_named() {
 #[test]
 fn any_depth_and_leaf_size_give_the_same_hits() {
     let shape = torus(10);
-    let mut stream = Stream::new(42, 0);
+    let mut stream = RandomStream::new(42, 0);
     let rays: Vec<Ray> = (0..500).map(|_| chord(DVec3::ZERO, 1.4, &mut stream)).collect();
     for (depth, leaf_triangles) in [(0, 0), (1, 1), (3, 0), (7, 2), (MAX_DEPTH, 8), (99, 1000)] {
         for walk in [Walk::Index, Walk::LeadingDirection] {
-            let settings = Settings { depth, leaf_triangles, walk, ..Settings::default() };
+            let settings = OctreeSettings { depth, leaf_triangles, walk, ..OctreeSettings::default() };
             let octree = Octree::build(&shape.vertices, &shape.triangles, &settings).expect("a sound mesh");
             for ray in &rays {
                 let hit = octree.closest(ray, 0.0, f64::INFINITY);
@@ -130,7 +130,7 @@ fn no_cell_is_smaller_than_the_least_side_of_a_leaf() {
     let shape = torus(30);
     let side = shape.octree().cube.side;
     for (leaf_side, level) in [(side / 20.0, 4), (side / 16.0, 4), (side / 15.9, 3), (2.0 * side, 0), (f64::NAN, 16)] {
-        let settings = Settings { leaf_side, leaf_triangles: 0, ..Settings::default() };
+        let settings = OctreeSettings { leaf_side, leaf_triangles: 0, ..OctreeSettings::default() };
         let octree = Octree::build(&shape.vertices, &shape.triangles, &settings).expect("a sound mesh");
         assert_eq!(octree.depth, level, "{leaf_side}");
         assert!(octree.codes().iter().all(|code| code.level() <= level));
@@ -146,9 +146,9 @@ fn the_deepest_octree_is_as_exact_as_any() {
     };
     let place = |p: DVec3| p * 2e-5 + DVec3::new(0.1, 1e-5, 0.2);
     let shape = floor.joined(&ball(4).moved(place));
-    let mut stream = Stream::new(43, 0);
+    let mut stream = RandomStream::new(43, 0);
     for depth in [19, 20, 21] {
-        let settings = Settings { depth, leaf_triangles: 1, ..Settings::default() };
+        let settings = OctreeSettings { depth, leaf_triangles: 1, ..OctreeSettings::default() };
         let octree = Octree::build(&shape.vertices, &shape.triangles, &settings).expect("a sound mesh");
         assert_eq!(octree.codes().iter().map(|code| code.level()).max(), Some(depth));
         assert!(octree.statistics().voxel_nodes > 50);
@@ -164,9 +164,9 @@ fn the_deepest_octree_is_as_exact_as_any() {
 
 #[test]
 fn every_triangle_is_named_where_it_lies() {
-    let shape = soup(500, 0.01, &mut Stream::new(44, 0));
+    let shape = soup(500, 0.01, &mut RandomStream::new(44, 0));
     let octree = shape.octree();
-    let mut stream = Stream::new(44, 1);
+    let mut stream = RandomStream::new(44, 1);
     for triangle in 0..shape.triangles.len() {
         let [a, b, c] = shape.corners(triangle);
         for _ in 0..10 {

@@ -5,8 +5,8 @@ use rayon::prelude::*;
 use super::*;
 
 /// Rays from inside aimed exactly at corners, at points of edges and at centres of triangles.
-fn aimed(shape: &Shape, inside: impl Fn(&mut Stream) -> DVec3 + Sync, index: u64) -> Ray {
-    let mut stream = Stream::new(21, index);
+fn aimed(shape: &Shape, inside: impl Fn(&mut RandomStream) -> DVec3 + Sync, index: u64) -> Ray {
+    let mut stream = RandomStream::new(21, index);
     let [a, b, c] = shape.corners(stream.below(shape.triangles.len()));
     let target = match index % 4 {
         0 => a,
@@ -18,7 +18,7 @@ fn aimed(shape: &Shape, inside: impl Fn(&mut Stream) -> DVec3 + Sync, index: u64
     Ray { origin, direction: target - origin }
 }
 
-fn escapes(shape: &Shape, octree: &Octree, count: u64, inside: impl Fn(&mut Stream) -> DVec3 + Sync) -> usize {
+fn escapes(shape: &Shape, octree: &Octree, count: u64, inside: impl Fn(&mut RandomStream) -> DVec3 + Sync) -> usize {
     (0..count)
         .into_par_iter()
         .filter(|&i| octree.closest(&aimed(shape, &inside, i), 0.0, f64::INFINITY).is_none())
@@ -31,17 +31,17 @@ fn a_closed_mesh_lets_no_ray_out() {
     let (count, divisions) = if long { (10_000_000, 8) } else { (100_000, 5) };
     let shape = ball(divisions);
     let [leading, index] = walks(&shape);
-    let inside = |stream: &mut Stream| sphere(stream.point()) * 0.9 * stream.uniform();
+    let inside = |stream: &mut RandomStream| sphere(stream.point()) * 0.9 * stream.uniform();
     assert_eq!(escapes(&shape, &index, count, inside), 0);
     assert_eq!(escapes(&shape, &leading, count / 10, inside), 0);
-    let from_centre = |_: &mut Stream| DVec3::ZERO;
+    let from_centre = |_: &mut RandomStream| DVec3::ZERO;
     assert_eq!(escapes(&shape, &index, count, from_centre), 0);
 }
 
 #[test]
 fn no_ray_leaves_a_torus_or_a_block() {
     let shape = torus(48);
-    let on_ring = |stream: &mut Stream| {
+    let on_ring = |stream: &mut RandomStream| {
         let (sin, cos) = (stream.uniform() * TAU).sin_cos();
         DVec3::new(cos, 0.0, sin)
     };

@@ -5,7 +5,7 @@ mod exr;
 mod hdr;
 mod png;
 
-pub(crate) use texel::{Precision, Texel};
+pub(crate) use texel::{TexelFormat, Texel};
 
 use super::{Picture, PictureError};
 use image::ImageFormat;
@@ -13,7 +13,7 @@ use std::io::BufReader;
 use std::path::Path;
 
 /// A picture file that is open, whose pixels are not read yet.
-pub(crate) struct Source<'a> {
+pub(crate) struct PictureReader<'a> {
     path: &'a Path,
     /// Columns and rows.
     size: [u32; 2],
@@ -26,12 +26,12 @@ enum Format {
     Hdr(Box<hdr::Hdr>),
 }
 
-impl<'a> Source<'a> {
+impl<'a> PictureReader<'a> {
     /// Opens a PNG, EXR or HDR file.
     ///
     /// # Errors
     /// [`PictureError`] for a file that is missing, broken, of another format or too large.
-    pub(crate) fn open(path: &'a Path) -> Result<Source<'a>, PictureError> {
+    pub(crate) fn open(path: &'a Path) -> Result<PictureReader<'a>, PictureError> {
         let format = format_of(path)?;
         let file = files::open(path).map_err(|source| PictureError::Open { path: path.into(), source })?;
         let file = BufReader::new(file);
@@ -51,7 +51,7 @@ impl<'a> Source<'a> {
             }
         };
         Picture::pixels_of(size[0], size[1])?;
-        Ok(Source { path, size, file })
+        Ok(PictureReader { path, size, file })
     }
 
     /// Columns and rows.
@@ -60,11 +60,11 @@ impl<'a> Source<'a> {
     }
 
     /// How pixels are told.
-    pub(crate) fn precision(&self) -> Precision {
+    pub(crate) fn precision(&self) -> TexelFormat {
         match &self.file {
             Format::Png(png) => png.precision(),
-            Format::Exr(exr) => Precision::Float { grey: exr.is_grey() },
-            Format::Hdr(_) => Precision::Float { grey: false },
+            Format::Exr(exr) => TexelFormat::Float { grey: exr.is_grey() },
+            Format::Hdr(_) => TexelFormat::Float { grey: false },
         }
     }
 

@@ -1,6 +1,6 @@
 //! PNG files, row by row.
 
-use super::texel::{Buffered, Precision, Texel};
+use super::texel::{Buffered, TexelFormat, Texel};
 use png::{BitDepth, ColorType, Decoder, DecodingError, Limits, Reader, Transformations};
 
 /// Most bytes that the decoder may take for what is no pixel, and for rows.
@@ -43,10 +43,10 @@ impl Png {
         [self.0.info().width, self.0.info().height]
     }
 
-    pub(super) fn precision(&self) -> Precision {
+    pub(super) fn precision(&self) -> TexelFormat {
         match self.0.output_color_type() {
-            (color, BitDepth::Sixteen) => Precision::Sixteen { grey: bands_of(color) < 3 },
-            _ => Precision::Eight,
+            (color, BitDepth::Sixteen) => TexelFormat::Sixteen { grey: bands_of(color) < 3 },
+            _ => TexelFormat::Eight,
         }
     }
 

@@ -8,7 +8,7 @@ pub(super) type Buffered = BufReader<File>;
 
 /// How a file tells its pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Precision {
+pub(crate) enum TexelFormat {
     /// Eight bits a band, encoded as sRGB.
     Eight,
     /// Sixteen bits a band, encoded as sRGB; `grey` where all bands are the same.

@@ -1,17 +1,17 @@
 //! What guides the regression, of the samples of a film.
 
 use super::super::film::Film;
-use super::super::guide::Guide;
+use super::super::guide::PixelFeatures;
 use super::super::tally::Tally;
-use super::plane::Plane;
-use super::regression::{GUIDES, Guides, MARGIN};
+use super::plane::PixelPlane;
+use super::regression::{GUIDES, FeaturePlanes, MARGIN};
 use std::array::from_fn;
 
 /// The least ridge of what guides: the variance of its mean is the ridge otherwise, so that what is noisy explains less.
 const LEAST_RIDGE: f32 = 1e-5;
 
 /// What guides the regression.
-pub(super) fn guides(film: &Film) -> Guides {
+pub(super) fn guides(film: &Film) -> FeaturePlanes {
     let size = [film.width() as usize, film.height() as usize];
     let (tallies, guides) = (film.tallies(), film.guides());
     let count = |pixel: usize| tallies[pixel].count.max(1) as f32;
@@ -23,8 +23,8 @@ pub(super) fn guides(film: &Film) -> Guides {
         .filter_map(distance)
         .fold((0.0, 0.0f64), |(sum, seen), distance| (sum + distance.ln(), seen + 1.0));
     let typical = sum / seen.max(1.0);
-    let values: [Plane; GUIDES] = from_fn(|guide| {
-        Plane::new(size, MARGIN, |pixel| match guide {
+    let values: [PixelPlane; GUIDES] = from_fn(|guide| {
+        PixelPlane::new(size, MARGIN, |pixel| match guide {
             0..3 => guides[pixel].albedo[guide] / count(pixel),
             3..6 => guides[pixel].normal[guide - 3] / count(pixel),
             _ => distance(pixel).map_or(0.0, |distance| (distance.ln() - typical) as f32),
@@ -40,19 +40,19 @@ pub(super) fn guides(film: &Film) -> Guides {
         variance(mean_squared, squares, count(pixel)) / 3.0
     };
     let ridges = [
-        Plane::new(size, MARGIN, |pixel| {
-            let Guide { albedo, albedo_squares, .. } = guides[pixel];
+        PixelPlane::new(size, MARGIN, |pixel| {
+            let PixelFeatures { albedo, albedo_squares, .. } = guides[pixel];
             ridge(of_vector(pixel, albedo, albedo_squares))
         }),
-        Plane::new(size, MARGIN, |pixel| {
-            let Guide { normal, normal_squares, .. } = guides[pixel];
+        PixelPlane::new(size, MARGIN, |pixel| {
+            let PixelFeatures { normal, normal_squares, .. } = guides[pixel];
             ridge(of_vector(pixel, normal, normal_squares))
         }),
-        Plane::new(size, MARGIN, |pixel| {
+        PixelPlane::new(size, MARGIN, |pixel| {
             let mean = distance(pixel).unwrap_or(1.0) as f32;
             let squares = guides[pixel].distance_squares;
             ridge(variance(mean * mean, squares, tallies[pixel].elements.max(1) as f32) / (mean * mean))
         }),
     ];
-    Guides { values, ridges }
+    FeaturePlanes { values, ridges }
 }

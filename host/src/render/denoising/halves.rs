@@ -1,10 +1,10 @@
 //! The samples of a film in two halves: what each pixel is in both, how noisy that is, and where one holds an outlier.
 
 use super::super::film::Film;
-use super::super::guide::Guide;
+use super::super::guide::PixelFeatures;
 use super::super::tally::Tally;
-use super::plane::{Plane, bell, square};
-use super::regression::{Bands, MARGIN, Noisy};
+use super::plane::{PixelPlane, bell, square};
+use super::regression::{RgbPlanes, MARGIN, NoisyPicture};
 use crate::color::srgb::LUMINANCE;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
@@ -40,10 +40,10 @@ type Means = [[f32; 2]; 3];
 
 /// The samples of each pixel in two halves, in units of the mean radiance of the picture.
 pub(super) struct Halves {
-    pub(super) early: Noisy,
-    pub(super) late: Noisy,
+    pub(super) early: NoisyPicture,
+    pub(super) late: NoisyPicture,
     /// The share of the samples that the early half has.
-    share: Plane,
+    share: PixelPlane,
     /// Pixels with an outlier, and their means without it.
     pub(super) outliers: FxHashMap<usize, [f32; 3]>,
     /// The unit.
@@ -63,7 +63,7 @@ impl Halves {
         let pixels = tallies.len();
         let counts = |pixel: usize| halves(tallies[pixel].count);
         let mean = |pixel: usize| {
-            let (Tally { sum, .. }, Guide { early, .. }) = (&tallies[pixel], &guides[pixel]);
+            let (Tally { sum, .. }, PixelFeatures { early, .. }) = (&tallies[pixel], &guides[pixel]);
             let [first, rest] = counts(pixel);
             from_fn(|band| {
                 let late = (sum[band] as f32 - early[band]) / rest.max(1.0);
@@ -77,8 +77,8 @@ impl Halves {
             means[*pixel].iter_mut().for_each(|band| *band = [factors[0] * band[0], factors[1] * band[1]]);
         }
         // As if samples were independent.
-        let independent: [Plane; 3] = from_fn(|band| {
-            Plane::new(size, 0, |pixel| {
+        let independent: [PixelPlane; 3] = from_fn(|band| {
+            PixelPlane::new(size, 0, |pixel| {
                 if outliers.contains_key(&pixel) {
                     // The squares of its samples are those of the outlier: it is as uncertain as it is bright.
                     return means[pixel][band].map(|half| half * half).iter().sum();
@@ -89,12 +89,12 @@ impl Halves {
             })
         });
         // By what halves differ: right for evenly spread samples, but of a single pixel it tells little.
-        let by_halves = Plane::new(size, 0, |pixel| {
+        let by_halves = PixelPlane::new(size, 0, |pixel| {
             let [first, rest] = counts(pixel);
             let differ = means[pixel].iter().map(|[early, late]| (early - late).powi(2)).sum::<f32>();
             differ * first * rest / (first + rest).max(1.0).powi(2)
         });
-        let by_samples = Plane::new(size, 0, |pixel| independent.iter().map(|band| band.of(pixel)).sum());
+        let by_samples = PixelPlane::new(size, 0, |pixel| independent.iter().map(|band| band.of(pixel)).sum());
         let wide = square(VARIANCE_FAR);
         let [by_halves, by_samples] = [by_halves, by_samples].map(|plane| plane.convolved(&wide));
         let around = independent.each_ref().map(|band| band.convolved(&square(1)));
@@ -105,8 +105,8 @@ impl Halves {
                 (own * independent[band].of(pixel) + VARIANCE_PRIOR * around[band].of(pixel)) / (own + VARIANCE_PRIOR);
             pooled * part.clamp(VARIANCE_PARTS[0], VARIANCE_PARTS[1])
         };
-        let variances: [Plane; 3] = from_fn(|band| Plane::new(size, 0, |pixel| pooled(band, pixel)));
-        let share = Plane::new(size, 0, |pixel| {
+        let variances: [PixelPlane; 3] = from_fn(|band| PixelPlane::new(size, 0, |pixel| pooled(band, pixel)));
+        let share = PixelPlane::new(size, 0, |pixel| {
             let [first, rest] = counts(pixel);
             first / (first + rest).max(1.0)
         });
@@ -117,9 +117,9 @@ impl Halves {
         let outliers = outliers.into_keys().map(without).collect();
         let half = |half: usize| {
             let of_half = |pixel: usize| counts(pixel).iter().sum::<f32>() / counts(pixel)[half].max(1.0);
-            let bands = from_fn(|band| Plane::new(size, MARGIN, |pixel| means[pixel][band][half]));
+            let bands = from_fn(|band| PixelPlane::new(size, MARGIN, |pixel| means[pixel][band][half]));
             let variance = |band: usize, pixel: usize| variances[band].of(pixel) * of_half(pixel);
-            Noisy::new(bands, from_fn(|band| Plane::new(size, MARGIN, |pixel| variance(band, pixel))))
+            NoisyPicture::new(bands, from_fn(|band| PixelPlane::new(size, MARGIN, |pixel| variance(band, pixel))))
         };
         let [early, late] = [half(0), half(1)];
         Some(Halves { early, late, share, outliers, unit })
@@ -138,19 +138,19 @@ impl Halves {
     }
 
     /// What both filtered halves say of a pixel together, in each band.
-    pub(super) fn mixed(&self, [one, two]: &[Bands; 2], pixel: usize) -> [f32; 3] {
+    pub(super) fn mixed(&self, [one, two]: &[RgbPlanes; 2], pixel: usize) -> [f32; 3] {
         let share = self.share.of(pixel);
         from_fn(|band| share * one[band].of(pixel) + (1.0 - share) * two[band].of(pixel))
     }
 
     /// The squared errors of a pixel relative to its radiance: as it is, and filtered. The latter is told by the difference
     /// of each filtered half from the other half, less the noise of that; it may come out below 0.
-    pub(super) fn errors(&self, filtered: &[Bands; 2], pixel: usize) -> [f32; 2] {
+    pub(super) fn errors(&self, filtered: &[RgbPlanes; 2], pixel: usize) -> [f32; 2] {
         let values = self.mixed(filtered, pixel);
         let [one, two] = filtered;
         let mut sum = [0.0; 2];
         for (band, value) in values.into_iter().enumerate() {
-            let of = |half: &Noisy| (half.bands[band].of(pixel), half.variances[band].of(pixel));
+            let of = |half: &NoisyPicture| (half.bands[band].of(pixel), half.variances[band].of(pixel));
             let ((early, early_noise), (late, late_noise)) = (of(&self.early), of(&self.late));
             let off = [one[band].of(pixel) - late, two[band].of(pixel) - early];
             let errors = errors(self.share.of(pixel), value, off, [early_noise, late_noise]);
@@ -163,15 +163,15 @@ impl Halves {
     ///
     /// Errors of both are independent: the mean squared error of the mixture is least where each counts as much as the
     /// other is wrong. That of what was filtered is told by its difference from the other half, less the noise of that.
-    pub(super) fn part_of_filtered(&self, both: &[Bands; 2]) -> Plane {
+    pub(super) fn part_of_filtered(&self, both: &[RgbPlanes; 2]) -> PixelPlane {
         let [one, two] = both;
         let size = [self.share.width, self.share.height];
         let bell_seen = bell(SEEN);
         let squared: Vec<f32> = bell_seen.iter().map(|part| part * part).collect();
-        let seen_noise = |half: &Noisy, band: usize| half.variances[band].convolved(&squared);
-        let seen_difference = |filtered: &Bands, half: &Noisy, band: usize| {
+        let seen_noise = |half: &NoisyPicture, band: usize| half.variances[band].convolved(&squared);
+        let seen_difference = |filtered: &RgbPlanes, half: &NoisyPicture, band: usize| {
             let (filtered, half) = (&filtered[band], &half.bands[band]);
-            Plane::new(size, 0, |pixel| filtered.of(pixel) - half.of(pixel)).convolved(&bell_seen)
+            PixelPlane::new(size, 0, |pixel| filtered.of(pixel) - half.of(pixel)).convolved(&bell_seen)
         };
         // The squared errors of what was not filtered and of what was.
         let mut sums = vec![[0.0f32; 2]; size[0] * size[1]];
@@ -179,16 +179,16 @@ impl Halves {
             let noise = [&self.early, &self.late].map(|half| seen_noise(half, band));
             let off = [seen_difference(one, &self.late, band), seen_difference(two, &self.early, band)];
             sums.par_iter_mut().enumerate().for_each(|(pixel, sum)| {
-                let of = |planes: &[Plane; 2]| planes.each_ref().map(|plane| plane.of(pixel));
+                let of = |planes: &[PixelPlane; 2]| planes.each_ref().map(|plane| plane.of(pixel));
                 let value = self.mixed(both, pixel)[band];
                 let errors = errors(self.share.of(pixel), value, of(&off), of(&noise));
                 *sum = [sum[0] + errors[0], sum[1] + errors[1]];
             });
         }
         let wide = bell(TOLD);
-        let smooth = |which: usize| Plane::new(size, 0, |pixel| sums[pixel][which]).convolved(&wide);
+        let smooth = |which: usize| PixelPlane::new(size, 0, |pixel| sums[pixel][which]).convolved(&wide);
         let [unfiltered, filtered] = [smooth(0), smooth(1)];
-        Plane::new(size, 0, |pixel| {
+        PixelPlane::new(size, 0, |pixel| {
             let (unfiltered, filtered) = (unfiltered.of(pixel).max(0.0), filtered.of(pixel).max(0.0));
             if unfiltered > 0.0 { unfiltered / (unfiltered + filtered) } else { 0.0 }
         })

@@ -4,7 +4,7 @@
 
 use super::super::film::Film;
 use super::halves::Halves;
-use super::regression::Bands;
+use super::regression::RgbPlanes;
 use rayon::prelude::*;
 
 /// The columns and rows of a window.
@@ -47,7 +47,7 @@ impl Pilot {
     /// tried.
     ///
     /// - `filtered`: both halves, where [`Pilot::quiet`] is false.
-    pub(super) fn is_worth(&self, halves: &Halves, filtered: &[Bands; 2]) -> bool {
+    pub(super) fn is_worth(&self, halves: &Halves, filtered: &[RgbPlanes; 2]) -> bool {
         let rows = self.quiet.len() / self.width;
         let (mut unfiltered, mut mixture) = (0.0, 0.0);
         for y in (0..rows).step_by(CELL) {

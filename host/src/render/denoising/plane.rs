@@ -11,7 +11,7 @@ const STRIP: usize = 32;
 
 /// One number for each pixel. Beyond its edges the nearest pixel is repeated.
 #[derive(Clone, Debug)]
-pub(super) struct Plane {
+pub(super) struct PixelPlane {
     pub(super) width: usize,
     pub(super) height: usize,
     /// How far it goes beyond each edge, pixels; on the right and below at least so far.
@@ -20,12 +20,12 @@ pub(super) struct Plane {
     values: Vec<f32>,
 }
 
-impl Plane {
+impl PixelPlane {
     /// A plane of numbers that are found pixel by pixel.
     ///
     /// - `size`: columns and rows. `margin`: how far it goes beyond each edge, pixels; without one, lanes cannot be read.
     /// - `value`: of the pixel of a number, counted row by row.
-    pub(super) fn new([width, height]: [usize; 2], margin: usize, value: impl Fn(usize) -> f32 + Sync) -> Plane {
+    pub(super) fn new([width, height]: [usize; 2], margin: usize, value: impl Fn(usize) -> f32 + Sync) -> PixelPlane {
         let stride = if margin == 0 { width } else { margin + width.next_multiple_of(LANES) + margin };
         let rows = margin + height + margin;
         let mut values = zeros(stride * rows);
@@ -38,7 +38,7 @@ impl Plane {
             values[..margin].fill(first);
             values[margin + width..].fill(last);
         });
-        Plane { width, height, margin, stride, values }
+        PixelPlane { width, height, margin, stride, values }
     }
 
     /// The number of a pixel, counted row by row.
@@ -79,7 +79,7 @@ impl Plane {
     /// The plane that is a sum over the surroundings of each pixel, without a margin.
     ///
     /// - `kernel`: how much a pixel counts in rows and in columns by its distance from the middle, the first at 0.
-    pub(super) fn convolved(&self, kernel: &[f32]) -> Plane {
+    pub(super) fn convolved(&self, kernel: &[f32]) -> PixelPlane {
         let (width, height) = (self.width, self.height);
         let far = kernel.len() - 1;
         let mut result = zeros(width * height);
@@ -111,7 +111,7 @@ impl Plane {
                 }
             }
         });
-        Plane { margin: 0, stride: width, values: result, ..*self }
+        PixelPlane { margin: 0, stride: width, values: result, ..*self }
     }
 }
 
@@ -149,14 +149,14 @@ mod tests {
 
     #[test]
     fn a_point_becomes_the_kernel_and_an_even_plane_stays() {
-        let point = Plane::new([9, 7], 2, |pixel| f32::from(u8::from(pixel == 3 * 9 + 4)));
+        let point = PixelPlane::new([9, 7], 2, |pixel| f32::from(u8::from(pixel == 3 * 9 + 4)));
         let kernel = bell(0.7);
         let spread = point.convolved(&kernel);
         for (x, y) in [(4, 3), (5, 3), (4, 1), (6, 4)] {
             let expected = kernel[4usize.abs_diff(x)] * kernel[3usize.abs_diff(y)];
             assert!((spread.of(y * 9 + x) - expected).abs() < 1e-6);
         }
-        let even = Plane::new([20, 3], 0, |_| 2.0);
+        let even = PixelPlane::new([20, 3], 0, |_| 2.0);
         for kernel in [bell(4.0), square(10)] {
             let smooth = even.convolved(&kernel);
             assert!((0..60).all(|pixel| (smooth.of(pixel) - 2.0).abs() < 1e-5));
@@ -165,7 +165,7 @@ mod tests {
 
     #[test]
     fn beyond_an_edge_the_nearest_pixel_is_repeated() {
-        let plane = Plane::new([3, 2], 4, |pixel| pixel as f32);
+        let plane = PixelPlane::new([3, 2], 4, |pixel| pixel as f32);
         assert_eq!([[-4, -4], [-1, 1], [2, 0]].map(|[x, y]| plane.from(x, y)[0]), [0.0, 3.0, 2.0]);
         assert_eq!(plane.from(2, 5)[..4], [5.0; 4]);
         assert_eq!(plane.place(1, -2) as isize + plane.step(-3, 4), plane.place(-2, 2) as isize);

@@ -4,7 +4,7 @@
 //! around both are apart beyond their noise. The plane lies over albedo, normal, logarithm of the distance and place: where
 //! these tell the colors apart, edges and gradients stay, however many neighbors count.
 
-use super::plane::{LANES, Plane, square};
+use super::plane::{LANES, PixelPlane, square};
 use processes::widest::{self, Work};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -50,35 +50,35 @@ static NEIGHBORS: LazyLock<Vec<[isize; 2]>> = LazyLock::new(|| {
 });
 
 /// A plane for each band.
-pub(super) type Bands = [Plane; 3];
+pub(super) type RgbPlanes = [PixelPlane; 3];
 
 /// A picture with its noise.
-pub(super) struct Noisy {
-    pub(super) bands: Bands,
+pub(super) struct NoisyPicture {
+    pub(super) bands: RgbPlanes,
     /// The variance in each.
-    pub(super) variances: Bands,
+    pub(super) variances: RgbPlanes,
     /// The greatest variance with which a neighbor of each pixel counts in full, and one over that of each pixel; as means
     /// over the bands.
-    reliable: [Plane; 2],
+    reliable: [PixelPlane; 2],
 }
 
-impl Noisy {
+impl NoisyPicture {
     /// - `bands`: of a picture whose mean is 1. `variances`: in each of them.
-    pub(super) fn new(bands: Bands, variances: Bands) -> Noisy {
+    pub(super) fn new(bands: RgbPlanes, variances: RgbPlanes) -> NoisyPicture {
         let size = [bands[0].width, bands[0].height];
         let mean = |pixel: usize| variances.iter().map(|band| band.of(pixel)).sum::<f32>() / 3.0 + LEAST_VARIANCE;
-        let over = Plane::new(size, MARGIN, |pixel| 1.0 / mean(pixel));
-        let around = Plane::new(size, 0, mean).convolved(&square(PATCH as usize));
-        let most = Plane::new(size, MARGIN, |pixel| MOST_VARIANCE * around.of(pixel));
-        Noisy { bands, variances, reliable: [most, over] }
+        let over = PixelPlane::new(size, MARGIN, |pixel| 1.0 / mean(pixel));
+        let around = PixelPlane::new(size, 0, mean).convolved(&square(PATCH as usize));
+        let most = PixelPlane::new(size, MARGIN, |pixel| MOST_VARIANCE * around.of(pixel));
+        NoisyPicture { bands, variances, reliable: [most, over] }
     }
 }
 
 /// What guides: albedo in three bands, the normal along three axes, and the logarithm of the distance; and the ridge of each
 /// of the three, which is greater where it is noisy itself.
-pub(super) struct Guides {
-    pub(super) values: [Plane; GUIDES],
-    pub(super) ridges: [Plane; 3],
+pub(super) struct FeaturePlanes {
+    pub(super) values: [PixelPlane; GUIDES],
+    pub(super) ridges: [PixelPlane; 3],
 }
 
 /// A picture, of which each pixel is found by those around it.
@@ -88,12 +88,12 @@ pub(super) struct Guides {
 ///   are, and nothing is computed.
 /// - `is_cancelled`: asked from time to time; what is left then stays as it was.
 pub(super) fn filtered(
-    picture: &Noisy,
-    other: &Noisy,
-    guides: &Guides,
+    picture: &NoisyPicture,
+    other: &NoisyPicture,
+    guides: &FeaturePlanes,
     quiet: &[bool],
     is_cancelled: &(dyn Fn() -> bool + Sync),
-) -> Bands {
+) -> RgbPlanes {
     let [width, height] = [picture.bands[0].width, picture.bands[0].height];
     let mut rows: Vec<[f32; 3]> = vec![[0.0; 3]; width * height];
     let room = || vec![[0.0; LANES]; NEIGHBORS.len() * TILE_HEIGHT * TILE_WIDTH / LANES];
@@ -115,7 +115,7 @@ pub(super) fn filtered(
             }
         }
     });
-    [0, 1, 2].map(|band| Plane::new([width, height], 0, |pixel| rows[pixel][band]))
+    [0, 1, 2].map(|band| PixelPlane::new([width, height], 0, |pixel| rows[pixel][band]))
 }
 
 /// The least rectangle of columns and rows that holds all noisy pixels of a tile; none if all are quiet.
@@ -188,9 +188,9 @@ impl Lanes {
 
 /// Filters a tile.
 struct Filtering<'a> {
-    picture: &'a Noisy,
-    other: &'a Noisy,
-    guides: &'a Guides,
+    picture: &'a NoisyPicture,
+    other: &'a NoisyPicture,
+    guides: &'a FeaturePlanes,
     /// Which pixels of the rows are quiet.
     quiet: &'a [bool],
     /// Its first column and row.
@@ -238,7 +238,7 @@ impl Work for Filtering<'_> {
 /// Rousselle, Knaus and Zwicker 2012, the dual-buffer non-local means.
 #[inline(always)]
 fn weigh(
-    picture: &Noisy,
+    picture: &NoisyPicture,
     at: [usize; 2],
     [groups, rows]: [usize; 2],
     [dx, dy]: [isize; 2],
@@ -249,8 +249,8 @@ fn weigh(
     let [x0, y0] = at.map(|at| at as isize);
     let (width, height) = (picture.bands[0].width as isize, picture.bands[0].height as isize);
     let mut apart = [0.0f32; STRIDE * ROWS];
-    let bands = picture.bands.each_ref().map(Plane::values);
-    let variances = picture.variances.each_ref().map(Plane::values);
+    let bands = picture.bands.each_ref().map(PixelPlane::values);
+    let variances = picture.variances.each_ref().map(PixelPlane::values);
     for row in 0..rows + 2 * PATCH as usize {
         let first = picture.bands[0].place(x0 - PATCH, y0 - PATCH + row as isize);
         for group in 0..=groups {
@@ -271,7 +271,7 @@ fn weigh(
     }
     let patch = 2 * PATCH as usize + 1;
     let mean = 1.0 / (3 * patch * patch) as f32;
-    let [most, over] = picture.reliable.each_ref().map(Plane::values);
+    let [most, over] = picture.reliable.each_ref().map(PixelPlane::values);
     let mut down = [0.0f32; STRIDE];
     for row in 0..rows {
         let is_outside = !(0..height).contains(&(y0 + row as isize + dy));
@@ -354,12 +354,12 @@ macro_rules! normal_equations {
 /// # Source
 /// Bitterli and others 2016, nonlinearly weighted first-order regression.
 #[inline(always)]
-fn fit(picture: &Noisy, guides: &Guides, place: [isize; 2], weights: &[[f32; LANES]], step: usize) -> [Lanes; 3] {
+fn fit(picture: &NoisyPicture, guides: &FeaturePlanes, place: [isize; 2], weights: &[[f32; LANES]], step: usize) -> [Lanes; 3] {
     let plane = &picture.bands[0];
     let place = plane.place(place[0], place[1]);
-    let values = guides.values.each_ref().map(Plane::values);
+    let values = guides.values.each_ref().map(PixelPlane::values);
     let middle = values.map(|values| Lanes::read(values, place));
-    let regression = Regression { bands: picture.bands.each_ref().map(Plane::values), values, middle };
+    let regression = Regression { bands: picture.bands.each_ref().map(PixelPlane::values), values, middle };
     let mut matrix = [[Lanes::splat(0.0); UNKNOWNS]; UNKNOWNS];
     let mut right = [[Lanes::splat(0.0); 3]; UNKNOWNS];
     normal_equations!(regression, plane, place, weights, step, matrix, right;
@@ -446,17 +446,17 @@ mod tests {
             })
             .collect();
         let plane = |number: usize, least: f32| {
-            Plane::new(size, MARGIN, |pixel| least + noise[number * size[0] * size[1] + pixel])
+            PixelPlane::new(size, MARGIN, |pixel| least + noise[number * size[0] * size[1] + pixel])
         };
         let noisy = |first: usize| {
             let plane = |number: usize, least: f32| plane(first + number, least);
-            let variances = [0; 3].map(|_| Plane::new(size, MARGIN, |_| 0.08));
-            Noisy::new([plane(0, 0.5), plane(1, 0.5), plane(2, 0.5)], variances)
+            let variances = [0; 3].map(|_| PixelPlane::new(size, MARGIN, |_| 0.08));
+            NoisyPicture::new([plane(0, 0.5), plane(1, 0.5), plane(2, 0.5)], variances)
         };
         let (picture, other) = (noisy(0), noisy(3));
-        let guides = Guides {
+        let guides = FeaturePlanes {
             values: from_fn(|guide| plane(6 + guide, 0.0)),
-            ridges: [0; 3].map(|_| Plane::new(size, MARGIN, |_| 1e-3)),
+            ridges: [0; 3].map(|_| PixelPlane::new(size, MARGIN, |_| 1e-3)),
         };
         let by = |way: &dyn Fn(Filtering<'_>)| {
             let mut weights = vec![[0.0; LANES]; NEIGHBORS.len() * TILE_HEIGHT * TILE_WIDTH / LANES];

@@ -2,8 +2,8 @@
 
 use super::halves::halves;
 use super::*;
-use crate::render::Sample;
-use crate::render::guide::Guide;
+use crate::render::PixelSample;
+use crate::render::guide::PixelFeatures;
 use glam::DVec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -23,13 +23,13 @@ fn film([width, height]: [u32; 2], samples: u32, deviation: f64, truth: Truth<'_
                 let at = [x, y].map(|at| at as f64 + random.random::<f64>());
                 let (radiance, albedo, normal) = truth(at[0], at[1]);
                 let factor = 1.0 + deviation * 12f64.sqrt() * (random.random::<f64>() - 0.5);
-                let sample = Sample {
+                let sample = PixelSample {
                     radiance: radiance * factor,
                     covered: true,
                     first: Some((5.0, normal, [0, 0])),
                     albedo,
                     normal,
-                    ..Sample::default()
+                    ..PixelSample::default()
                 };
                 row.add(x, &sample, &Default::default());
             }
@@ -128,7 +128,7 @@ fn odd_films_are_denoised_without_harm() {
     // A single sample that is a million times as bright as the others, and infinities, which samples may hold.
     for value in [1e6, 1e30, f64::INFINITY, f64::NAN] {
         let mut film = film([40, 40], 4, 0.2, wall, 8);
-        let bright = Sample { radiance: DVec3::splat(value), ..Sample::default() };
+        let bright = PixelSample { radiance: DVec3::splat(value), ..PixelSample::default() };
         film.rows_mut()[20].add(20, &bright, &Default::default());
         let quiet = denoise(&film);
         assert!(quiet.is_finite(), "{value}");
@@ -173,10 +173,10 @@ fn halves_of_samples_are_what_the_film_holds() {
     for (number, [early, late]) in [[0.0, 1.0], [1.0, 1.0], [2.0, 1.0], [2.0, 2.0], [4.0, 1.0]].into_iter().enumerate()
     {
         let value = f64::from(1u32 << number);
-        film.rows_mut()[0].add(0, &Sample { radiance: DVec3::splat(value), ..Sample::default() }, &Default::default());
+        film.rows_mut()[0].add(0, &PixelSample { radiance: DVec3::splat(value), ..PixelSample::default() }, &Default::default());
         let count = number as u32 + 1;
         assert_eq!(halves(count), [early, late], "{count}");
-        let Guide { early: sum, .. } = film.guides()[0];
+        let PixelFeatures { early: sum, .. } = film.guides()[0];
         // The sum of the first n powers of two is one less than the next.
         assert_eq!(sum[0], (1u32 << early as u32) as f32 - 1.0, "{count}");
     }
@@ -187,7 +187,7 @@ fn one_bright_sample_leaves_no_trace_and_what_is_bright_in_both_halves_stays() {
     let lamp = |x: f64, y: f64| (20.0..23.0).contains(&x) && (20.0..23.0).contains(&y);
     let wall: Truth<'_> = &|x, y| (DVec3::splat(if lamp(x, y) { 50.0 } else { 0.5 }), DVec3::splat(0.5), DVec3::Z);
     let mut film = film([48, 40], 15, 0.3, wall, 3);
-    let bright = Sample { radiance: DVec3::splat(5e3), covered: true, albedo: DVec3::splat(0.5), ..Sample::default() };
+    let bright = PixelSample { radiance: DVec3::splat(5e3), covered: true, albedo: DVec3::splat(0.5), ..PixelSample::default() };
     for (x, y) in [(8, 9), (35, 30), (47, 0)] {
         film.rows_mut()[y].add(x, &bright, &Default::default());
     }

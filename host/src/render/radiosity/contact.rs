@@ -1,7 +1,7 @@
 //! Where surfaces touch or pass through each other: elements end there, so that none is partly inside of something.
 
 use super::hierarchy::{Hierarchy, normal_and_area};
-use super::sight::Sight;
+use super::sight::VisibilityTester;
 use crate::numeric::bounds::Bounds;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -38,7 +38,7 @@ impl Contacts {
     ///
     /// - `finest`: a length. `takes_part`: whether a triangle is asked for.
     pub(super) fn new(
-        sight: &Sight<'_>,
+        sight: &VisibilityTester<'_>,
         (diagonal, finest): (f64, f64),
         takes_part: impl Fn(u32) -> bool + Sync,
     ) -> Contacts {

@@ -16,7 +16,7 @@ const HOLLOW: f64 = 1e-4;
 
 /// A corner that elements share.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Corner {
+pub(super) struct ElementCorner {
     /// One of the elements.
     pub(super) leaf: u32,
     /// Sums over the elements: of their middles and of their normals, and how many there are.
@@ -26,7 +26,7 @@ pub(super) struct Corner {
     at: DVec3,
 }
 
-impl Corner {
+impl ElementCorner {
     /// From where it sees what its elements see, and its unit normal.
     pub(super) fn view(&self) -> [DVec3; 2] {
         let normal = self.normals.normalize_or_zero();
@@ -45,19 +45,19 @@ impl Corner {
 
 /// The corners of leaves.
 #[derive(Default)]
-pub(super) struct Corners {
+pub(super) struct ElementCorners {
     at: HashMap<[u64; 3], Vec<(DVec3, u32)>>,
     /// Each once.
-    pub(super) all: Vec<Corner>,
+    pub(super) all: Vec<ElementCorner>,
     /// Those of each leaf.
     pub(super) of: Vec<[u32; 3]>,
     /// Of each leaf, how alike normals must be.
     like: Vec<f64>,
 }
 
-impl Corners {
-    pub(super) fn new(prepared: &Prepared, hierarchy: &Hierarchy, leaves: &[u32]) -> Corners {
-        let mut corners = Corners::default();
+impl ElementCorners {
+    pub(super) fn new(prepared: &Prepared, hierarchy: &Hierarchy, leaves: &[u32]) -> ElementCorners {
+        let mut corners = ElementCorners::default();
         for leaf in leaves {
             let node = &hierarchy.nodes[*leaf as usize];
             if node.is_face_cluster() {
@@ -85,7 +85,7 @@ impl Corners {
         let [at, normal] = hierarchy.central(leaf);
         self.of.push([self.all.len() as u32; 3]);
         self.like.push(f64::INFINITY);
-        self.all.push(Corner { leaf, middles: at, normals: normal, count: 1.0, at });
+        self.all.push(ElementCorner { leaf, middles: at, normals: normal, count: 1.0, at });
     }
 
     /// A corner at a place, with a normal that is like another.
@@ -98,7 +98,7 @@ impl Corners {
         self.find(at, normal, like).unwrap_or_else(|| {
             let number = self.all.len() as u32;
             self.at.entry(key(at)).or_default().push((normal, number));
-            self.all.push(Corner { leaf, middles: DVec3::ZERO, normals: DVec3::ZERO, count: 0.0, at });
+            self.all.push(ElementCorner { leaf, middles: DVec3::ZERO, normals: DVec3::ZERO, count: 0.0, at });
             number
         })
     }

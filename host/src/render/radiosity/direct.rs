@@ -1,10 +1,10 @@
 //! Light that comes to elements straight from lights.
 
-use super::hierarchy::{Node, Patch};
-use super::sight::Sight;
+use super::hierarchy::{HierarchyNode, RadiosityPatch};
+use super::sight::VisibilityTester;
 use crate::color::Channels;
 use crate::numeric::ray::Ray;
-use crate::numeric::sequence::Sequence;
+use crate::numeric::sequence::SobolSequence;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -35,7 +35,7 @@ const INWARDS: f64 = 1e-3;
 
 /// What comes from elsewhere than other elements to a point of an element, W/m². In spectra, lanes are means over all combs.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub(super) struct Lit {
+pub(super) struct ExternalLight {
     /// Irradiance straight from lights.
     pub(super) direct: Channels,
     /// Exitance from elsewhere.
@@ -44,7 +44,7 @@ pub(super) struct Lit {
 
 /// What comes to the three corners of an element; of one that may be divided also to the middles of the edges from each to the
 /// next. Nothing for clusters.
-pub(super) type Around = Box<[Lit]>;
+pub(super) type CornerLight = Box<[ExternalLight]>;
 
 /// Which of them are the corners of each quarter.
 const OF_QUARTERS: [[usize; 3]; 4] = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [4, 5, 3]];
@@ -52,7 +52,7 @@ const OF_QUARTERS: [[usize; 3]; 4] = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [4, 5, 3]
 /// What is known at the corners of the parts into which a node is divided.
 ///
 /// - `sliver`: as [`Node::sliver`] has it.
-pub(super) fn of_parts(around: &Around, sliver: Option<usize>) -> Vec<Option<[Lit; 3]>> {
+pub(super) fn of_parts(around: &CornerLight, sliver: Option<usize>) -> Vec<Option<[ExternalLight; 3]>> {
     let of = |places: [usize; 3]| (around.len() == 6).then(|| places.map(|place| around[place]));
     match sliver {
         Some(edge) => {
@@ -64,16 +64,16 @@ pub(super) fn of_parts(around: &Around, sliver: Option<usize>) -> Vec<Option<[Li
 }
 
 /// A sum of what is known at some places, times a weight.
-fn sum(of: &[Lit], weight: f64) -> Lit {
-    let sum = |part: fn(&Lit) -> Channels| of.iter().fold(Channels::ZERO, |sum, lit| sum + part(lit)) * weight;
-    Lit { direct: sum(|lit| lit.direct), extra: sum(|lit| lit.extra) }
+fn sum(of: &[ExternalLight], weight: f64) -> ExternalLight {
+    let sum = |part: fn(&ExternalLight) -> Channels| of.iter().fold(Channels::ZERO, |sum, lit| sum + part(lit)) * weight;
+    ExternalLight { direct: sum(|lit| lit.direct), extra: sum(|lit| lit.extra) }
 }
 
 /// By how much it is off in the middle of an edge if it is taken for linear, W/m² at the most.
-pub(super) fn bend(around: &Around) -> f64 {
+pub(super) fn bend(around: &CornerLight) -> f64 {
     let Some((corners, middles)) = around.split_at_checked(3) else { return 0.0 };
-    let off = |(i, middle): (usize, &Lit)| {
-        let of = |part: fn(&Lit) -> Channels| {
+    let off = |(i, middle): (usize, &ExternalLight)| {
+        let of = |part: fn(&ExternalLight) -> Channels| {
             let linear = (part(&corners[i]) + part(&corners[(i + 1) % 3])) * 0.5;
             (part(middle) - linear).map(f64::abs).max()
         };
@@ -82,21 +82,21 @@ pub(super) fn bend(around: &Around) -> f64 {
     middles.iter().enumerate().map(off).fold(0.0, f64::max)
 }
 
-impl Sight<'_> {
+impl VisibilityTester<'_> {
     /// What comes to an element, and its mean, which is exact for what is quadratic over an element that may be divided, and
     /// for what is linear over a part of one. A small patch is asked in its middle only.
     ///
     /// - `corners`: what is known already. `may_be_divided`: whether it is longer than the finest.
     pub(super) fn lit(
         &self,
-        (patch, node): (&Patch, &Node),
-        corners: Option<[Lit; 3]>,
+        (patch, node): (&RadiosityPatch, &HierarchyNode),
+        corners: Option<[ExternalLight; 3]>,
         (exitance, shadows): (Option<Exitance<'_>>, bool),
         may_be_divided: bool,
-    ) -> (Around, Lit) {
+    ) -> (CornerLight, ExternalLight) {
         if node.is_dark {
             let places = if may_be_divided { 6 } else { 3 };
-            return (vec![Lit::default(); places].into(), Lit::default());
+            return (vec![ExternalLight::default(); places].into(), ExternalLight::default());
         }
         let at = |point: DVec3| {
             let point = point + (node.middle - point) * INWARDS;
@@ -105,7 +105,7 @@ impl Sight<'_> {
                 true => self.light_at([point, node.normal], shadows),
                 false => self.light_roughly([point, node.normal], shadows, 0),
             };
-            Lit { direct, extra }
+            ExternalLight { direct, extra }
         };
         if may_be_divided {
             let [a, b, c] = corners.unwrap_or_else(|| node.corners.map(at));
@@ -125,7 +125,7 @@ impl Sight<'_> {
     }
 
     /// Exitance from elsewhere at a point of a patch, in the lanes that there are.
-    pub(super) fn exitance(&self, (patch, point): (&Patch, DVec3), exitance: Option<Exitance<'_>>) -> Channels {
+    pub(super) fn exitance(&self, (patch, point): (&RadiosityPatch, DVec3), exitance: Option<Exitance<'_>>) -> Channels {
         let lanes = self.world.appearance.wavelengths.lanes();
         let extra = exitance.map_or(Channels::ZERO, |of| of(patch.triangle, patch.outside, point));
         Channels(std::array::from_fn(|lane| if lane < lanes { extra.0[lane] } else { 0.0 }))
@@ -162,7 +162,7 @@ impl Sight<'_> {
             let most = if source.is_sharp() || source.is_sky() { samples } else { MORE * samples };
             let (mut asked, mut seen) = (0, 0);
             // The same points of a light for all elements: their light differs as smoothly as they do.
-            let sequence = Sequence::new(0, *number as u64);
+            let sequence = SobolSequence::new(0, *number as u64);
             let mut part = Channels::ZERO;
             let mut sample = 0;
             let first = turn * most;

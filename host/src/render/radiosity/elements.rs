@@ -1,8 +1,8 @@
 //! Elements with what they reflect, and the light that comes to them.
 
-use super::direct::{Around, Exitance, Lit, bend, of_parts};
-use super::hierarchy::{Hierarchy, Node, Patch, normal_and_area};
-use super::sight::Sight;
+use super::direct::{CornerLight, Exitance, ExternalLight, bend, of_parts};
+use super::hierarchy::{Hierarchy, HierarchyNode, RadiosityPatch, normal_and_area};
+use super::sight::VisibilityTester;
 use crate::color::Channels;
 use crate::render::world::mean_diffuse;
 use glam::DVec3;
@@ -22,7 +22,7 @@ pub(super) struct Elements<'a> {
     pub(super) extra: Vec<Channels>,
     pub(super) sent: Vec<Channels>,
     /// Light of lights and radiosity from elsewhere at places of each node.
-    pub(super) around: Vec<Around>,
+    pub(super) around: Vec<CornerLight>,
     /// Elements are divided that are twice as long or longer.
     finest: f64,
     exitance: Option<Exitance<'a>>,
@@ -33,8 +33,8 @@ pub(super) struct Elements<'a> {
 #[derive(Serialize, Deserialize)]
 struct Known {
     reflectance: Channels,
-    mean: Lit,
-    around: Around,
+    mean: ExternalLight,
+    around: CornerLight,
 }
 
 impl<'a> Elements<'a> {
@@ -43,7 +43,7 @@ impl<'a> Elements<'a> {
     /// - `finest`: a length; elements are divided that are twice as long or longer.
     pub(super) fn new(
         hierarchy: Hierarchy,
-        sight: &Sight<'_>,
+        sight: &VisibilityTester<'_>,
         (exitance, shadows): (Option<Exitance<'a>>, bool),
         finest: f64,
     ) -> Elements<'a> {
@@ -65,9 +65,9 @@ impl<'a> Elements<'a> {
     }
 
     /// Divides leaves, each once, and finds the light of what comes of them.
-    pub(super) fn divide(&mut self, sight: &Sight<'_>, nodes: impl IntoIterator<Item = u32>) {
+    pub(super) fn divide(&mut self, sight: &VisibilityTester<'_>, nodes: impl IntoIterator<Item = u32>) {
         let first = self.hierarchy.nodes.len();
-        let mut known: Vec<Option<[Lit; 3]>> = Vec::new();
+        let mut known: Vec<Option<[ExternalLight; 3]>> = Vec::new();
         for node in nodes {
             if self.hierarchy.nodes[node as usize].is_leaf() {
                 self.hierarchy.divide(node);
@@ -81,13 +81,13 @@ impl<'a> Elements<'a> {
     }
 
     /// Whether an element is long enough to be divided.
-    pub(super) fn may_divide(&self, node: &Node) -> bool {
+    pub(super) fn may_divide(&self, node: &HierarchyNode) -> bool {
         node.longest_edge() >= 2.0 * self.finest
     }
 
     /// Divides leaves over which light from elsewhere is farther from linear than a bound, and those that are larger than a
     /// length.
-    pub(super) fn divide_where_light_varies(&mut self, sight: &Sight<'_>, bound: f64, coarsest: f64) {
+    pub(super) fn divide_where_light_varies(&mut self, sight: &VisibilityTester<'_>, bound: f64, coarsest: f64) {
         let mut from = 0;
         loop {
             let nodes = &self.hierarchy.nodes;
@@ -108,15 +108,15 @@ impl<'a> Elements<'a> {
     /// Finds what is not known of the nodes from one on.
     ///
     /// - `corners`: what is known at their corners; of none at first.
-    fn learn(&mut self, sight: &Sight<'_>, first: usize, corners: &[Option<[Lit; 3]>]) {
+    fn learn(&mut self, sight: &VisibilityTester<'_>, first: usize, corners: &[Option<[ExternalLight; 3]>]) {
         let nodes = &self.hierarchy.nodes[first..];
-        let of = |i: usize, node: &Node| match node.is_face_cluster() {
+        let of = |i: usize, node: &HierarchyNode| match node.is_face_cluster() {
             true => self.known_of_faces(sight, (first + i) as u32),
             false => self.known(sight, node, corners.get(i).copied().flatten()),
         };
         let known: Vec<Known> = sight.map(nodes, of);
         self.indirect.resize(self.hierarchy.nodes.len(), Channels::ZERO);
-        for (Known { reflectance, mean: Lit { direct, extra }, around }, place) in known.into_iter().zip(first..) {
+        for (Known { reflectance, mean: ExternalLight { direct, extra }, around }, place) in known.into_iter().zip(first..) {
             self.reflectance.push(reflectance);
             self.direct.push(direct);
             self.extra.push(extra);
@@ -125,9 +125,9 @@ impl<'a> Elements<'a> {
         }
     }
 
-    fn known(&self, sight: &Sight<'_>, node: &Node, corners: Option<[Lit; 3]>) -> Known {
+    fn known(&self, sight: &VisibilityTester<'_>, node: &HierarchyNode, corners: Option<[ExternalLight; 3]>) -> Known {
         if !node.is_leaf() || node.is_cluster() {
-            return Known { reflectance: Channels::ZERO, mean: Lit::default(), around: Around::default() };
+            return Known { reflectance: Channels::ZERO, mean: ExternalLight::default(), around: CornerLight::default() };
         }
         let patch = &self.hierarchy.patches[node.patch as usize];
         let divisible = self.may_divide(node);
@@ -136,10 +136,10 @@ impl<'a> Elements<'a> {
     }
 
     /// What is known of a face cluster: light of lights at its points, all else by its triangles.
-    fn known_of_faces(&self, sight: &Sight<'_>, cluster: u32) -> Known {
+    fn known_of_faces(&self, sight: &VisibilityTester<'_>, cluster: u32) -> Known {
         let hierarchy = &self.hierarchy;
         if hierarchy.nodes[cluster as usize].is_dark {
-            return Known { reflectance: Channels::ZERO, mean: Lit::default(), around: Around::default() };
+            return Known { reflectance: Channels::ZERO, mean: ExternalLight::default(), around: CornerLight::default() };
         }
         let at = |(turn, place): (u32, [DVec3; 2])| sight.light_roughly(place, self.shadows, turn);
         let points = hierarchy.points(cluster);
@@ -153,8 +153,8 @@ impl<'a> Elements<'a> {
             extra += sight.exitance((patch, middle), self.exitance) * area;
             all += area;
         }
-        let mean = Lit { direct, extra: extra * f64::recip(all) };
-        Known { reflectance: reflected * f64::recip(all), mean, around: Around::default() }
+        let mean = ExternalLight { direct, extra: extra * f64::recip(all) };
+        Known { reflectance: reflected * f64::recip(all), mean, around: CornerLight::default() }
     }
 
     /// Brings what is known of leaves up to the root.
@@ -170,7 +170,7 @@ impl<'a> Elements<'a> {
 }
 
 /// The part of light that an element reflects diffusely, in the mean.
-fn reflectance(sight: &Sight<'_>, patch: &Patch, ([a, b, c], middle): ([DVec3; 3], DVec3)) -> Channels {
+fn reflectance(sight: &VisibilityTester<'_>, patch: &RadiosityPatch, ([a, b, c], middle): ([DVec3; 3], DVec3)) -> Channels {
     let appearance = &sight.world.appearance;
     let prepared = appearance.prepared;
     let triangle = patch.triangle;

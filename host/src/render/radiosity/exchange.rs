@@ -3,7 +3,7 @@
 //! Light that a node sends is the mean over its leaves, and what it receives is spread evenly over them: with P the matrix
 //! that takes means and G that of the links, leaves exchange M = Pᵀ G P, symmetric whatever the links are.
 
-use super::hierarchy::{Amount, Hierarchy, NONE, Node};
+use super::hierarchy::{Summable, Hierarchy, NONE, HierarchyNode};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -28,7 +28,7 @@ const NEIGHBOURING_RAYS: u64 = 2048;
 
 /// What leaves see in directions that are as dense as their cosine.
 #[derive(Clone, Debug)]
-pub(super) struct Looks {
+pub(super) struct LeafVisibility {
     /// In how many directions each looks.
     pub(super) directions: u32,
     /// For each leaf, in which part of them it sees something that exchanges light.
@@ -41,7 +41,7 @@ pub(super) struct Looks {
 
 /// Two nodes that exchange light.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Link {
+pub(super) struct ExchangeLink {
     pub(super) a: u32,
     /// The other node, or `a` again for light that a node exchanges with itself.
     pub(super) b: u32,
@@ -64,7 +64,7 @@ pub(super) struct Exchange<'a> {
 }
 
 impl<'a> Exchange<'a> {
-    pub(super) fn new(hierarchy: &'a Hierarchy, links: &[Link]) -> Exchange<'a> {
+    pub(super) fn new(hierarchy: &'a Hierarchy, links: &[ExchangeLink]) -> Exchange<'a> {
         let mut counts = vec![0usize; hierarchy.nodes.len() + 1];
         for link in links {
             counts[link.a as usize] += 1;
@@ -92,7 +92,7 @@ impl<'a> Exchange<'a> {
         Exchange { hierarchy, leaves, rows, entries, factor, own, is_closed }
     }
 
-    pub(super) fn nodes(&self) -> &[Node] {
+    pub(super) fn nodes(&self) -> &[HierarchyNode] {
         &self.hierarchy.nodes
     }
 
@@ -102,7 +102,7 @@ impl<'a> Exchange<'a> {
     }
 
     /// The means of what leaves send over each node, with the factors that balance them.
-    fn means<V: Amount>(&self, radiosity: &[V]) -> Vec<V> {
+    fn means<V: Summable>(&self, radiosity: &[V]) -> Vec<V> {
         let mut values = vec![V::default(); self.hierarchy.nodes.len()];
         for ((leaf, value), factor) in self.leaves.iter().zip(radiosity).zip(&self.factor) {
             values[*leaf as usize] = *value * *factor;
@@ -112,7 +112,7 @@ impl<'a> Exchange<'a> {
     }
 
     /// Flux that comes to each leaf from radiosities of all leaves, M b.
-    pub(super) fn apply<V: Amount>(&self, radiosity: &[V]) -> Vec<V> {
+    pub(super) fn apply<V: Summable>(&self, radiosity: &[V]) -> Vec<V> {
         let nodes = &self.hierarchy.nodes;
         let values = self.means(radiosity);
         let row = |node: usize| {
@@ -142,7 +142,7 @@ impl<'a> Exchange<'a> {
     ///
     /// # Source
     /// Sinkhorn and Knopp 1967, symmetric; ours as to what remains.
-    pub(super) fn balance(&mut self, looks: Option<&Looks>) -> Vec<f64> {
+    pub(super) fn balance(&mut self, looks: Option<&LeafVisibility>) -> Vec<f64> {
         let areas = self.areas();
         let ones = vec![1.0; areas.len()];
         let sums = |exchange: &Self| exchange.apply(&ones);
@@ -180,7 +180,7 @@ impl<'a> Exchange<'a> {
     }
 
     /// What the rows should add up to: 1 where no ray of many in the neighbourhood is lost, else what leaves see.
-    fn goals(&mut self, looks: &Looks) -> Vec<f64> {
+    fn goals(&mut self, looks: &LeafVisibility) -> Vec<f64> {
         let nodes = &self.hierarchy.nodes;
         // Of each node: rays, and whether one is lost.
         let mut sums = vec![(0u64, false); nodes.len()];

@@ -1,7 +1,7 @@
 //! Light over face clusters: that of several of them that hang together, the more of each the nearer it is, so that no
 //! outline of one is seen.
 
-use super::corners::Corners;
+use super::corners::ElementCorners;
 use super::hierarchy::{Hierarchy, NONE, key, normal_and_area};
 use crate::color::Channels;
 use glam::{DMat2, DVec2, DVec3};
@@ -37,7 +37,7 @@ struct Fine {
 /// - `values`: what comes to the corners of elements; where such a corner is one of a triangle, it has that value.
 pub(super) fn spread(
     hierarchy: &Hierarchy,
-    shared: &Corners,
+    shared: &ElementCorners,
     lit: impl Iterator<Item = (u32, [Channels; 2])>,
     values: &mut Vec<[Channels; 2]>,
 ) -> Vec<[u32; 3]> {

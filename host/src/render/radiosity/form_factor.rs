@@ -360,8 +360,8 @@ mod tests {
 
     #[test]
     fn the_mean_of_lamberts_formula_agrees_with_the_contours() {
-        use crate::numeric::sequence::Sequence;
-        let sequence = Sequence::new(3, 1);
+        use crate::numeric::sequence::SobolSequence;
+        let sequence = SobolSequence::new(3, 1);
         let mut number = 0;
         let mut draw = || {
             number += 1;

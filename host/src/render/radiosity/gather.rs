@@ -6,11 +6,11 @@
 //! what is missing is filled up: in hollows by the neighbourhood, which links pass over, elsewhere in proportion. Light that is
 //! the same everywhere stays so.
 
-use super::corners::{Corner, Corners};
+use super::corners::{ElementCorner, ElementCorners};
 use super::form_factor::{from_point, kernel};
 use super::hierarchy::{Hierarchy, NONE, POINTS};
-use super::links::Judged;
-use super::sight::Sight;
+use super::links::AssessedLink;
+use super::sight::VisibilityTester;
 use crate::color::Channels;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -22,21 +22,21 @@ const UNEVEN: f64 = 0.1;
 
 /// Gathers light.
 pub(super) struct Gatherer<'g, 'a> {
-    pub(super) sight: &'g Sight<'a>,
+    pub(super) sight: &'g VisibilityTester<'a>,
     pub(super) hierarchy: &'g Hierarchy,
     /// The error of the light of a link, W/m².
     pub(super) error: f64,
 }
 
 /// What each corner of leaves sees of nodes.
-pub(super) struct Views<'g> {
+pub(super) struct CornerViews<'g> {
     hierarchy: &'g Hierarchy,
-    corners: &'g Corners,
+    corners: &'g ElementCorners,
     /// For each corner, the nodes and the part of all that is seen that each is.
     of: Vec<Vec<(u32, f32)>>,
 }
 
-impl Views<'_> {
+impl CornerViews<'_> {
     /// The part of all that each leaf may see that exchanges light.
     pub(super) fn rows(&self) -> Vec<f64> {
         let row = |nodes: &Vec<(u32, f32)>| nodes.iter().map(|(_, part)| f64::from(*part)).sum::<f64>().min(1.0);
@@ -94,7 +94,7 @@ impl<'g> Gatherer<'g, '_> {
     /// What each corner sees, divided the more the more what is seen differs.
     ///
     /// - `sent`: about what each node sends, W/m².
-    pub(super) fn views(&self, links: &[Judged], corners: &'g Corners, sent: &[Channels]) -> Views<'g> {
+    pub(super) fn views(&self, links: &[AssessedLink], corners: &'g ElementCorners, sent: &[Channels]) -> CornerViews<'g> {
         let nodes = &self.hierarchy.nodes;
         let mut parent = vec![NONE; nodes.len()];
         for (place, node) in (0..).zip(nodes) {
@@ -102,7 +102,7 @@ impl<'g> Gatherer<'g, '_> {
         }
         let (rows, entries) = by_node(nodes.len(), links);
         let apart = self.apart(sent);
-        let of = |number: usize, corner: &Corner| {
+        let of = |number: usize, corner: &ElementCorner| {
             let from = corner.view();
             let (mut found, mut pending) = (Vec::new(), Vec::new());
             let mut at = corner.leaf;
@@ -137,7 +137,7 @@ impl<'g> Gatherer<'g, '_> {
             found
         };
         let of = self.sight.map(&corners.all, of);
-        Views { hierarchy: self.hierarchy, corners, of }
+        CornerViews { hierarchy: self.hierarchy, corners, of }
     }
 
     /// How far what parts of each node send is from what all of it does in the mean, W/m² at the most.
@@ -189,9 +189,9 @@ impl<'g> Gatherer<'g, '_> {
 }
 
 /// For each node its partners, and whether it is sure that nothing is between.
-fn by_node(nodes: usize, links: &[Judged]) -> (Vec<usize>, Vec<(u32, bool)>) {
+fn by_node(nodes: usize, links: &[AssessedLink]) -> (Vec<usize>, Vec<(u32, bool)>) {
     let mut rows = vec![0usize; nodes + 1];
-    for Judged { link, .. } in links {
+    for AssessedLink { link, .. } in links {
         rows[link.a as usize] += 1;
         rows[link.b as usize] += 1;
     }
@@ -201,7 +201,7 @@ fn by_node(nodes: usize, links: &[Judged]) -> (Vec<usize>, Vec<(u32, bool)>) {
     }
     let mut next = rows.clone();
     let mut entries = vec![(NONE, false); below];
-    for Judged { link, is_clear, .. } in links {
+    for AssessedLink { link, is_clear, .. } in links {
         for (at, other) in [(link.a, link.b), (link.b, link.a)] {
             entries[next[at as usize]] = (other, *is_clear);
             next[at as usize] += 1;

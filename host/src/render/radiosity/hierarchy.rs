@@ -5,7 +5,7 @@
 //! element: a cluster that is not divided, a face cluster.
 
 use super::form_factor::Convex;
-use super::pieces::Pieces;
+use super::pieces::DisjointSets;
 use crate::color::Channels;
 use crate::numeric::triangle;
 use glam::DVec3;
@@ -26,14 +26,14 @@ pub(super) const POINTS: usize = 4;
 pub(super) const NONE: u32 = u32::MAX;
 
 /// What there are sums and means of: a number, or one for each lane.
-pub(super) trait Amount: Copy + Default + Send + Sync + Add<Output = Self> + Mul<f64, Output = Self> {}
+pub(super) trait Summable: Copy + Default + Send + Sync + Add<Output = Self> + Mul<f64, Output = Self> {}
 
-impl Amount for f64 {}
-impl Amount for Channels {}
+impl Summable for f64 {}
+impl Summable for Channels {}
 
 /// One side of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Patch {
+pub(super) struct RadiosityPatch {
     /// Counter-clockwise about the side.
     pub(super) corners: [DVec3; 3],
     /// The triangle of the scene, and whether it is its outer side.
@@ -41,7 +41,7 @@ pub(super) struct Patch {
     pub(super) outside: bool,
 }
 
-impl Patch {
+impl RadiosityPatch {
     pub(super) fn middle(&self) -> DVec3 {
         self.corners.iter().sum::<DVec3>() / 3.0
     }
@@ -49,7 +49,7 @@ impl Patch {
 
 /// A cluster, a patch or an element of a patch.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Node {
+pub(super) struct HierarchyNode {
     /// Corners of a patch or element.
     pub(super) corners: [DVec3; 3],
     /// The middle of its area.
@@ -72,12 +72,12 @@ pub(super) struct Node {
     pub(super) is_dark: bool,
 }
 
-impl Node {
-    fn triangle(corners: [DVec3; 3], patch: u32) -> Node {
+impl HierarchyNode {
+    fn triangle(corners: [DVec3; 3], patch: u32) -> HierarchyNode {
         let [a, b, c] = corners;
         let middle = (a + b + c) / 3.0;
         let (normal, area) = normal_and_area(corners);
-        Node {
+        HierarchyNode {
             corners,
             middle,
             radius: corners.iter().map(|corner| corner.distance(middle)).fold(0.0, f64::max),
@@ -155,10 +155,10 @@ pub(super) fn normal_and_area([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
 /// Nodes, parents before their children; the root is the first.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Hierarchy {
-    pub(super) nodes: Vec<Node>,
+    pub(super) nodes: Vec<HierarchyNode>,
     /// Points and unit normals that stand for each cluster.
     cluster_points: Vec<[[DVec3; 2]; POINTS]>,
-    pub(super) patches: Vec<Patch>,
+    pub(super) patches: Vec<RadiosityPatch>,
     /// The node of each patch: its own, or that of the face cluster of which it is.
     pub(super) node_of: Vec<u32>,
     /// The patches, those of a cluster side by side, and for each node that is not a part of a patch which of them it has.
@@ -170,12 +170,12 @@ impl Hierarchy {
     /// Clusters over patches, each of which has an area.
     ///
     /// - `finest`: the radius of face clusters, at the most.
-    pub(super) fn new(patches: Vec<Patch>, finest: f64) -> Hierarchy {
+    pub(super) fn new(patches: Vec<RadiosityPatch>, finest: f64) -> Hierarchy {
         let mut hierarchy = Hierarchy { node_of: vec![NONE; patches.len()], patches, ..Hierarchy::default() };
         if hierarchy.patches.is_empty() {
             return hierarchy;
         }
-        let own: Vec<Node> = (0..).zip(&hierarchy.patches).map(|(i, patch)| Node::triangle(patch.corners, i)).collect();
+        let own: Vec<HierarchyNode> = (0..).zip(&hierarchy.patches).map(|(i, patch)| HierarchyNode::triangle(patch.corners, i)).collect();
         let (low, high) = own.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), node| {
             (low.min(node.middle), high.max(node.middle))
         });
@@ -202,7 +202,7 @@ impl Hierarchy {
             }
             halve(part, &own, scale);
             let child = hierarchy.nodes.len() as u32;
-            hierarchy.nodes[place] = Node { child, children: 2, ..all };
+            hierarchy.nodes[place] = HierarchyNode { child, children: 2, ..all };
             hierarchy.nodes.extend([own[0]; 2]);
             let middle = range.start + range.len() / 2;
             waiting.extend([(child as usize, range.start..middle), (child as usize + 1, middle..range.end)]);
@@ -264,8 +264,8 @@ impl Hierarchy {
         let child = self.nodes.len() as u32;
         let parent = &mut self.nodes[node as usize];
         (parent.child, parent.children) = (child, parts.len() as u32);
-        let Node { patch, is_dark, .. } = *parent;
-        self.nodes.extend(parts.iter().map(|corners| Node { is_dark, ..Node::triangle(*corners, patch) }));
+        let HierarchyNode { patch, is_dark, .. } = *parent;
+        self.nodes.extend(parts.iter().map(|corners| HierarchyNode { is_dark, ..HierarchyNode::triangle(*corners, patch) }));
     }
 
     /// Leaves the dark out: what is left of nodes has the area of what is not dark.
@@ -297,7 +297,7 @@ impl Hierarchy {
 
     /// The leaves to which light may come.
     pub(super) fn leaves(&self) -> Vec<u32> {
-        let is_leaf = |node: &Node| node.is_leaf() && !node.is_dark;
+        let is_leaf = |node: &HierarchyNode| node.is_leaf() && !node.is_dark;
         (0..self.nodes.len() as u32).filter(|node| is_leaf(&self.nodes[*node as usize])).collect()
     }
 
@@ -332,8 +332,8 @@ impl Hierarchy {
     }
 
     /// Sums of what leaves have, from the leaves up to the root: of their values times their areas, over the area.
-    pub(super) fn pull<V: Amount>(&self, values: &mut [V]) {
-        let is_inner = |node: &Node| !node.is_leaf() && !node.is_dark;
+    pub(super) fn pull<V: Summable>(&self, values: &mut [V]) {
+        let is_inner = |node: &HierarchyNode| !node.is_leaf() && !node.is_dark;
         for place in (0..self.nodes.len()).rev().filter(|place| is_inner(&self.nodes[*place])) {
             let node = &self.nodes[place];
             let lit = node.children().filter(|child| !self.nodes[*child].is_dark);
@@ -344,8 +344,8 @@ impl Hierarchy {
 }
 
 /// Orders the members so that the two halves are well apart.
-fn halve(part: &mut [u32], own: &[Node], scale: f64) {
-    let place = |node: &Node| {
+fn halve(part: &mut [u32], own: &[HierarchyNode], scale: f64) {
+    let place = |node: &HierarchyNode| {
         let normal = node.normal * scale;
         let at = node.middle;
         [at.x, at.y, at.z, normal.x, normal.y, normal.z]
@@ -364,8 +364,8 @@ fn halve(part: &mut [u32], own: &[Node], scale: f64) {
 }
 
 /// Whether triangles hang together by their corners.
-fn is_one_piece(part: &[u32], own: &[Node]) -> bool {
-    let mut pieces = Pieces::new(part.len());
+fn is_one_piece(part: &[u32], own: &[HierarchyNode]) -> bool {
+    let mut pieces = DisjointSets::new(part.len());
     let mut first: HashMap<[u64; 3], u32> = HashMap::default();
     for (place, member) in (0..).zip(part) {
         for corner in own[*member as usize].corners {
@@ -376,7 +376,7 @@ fn is_one_piece(part: &[u32], own: &[Node]) -> bool {
     (0..part.len() as u32).all(|place| pieces.root(place) == 0)
 }
 
-fn cluster(part: &[u32], own: &[Node]) -> Node {
+fn cluster(part: &[u32], own: &[HierarchyNode]) -> HierarchyNode {
     let members = || part.iter().map(|member| &own[*member as usize]);
     let area: f64 = members().map(|node| node.area).sum();
     let middle = members().map(|node| node.middle * node.area).sum::<DVec3>() / area;
@@ -385,11 +385,11 @@ fn cluster(part: &[u32], own: &[Node]) -> Node {
     let spread = members().map(|node| node.normal.dot(normal).clamp(-1.0, 1.0).acos()).fold(0.0, f64::max);
     let radius = members().flat_map(|node| node.corners).map(|corner| corner.distance(middle)).fold(0.0, f64::max);
     let corners = [middle; 3];
-    Node { corners, middle, radius, normal, spread, area, ..Node::triangle(corners, NONE) }
+    HierarchyNode { corners, middle, radius, normal, spread, area, ..HierarchyNode::triangle(corners, NONE) }
 }
 
 /// A few members at even steps of the area, by their middles.
-fn representatives(part: &[u32], own: &[Node]) -> [[DVec3; 2]; POINTS] {
+fn representatives(part: &[u32], own: &[HierarchyNode]) -> [[DVec3; 2]; POINTS] {
     let all: f64 = part.iter().map(|member| own[*member as usize].area).sum();
     let mut found = [[DVec3::ZERO; 2]; POINTS];
     let (mut below, mut next) = (0.0, 0);
@@ -414,12 +414,12 @@ pub(super) fn key(point: DVec3) -> [u64; 3] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::direct::{Lit, of_parts};
+    use super::super::direct::{ExternalLight, of_parts};
     use super::*;
     use crate::color::Channels;
 
-    fn patch(corners: [DVec3; 3]) -> Patch {
-        Patch { corners, triangle: 0, outside: true }
+    fn patch(corners: [DVec3; 3]) -> RadiosityPatch {
+        RadiosityPatch { corners, triangle: 0, outside: true }
     }
 
     #[test]
@@ -431,12 +431,12 @@ mod tests {
             let mut hierarchy = Hierarchy::new(vec![patch(corners)], 0.0);
             let sliver = hierarchy.nodes[0].sliver();
             hierarchy.divide(0);
-            let children: Vec<Node> = hierarchy.nodes[1..].to_vec();
+            let children: Vec<HierarchyNode> = hierarchy.nodes[1..].to_vec();
             assert_eq!((children.len(), hierarchy.nodes[0].is_cut), (parts, parts == 2));
             let area: f64 = children.iter().map(|child| child.area).sum();
             assert!((area - hierarchy.nodes[0].area).abs() < 1e-12 && children.iter().all(|c| c.normal.z > 0.99));
             // Light that tells where it is.
-            let lit = |at: DVec3| Lit { direct: Channels::splat(at.x - 10.0 * at.y), extra: Channels::ZERO };
+            let lit = |at: DVec3| ExternalLight { direct: Channels::splat(at.x - 10.0 * at.y), extra: Channels::ZERO };
             let [a, b, c] = corners;
             let around = [a, b, c, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)].map(lit);
             for (child, known) in children.iter().zip(of_parts(&around.into(), sliver)) {
@@ -460,7 +460,7 @@ mod tests {
                 ]
             })
         };
-        let leaves = |patches: Vec<Patch>, finest: f64| Hierarchy::new(patches, finest).leaves().len();
+        let leaves = |patches: Vec<RadiosityPatch>, finest: f64| Hierarchy::new(patches, finest).leaves().len();
         assert_eq!(leaves(row(0.0, 0.0).collect(), 10.0), 1);
         // In two of four each, or alone.
         assert_eq!(leaves(row(0.0, 0.0).collect(), 1.2), 2);
@@ -468,7 +468,7 @@ mod tests {
         // Squares of two, none of which touches another, are too few.
         assert_eq!(leaves(row(0.0, 0.1).collect(), 10.0), 8);
         // A wall that rises from them faces another way.
-        let wall = row(0.0, 0.0).map(|Patch { corners, .. }| patch(corners.map(|c| DVec3::new(c.x, 0.0, c.y))));
+        let wall = row(0.0, 0.0).map(|RadiosityPatch { corners, .. }| patch(corners.map(|c| DVec3::new(c.x, 0.0, c.y))));
         assert!(leaves(row(0.0, 0.0).chain(wall).collect(), 10.0) > 1);
     }
 }

@@ -5,10 +5,10 @@
 //! patches that face alike as Willmott, Heckbert and Garland 1999.
 
 use super::elements::Elements;
-use super::exchange::Link;
+use super::exchange::ExchangeLink;
 use super::form_factor::{self, kernel};
-use super::hierarchy::{Node, POINTS};
-use super::sight::Sight;
+use super::hierarchy::{HierarchyNode, POINTS};
+use super::sight::VisibilityTester;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -24,8 +24,8 @@ const MOST_NODES: usize = 3_000_000;
 
 /// A link, and how uncertain it is.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(super) struct Judged {
-    pub(super) link: Link,
+pub(super) struct AssessedLink {
+    pub(super) link: ExchangeLink,
     /// The error of its exchange, square units.
     doubt: f64,
     /// Whether it is sure that nothing is between them.
@@ -34,8 +34,8 @@ pub(super) struct Judged {
 
 /// What is to be done with two nodes.
 #[derive(Serialize, Deserialize)]
-enum Verdict {
-    Keep(Judged),
+enum RefinementStep {
+    Keep(AssessedLink),
     Drop,
     /// Divides one of them.
     Divide {
@@ -49,7 +49,7 @@ enum Verdict {
 
 /// How far links are divided.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Bound {
+pub(super) struct RefinementBound {
     /// The greatest error of an irradiance by one link, W/m².
     pub(super) irradiance: f64,
     /// No edge is divided that is shorter than twice this.
@@ -58,10 +58,10 @@ pub(super) struct Bound {
 
 /// Goes through all links again and divides those that bring too uncertain light; at first, the root with itself.
 pub(super) fn refine(
-    sight: &Sight<'_>,
+    sight: &VisibilityTester<'_>,
     elements: &mut Elements<'_>,
-    links: &mut Vec<Judged>,
-    bound: Bound,
+    links: &mut Vec<AssessedLink>,
+    bound: RefinementBound,
     stopped: &dyn Fn() -> bool,
 ) {
     let mut pending: Vec<([u32; 2], bool)> = Vec::new();
@@ -69,7 +69,7 @@ pub(super) fn refine(
         pending.push(([0, 0], false));
     }
     links.retain(|judged| {
-        let Link { a, b, .. } = judged.link;
+        let ExchangeLink { a, b, .. } = judged.link;
         let is_sure = uncertainty(elements, a, b, judged.doubt) <= bound.irradiance;
         if !is_sure {
             pending.push(([a, b], judged.is_clear));
@@ -78,13 +78,13 @@ pub(super) fn refine(
     });
     while !pending.is_empty() {
         let may_divide = elements.hierarchy.nodes.len() < MOST_NODES && !stopped();
-        let bound = if may_divide { bound } else { Bound { finest: f64::INFINITY, irradiance: f64::INFINITY } };
-        let judge = |_, (pair, is_clear): &([u32; 2], bool)| Judge { sight, elements, bound }.judge(*pair, *is_clear);
-        let verdicts: Vec<Verdict> = sight.map(&pending, judge);
+        let bound = if may_divide { bound } else { RefinementBound { finest: f64::INFINITY, irradiance: f64::INFINITY } };
+        let judge = |_, (pair, is_clear): &([u32; 2], bool)| RefinementOracle { sight, elements, bound }.judge(*pair, *is_clear);
+        let verdicts: Vec<RefinementStep> = sight.map(&pending, judge);
         let divided: Vec<u32> = verdicts
             .iter()
             .filter_map(|verdict| match verdict {
-                Verdict::Divide { divided, .. } => Some(*divided),
+                RefinementStep::Divide { divided, .. } => Some(*divided),
                 _ => None,
             })
             .collect();
@@ -92,13 +92,13 @@ pub(super) fn refine(
         pending.clear();
         for verdict in verdicts {
             match verdict {
-                Verdict::Keep(judged) => links.push(judged),
-                Verdict::Drop => {}
-                Verdict::Divide { divided, other, is_clear } => {
+                RefinementStep::Keep(judged) => links.push(judged),
+                RefinementStep::Drop => {}
+                RefinementStep::Divide { divided, other, is_clear } => {
                     let children = elements.hierarchy.nodes[divided as usize].children();
                     pending.extend(children.map(|child| ([child as u32, other], is_clear)));
                 }
-                Verdict::Within(cluster) => {
+                RefinementStep::Within(cluster) => {
                     let children = elements.hierarchy.nodes[cluster as usize].children();
                     for first in children.clone() {
                         pending.extend((first..children.end).map(|second| ([first as u32, second as u32], false)));
@@ -116,14 +116,14 @@ fn uncertainty(elements: &Elements<'_>, a: u32, b: u32, exchange: f64) -> f64 {
     side(a, b).max(side(b, a))
 }
 
-struct Judge<'j, 'a> {
-    sight: &'j Sight<'a>,
+struct RefinementOracle<'j, 'a> {
+    sight: &'j VisibilityTester<'a>,
     elements: &'j Elements<'a>,
-    bound: Bound,
+    bound: RefinementBound,
 }
 
-impl Judge<'_, '_> {
-    fn node(&self, node: u32) -> &Node {
+impl RefinementOracle<'_, '_> {
+    fn node(&self, node: u32) -> &HierarchyNode {
         &self.elements.hierarchy.nodes[node as usize]
     }
 
@@ -131,16 +131,16 @@ impl Judge<'_, '_> {
         uncertainty(self.elements, a, b, exchange) <= self.bound.irradiance
     }
 
-    fn judge(&self, [a, b]: [u32; 2], is_clear: bool) -> Verdict {
+    fn judge(&self, [a, b]: [u32; 2], is_clear: bool) -> RefinementStep {
         let (first, second) = (self.node(a), self.node(b));
         if first.is_dark || second.is_dark {
-            return Verdict::Drop;
+            return RefinementStep::Drop;
         }
         if a == b {
             return self.within(a, first);
         }
         if is_behind(first, second) || is_behind(second, first) {
-            return Verdict::Drop;
+            return RefinementStep::Drop;
         }
         let distance = first.middle.distance(second.middle);
         let sizes = first.radius + second.radius;
@@ -152,8 +152,8 @@ impl Judge<'_, '_> {
         if self.is_fine(a, b, most) {
             let unoccluded = self.sampled(a, b).min(most);
             let seen = if unoccluded > 0.0 { self.visibility(a, b, is_clear, true) } else { 0.0 };
-            let link = Link { a, b, exchange: unoccluded * seen };
-            return Verdict::Keep(Judged { link, doubt: most, is_clear });
+            let link = ExchangeLink { a, b, exchange: unoccluded * seen };
+            return RefinementStep::Keep(AssessedLink { link, doubt: most, is_clear });
         }
         if !are_elements
             && distance < sizes
@@ -178,7 +178,7 @@ impl Judge<'_, '_> {
         };
         if unoccluded <= 0.0 {
             let is_sure = are_elements || self.is_fine(a, b, 0.25 * most);
-            return if is_sure { Verdict::Drop } else { self.divide(a, b, is_clear).unwrap_or(Verdict::Drop) };
+            return if is_sure { RefinementStep::Drop } else { self.divide(a, b, is_clear).unwrap_or(RefinementStep::Drop) };
         }
         let seen = self.visibility(a, b, is_clear, self.is_fine(a, b, NOT_SEEN * unoccluded));
         let unsure = match seen {
@@ -187,36 +187,36 @@ impl Judge<'_, '_> {
             _ => SEEN,
         };
         let doubt = unoccluded * (variation * seen + unsure);
-        let link = Link { a, b, exchange: unoccluded * seen };
+        let link = ExchangeLink { a, b, exchange: unoccluded * seen };
         if self.is_fine(a, b, doubt) {
-            return Verdict::Keep(Judged { link, doubt, is_clear });
+            return RefinementStep::Keep(AssessedLink { link, doubt, is_clear });
         }
         self.divide(a, b, is_clear).unwrap_or(match seen {
-            0.0 => Verdict::Drop,
-            _ => Verdict::Keep(Judged { link, doubt: 0.0, is_clear }),
+            0.0 => RefinementStep::Drop,
+            _ => RefinementStep::Keep(AssessedLink { link, doubt: 0.0, is_clear }),
         })
     }
 
     /// What a node exchanges with itself: an element nothing, a cluster little if it is nearly flat.
-    fn within(&self, at: u32, node: &Node) -> Verdict {
+    fn within(&self, at: u32, node: &HierarchyNode) -> RefinementStep {
         if !node.is_cluster() {
-            return Verdict::Drop;
+            return RefinementStep::Drop;
         }
         match self.is_fine(at, at, within_turn(2.0 * node.spread) * node.area) {
-            true => Verdict::Drop,
-            false => Verdict::Within(at),
+            true => RefinementStep::Drop,
+            false => RefinementStep::Within(at),
         }
     }
 
     /// The larger of both that can be divided.
-    fn divide(&self, a: u32, b: u32, is_clear: bool) -> Option<Verdict> {
-        let can = |node: &Node| !node.is_leaf() || node.longest_edge() >= 2.0 * self.bound.finest;
+    fn divide(&self, a: u32, b: u32, is_clear: bool) -> Option<RefinementStep> {
+        let can = |node: &HierarchyNode| !node.is_leaf() || node.longest_edge() >= 2.0 * self.bound.finest;
         let (first, second) = (self.node(a), self.node(b));
         let takes_first = can(first) && (first.radius >= second.radius || !can(second));
         if takes_first {
-            Some(Verdict::Divide { divided: a, other: b, is_clear })
+            Some(RefinementStep::Divide { divided: a, other: b, is_clear })
         } else {
-            can(second).then_some(Verdict::Divide { divided: b, other: a, is_clear })
+            can(second).then_some(RefinementStep::Divide { divided: b, other: a, is_clear })
         }
     }
 
@@ -271,7 +271,7 @@ fn within_turn(turn: f64) -> f64 {
 }
 
 /// Whether all of a node is behind all of another.
-fn is_behind(node: &Node, other: &Node) -> bool {
+fn is_behind(node: &HierarchyNode, other: &HierarchyNode) -> bool {
     if !node.is_cluster() && !other.is_cluster() {
         return node.corners.iter().all(|corner| (*corner - other.corners[0]).dot(other.normal) <= 0.0);
     }

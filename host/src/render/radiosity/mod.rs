@@ -35,23 +35,23 @@ mod tests;
 mod visible;
 
 pub use direct::Exitance;
-pub use report::Report;
-pub use surface::Division;
+pub use report::RadiosityReport;
+pub use surface::ElementTree;
 
-use super::indirect::{IndirectLight, Part};
+use super::indirect::{IndirectLight, IrradiancePart};
 use super::world::World;
-use super::{Amount, RenderError, Watch};
+use super::{Progress, RenderError, Watch};
 use crate::color::Channels;
 use crate::plan::{Plan, Stage};
 use crate::scene::{Prepared, RadiositySettings};
 use contact::Contacts;
-use corners::Corners;
+use corners::ElementCorners;
 use elements::Elements;
-use exchange::{Exchange, Link, Looks};
-use gather::{Gatherer, Views};
-use hierarchy::{Patch, normal_and_area};
-use links::{Bound, Judged, refine};
-use sight::Sight;
+use exchange::{Exchange, ExchangeLink, LeafVisibility};
+use gather::{Gatherer, CornerViews};
+use hierarchy::{RadiosityPatch, normal_and_area};
+use links::{RefinementBound, AssessedLink, refine};
+use sight::VisibilityTester;
 use solver::solve;
 use std::time::Instant;
 use surface::SurfaceLight;
@@ -70,7 +70,7 @@ const BENT: f64 = 4.0;
 pub struct Radiosity {
     light: SurfaceLight,
     /// What it took.
-    pub report: Report,
+    pub report: RadiosityReport,
 }
 
 impl Radiosity {
@@ -93,7 +93,7 @@ impl Radiosity {
         let start = Instant::now();
         let stopped = || watch.is_cancelled();
         let prepared = world.prepared();
-        let sight = Sight::new(world, watch.memo);
+        let sight = VisibilityTester::new(world, watch.memo);
         let shadows = plan.needs(Stage::Shadows);
         let diagonal = prepared.bounds.diagonal();
         let finest = (settings.finest * diagonal).max(f64::MIN_POSITIVE);
@@ -103,23 +103,23 @@ impl Radiosity {
         let patches = patches(prepared, plan, &sight);
         let hierarchy = visible::lit(&sight, patches, &contacts, (exitance, shadows), lengths);
         if hierarchy.nodes.is_empty() {
-            return Ok(Radiosity { light: SurfaceLight::dark(prepared), report: Report::default() });
+            return Ok(Radiosity { light: SurfaceLight::dark(prepared), report: RadiosityReport::default() });
         }
         let mut elements = Elements::new(hierarchy, &sight, (exitance, shadows), finest);
         let mean = elements.mean_irradiance();
         elements.divide_where_light_varies(&sight, BENT * settings.error * mean, lengths[1]);
-        let mut links: Vec<Judged> = Vec::new();
-        let mut report = Report { patches: elements.hierarchy.patches.len(), ..Report::default() };
+        let mut links: Vec<AssessedLink> = Vec::new();
+        let mut report = RadiosityReport { patches: elements.hierarchy.patches.len(), ..RadiosityReport::default() };
         let mut leaves = Vec::new();
         let mut at_corners = None;
         for round in 0..ROUNDS {
-            let bound = Bound { irradiance: settings.error * elements.mean_irradiance(), finest };
+            let bound = RefinementBound { irradiance: settings.error * elements.mean_irradiance(), finest };
             refine(&sight, &mut elements, &mut links, bound, &stopped);
-            (watch.progress)(Amount::of(2 * round + 1, 2 * ROUNDS, "rounds"));
+            (watch.progress)(Progress::of(2 * round + 1, 2 * ROUNDS, "rounds"));
             let is_last = round + 1 == ROUNDS || stopped();
             leaves = elements.hierarchy.leaves();
             let gatherer = Gatherer { sight: &sight, hierarchy: &elements.hierarchy, error: bound.irradiance };
-            let corners = is_last.then(|| Corners::new(prepared, &elements.hierarchy, &leaves));
+            let corners = is_last.then(|| ElementCorners::new(prepared, &elements.hierarchy, &leaves));
             let views = corners.as_ref().map(|corners| gatherer.views(&links, corners, &elements.sent));
             let looks = views
                 .as_ref()
@@ -128,7 +128,7 @@ impl Radiosity {
             let last = looks.as_ref().zip(views.as_ref());
             let (irradiance, light) = light(&elements, &links, last, (tolerance, &stopped), &mut report)?;
             elements.take(&leaves, &irradiance);
-            (watch.progress)(Amount::of(2 * round + 2, 2 * ROUNDS, "rounds"));
+            (watch.progress)(Progress::of(2 * round + 2, 2 * ROUNDS, "rounds"));
             if let (Some(corners), Some(looks)) = (corners, looks) {
                 at_corners = Some((corners, light, looks.is_dark));
                 break;
@@ -149,26 +149,26 @@ impl Radiosity {
     /// How a side of a triangle is divided into elements; none where no light comes.
     ///
     /// - `outside`: whether it is the outer side.
-    pub fn division(&self, triangle: u32, outside: bool) -> Option<Division> {
+    pub fn division(&self, triangle: u32, outside: bool) -> Option<ElementTree> {
         self.light.division(triangle, outside)
     }
 }
 
 impl IndirectLight for Radiosity {
-    fn irradiance(&self, triangle: u32, outside: bool, weights: [f64; 3], part: Part) -> Channels {
+    fn irradiance(&self, triangle: u32, outside: bool, weights: [f64; 3], part: IrradiancePart) -> Channels {
         self.light.at(triangle, outside, weights, part)
     }
 }
 
 /// All sides of triangles that reflect diffusely or send light from elsewhere.
-fn patches(prepared: &Prepared, plan: &Plan, sight: &Sight<'_>) -> Vec<Patch> {
+fn patches(prepared: &Prepared, plan: &Plan, sight: &VisibilityTester<'_>) -> Vec<RadiosityPatch> {
     let appearance = &sight.world.appearance;
     let sides = |triangle: u32| {
         let object = prepared.object_of[triangle as usize];
         let is_diffuse = || appearance.optics(object, prepared.material_number(triangle)).is_diffuse();
         let [a, b, c] = prepared.corners(triangle);
         let takes_part = plan.keeps_object(object as usize) && is_diffuse() && normal_and_area([a, b, c]).1 > 0.0;
-        let side = |corners, outside| Patch { corners, triangle, outside };
+        let side = |corners, outside| RadiosityPatch { corners, triangle, outside };
         let sides = takes_part.then(|| [side([a, b, c], true), side([a, c, b], false)]);
         sides.into_iter().flatten()
     };
@@ -179,12 +179,12 @@ fn patches(prepared: &Prepared, plan: &Plan, sight: &Sight<'_>) -> Vec<Patch> {
 /// and the last time that at their corners.
 fn light(
     elements: &Elements<'_>,
-    judged: &[Judged],
-    last: Option<(&Looks, &Views<'_>)>,
+    judged: &[AssessedLink],
+    last: Option<(&LeafVisibility, &CornerViews<'_>)>,
     (tolerance, stopped): (f64, &dyn Fn() -> bool),
-    report: &mut Report,
+    report: &mut RadiosityReport,
 ) -> Result<(Vec<Channels>, Vec<Channels>), RenderError> {
-    let links: Vec<Link> = judged.iter().map(|judged| judged.link).filter(|link| link.exchange > 0.0).collect();
+    let links: Vec<ExchangeLink> = judged.iter().map(|judged| judged.link).filter(|link| link.exchange > 0.0).collect();
     let mut exchange = Exchange::new(&elements.hierarchy, &links);
     let leaves = exchange.leaves.clone();
     let of = |values: &[Channels]| -> Vec<Channels> { leaves.iter().map(|leaf| values[*leaf as usize]).collect() };

@@ -4,11 +4,11 @@
 const ASKED: usize = 1024;
 
 /// Sets of what is joined.
-pub(super) struct Pieces(Vec<u32>);
+pub(super) struct DisjointSets(Vec<u32>);
 
-impl Pieces {
-    pub(super) fn new(count: usize) -> Pieces {
-        Pieces((0..count as u32).collect())
+impl DisjointSets {
+    pub(super) fn new(count: usize) -> DisjointSets {
+        DisjointSets((0..count as u32).collect())
     }
 
     pub(super) fn root(&mut self, mut at: u32) -> u32 {

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 /// What a solution took, how good it is, and where the light went.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Report {
+pub struct RadiosityReport {
     /// Sides of triangles that light may come to.
     pub patches: usize,
     /// Elements into which they are divided.
@@ -29,11 +29,11 @@ pub struct Report {
     pub seconds: f64,
 }
 
-impl Report {
+impl RadiosityReport {
     /// It in words, a line each.
     pub fn lines(&self) -> [String; 2] {
-        let Report { patches, elements, links, steps, solver_error, unbalanced, seconds, .. } = *self;
-        let Report { arrived, absorbed, escaped, left, .. } = *self;
+        let RadiosityReport { patches, elements, links, steps, solver_error, unbalanced, seconds, .. } = *self;
+        let RadiosityReport { arrived, absorbed, escaped, left, .. } = *self;
         [
             format!(
                 "{elements} elements of {patches} patches, {links} links, {steps} steps of the solver in {seconds:.3} s; \

@@ -1,10 +1,10 @@
 //! What elements see: whether something is between two points, and what is met in all directions.
 
-use super::hierarchy::{Node, Patch};
+use super::hierarchy::{HierarchyNode, RadiosityPatch};
 use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::Ray;
 use crate::numeric::sampling::cosine_hemisphere;
-use crate::numeric::sequence::Sequence;
+use crate::numeric::sequence::SobolSequence;
 use crate::render::Memo;
 use crate::render::world::World;
 use glam::DVec3;
@@ -17,7 +17,7 @@ const CLEARANCE_ULPS: f64 = 64.0;
 const MOST_PASSED: usize = 64;
 
 /// Asks rays.
-pub(super) struct Sight<'a> {
+pub(super) struct VisibilityTester<'a> {
     pub(super) world: &'a World<'a>,
     pub(super) clearance: f64,
     seed: u64,
@@ -27,7 +27,7 @@ pub(super) struct Sight<'a> {
 
 /// What is seen from an element in a direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Seen {
+pub(super) enum RayTarget {
     /// Nothing: light escapes.
     Nothing,
     /// A lamp that is no object.
@@ -36,12 +36,12 @@ pub(super) enum Seen {
     Side { triangle: u32, outside: bool, weights: [f64; 3] },
 }
 
-impl<'a> Sight<'a> {
-    pub(super) fn new(world: &'a World<'a>, memo: Option<&'a Memo>) -> Sight<'a> {
+impl<'a> VisibilityTester<'a> {
+    pub(super) fn new(world: &'a World<'a>, memo: Option<&'a Memo>) -> VisibilityTester<'a> {
         let prepared = world.appearance.prepared;
         let largest = prepared.vertices.iter().fold(0.0f64, |most, vertex| most.max(vertex.abs().max_element()));
         let clearance = (CLEARANCE_ULPS * f64::EPSILON * largest).max(f64::MIN_POSITIVE);
-        Sight { world, clearance, seed: prepared.settings.image.seed, memo }
+        VisibilityTester { world, clearance, seed: prepared.settings.image.seed, memo }
     }
 
     /// What a function finds of each item, on all threads; see [`Memo::map`].
@@ -65,10 +65,10 @@ impl<'a> Sight<'a> {
     }
 
     /// Whether it is sure that nothing is between two elements.
-    pub(super) fn is_clear(&self, one: &Node, other: &Node) -> bool {
+    pub(super) fn is_clear(&self, one: &HierarchyNode, other: &HierarchyNode) -> bool {
         let prepared = self.world.appearance.prepared;
         // What does not come out of the plane of an element is in no way to its front.
-        let is_behind = |corners: &[DVec3; 3], node: &Node| {
+        let is_behind = |corners: &[DVec3; 3], node: &HierarchyNode| {
             corners.iter().all(|corner| (*corner - node.corners[0]).dot(node.normal) <= self.clearance)
         };
         let counts = |triangle: u32| {
@@ -82,8 +82,8 @@ impl<'a> Sight<'a> {
     ///
     /// - `place`: a point with its unit normal, told which one and a point of the unit square.
     /// - `number`: of the element: each has directions of its own. `count`: of directions.
-    pub(super) fn around(&self, place: impl Fn(u32, [f64; 2]) -> [DVec3; 2], number: u64, count: u32) -> Vec<Seen> {
-        let sequence = Sequence::new(self.seed, number);
+    pub(super) fn around(&self, place: impl Fn(u32, [f64; 2]) -> [DVec3; 2], number: u64, count: u32) -> Vec<RayTarget> {
+        let sequence = SobolSequence::new(self.seed, number);
         let look = |index: u32| {
             let [point, normal] = place(index, sequence.point(index, 0));
             let towards = cosine_hemisphere(sequence.point(index, 1), normal);
@@ -93,30 +93,30 @@ impl<'a> Sight<'a> {
     }
 
     /// What a ray meets first that light does not go straight through.
-    fn along(&self, ray: &Ray) -> Seen {
+    fn along(&self, ray: &Ray) -> RayTarget {
         let (world, prepared) = (self.world, self.world.appearance.prepared);
         let mut from = 0.0;
         for _ in 0..MOST_PASSED {
             let struck = world.struck(ray, from);
             let t_max = struck.map_or(f64::INFINITY, |(hit, _)| hit.t);
             if world.appearance.glow(ray, from, t_max, 0).is_some() {
-                return Seen::Lamp;
+                return RayTarget::Lamp;
             }
-            let Some((hit, triangle)) = struck else { return Seen::Nothing };
+            let Some((hit, triangle)) = struck else { return RayTarget::Nothing };
             let optics =
                 world.appearance.optics(prepared.object_of[triangle as usize], prepared.material_number(triangle));
             if !optics.is_passable() {
                 let [a, b, c] = prepared.corners(triangle);
                 let outside = (b - a).cross(c - a).dot(ray.direction) < 0.0;
-                return Seen::Side { triangle, outside, weights: [1.0 - hit.u - hit.v, hit.u, hit.v] };
+                return RayTarget::Side { triangle, outside, weights: [1.0 - hit.u - hit.v, hit.u, hit.v] };
             }
             from = hit.t;
         }
-        Seen::Nothing
+        RayTarget::Nothing
     }
 }
 
-impl Patch {
+impl RadiosityPatch {
     /// Weights of the corners of the triangle, as the scene orders them, in the order of the patch.
     pub(super) fn weights(&self, [a, b, c]: [f64; 3]) -> [f64; 3] {
         if self.outside { [a, b, c] } else { [a, c, b] }

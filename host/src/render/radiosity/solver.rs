@@ -7,7 +7,7 @@
 
 use super::exchange::Exchange;
 use crate::color::{Channels, LANES};
-use crate::render::Unsolvable;
+use crate::render::RadiosityError;
 
 /// Aggregates of the coarse level, and where a rough solution will do.
 const AGGREGATES: usize = 24;
@@ -21,7 +21,7 @@ const NO_LOSS: f64 = 1e-13;
 
 /// Light that elements send each other.
 #[derive(Clone, Debug)]
-pub(super) struct Solved {
+pub(super) struct SolvedIrradiance {
     /// Irradiance of each leaf by light of others, W/m².
     pub(super) irradiance: Vec<Channels>,
     pub(super) steps: u32,
@@ -55,12 +55,12 @@ pub(super) fn solve(
     sent: &[Channels],
     tolerance: f64,
     stopped: &dyn Fn() -> bool,
-) -> Result<Solved, Unsolvable> {
+) -> Result<SolvedIrradiance, RadiosityError> {
     let greatest = |of: &[Channels]| of.iter().fold(0.0f64, |most, c| most.max(c.max()));
     let is_sound = |c: &Channels| c.is_finite() && c.0.iter().all(|value| *value >= 0.0);
     let most = greatest(reflectance);
     if !reflectance.iter().chain(sent).all(is_sound) || most > 1.0 {
-        return Err(Unsolvable::Value { reflectance: most, exitance: greatest(sent) });
+        return Err(RadiosityError::Value { reflectance: most, exitance: greatest(sent) });
     }
     let areas = exchange.areas();
     let roots: Vec<Channels> = reflectance.iter().map(|rho| rho.map(f64::sqrt)).collect();
@@ -68,14 +68,14 @@ pub(super) fn solve(
     let per_area =
         |flux: &[Channels]| -> Vec<Channels> { flux.iter().zip(&areas).map(|(f, a)| *f * a.recip()).collect() };
     if most == 0.0 || greatest(&first) == 0.0 {
-        return Ok(Solved { irradiance: per_area(&first), steps: 0, error: 0.0 });
+        return Ok(SolvedIrradiance { irradiance: per_area(&first), steps: 0, error: 0.0 });
     }
     // With what a leaf sees at the most, no light is reflected more often than this.
     let seen = exchange.apply(&vec![1.0; areas.len()]);
     let losses = seen.iter().zip(&areas).zip(reflectance).map(|((seen, area), rho)| 1.0 - seen / area * rho.max());
     let losses: Vec<f64> = losses.collect();
     if losses.iter().all(|loss| *loss < NO_LOSS) {
-        return Err(Unsolvable::NoLoss);
+        return Err(RadiosityError::NoLoss);
     }
     let least_loss = losses.into_iter().fold(1.0, f64::min).max(f64::EPSILON);
     let count = if tolerance > ROUGH { FEW_AGGREGATES } else { AGGREGATES };
@@ -102,10 +102,10 @@ pub(super) fn solve(
         let error = change / least_loss / greatest(&irradiance).max(f64::MIN_POSITIVE);
         if error <= tolerance || steps >= MOST_STEPS || stopped() || goal < 1e-18 {
             if error >= 1.0 && least_loss < NO_LOSS && !stopped() {
-                return Err(Unsolvable::NoLoss);
+                return Err(RadiosityError::NoLoss);
             }
             let irradiance = next.into_iter().map(|i| i.map(|value| value.max(0.0))).collect();
-            return Ok(Solved { irradiance, steps, error });
+            return Ok(SolvedIrradiance { irradiance, steps, error });
         }
         goal *= 0.1;
     }

@@ -3,12 +3,12 @@
 //! Corners that elements share have one value. Where a corner lies in the middle of an edge of a larger element, it has
 //! the value of that edge: there are no cracks.
 
-use super::corners::Corners;
+use super::corners::ElementCorners;
 use super::elements::Elements;
 use super::faces;
 use super::hierarchy::{Hierarchy, NONE};
 use crate::color::Channels;
-use crate::render::indirect::Part;
+use crate::render::indirect::IrradiancePart;
 use crate::scene::Prepared;
 use glam::DVec3;
 
@@ -28,21 +28,21 @@ pub(super) struct SurfaceLight {
 
 /// A side of a triangle, or a part of it, with the parts of which it consists.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Division {
+pub struct ElementTree {
     /// Its corners, counter-clockwise about the side; of the outer side of a triangle as the scene orders them, of the inner
     /// one the first, the third and the second.
     pub corners: [DVec3; 3],
     /// None for an element; else the four that the middles of its edges make, at the corners and in the middle, or, if it
     /// is cut, two halves or what lines left.
-    pub parts: Vec<Division>,
+    pub parts: Vec<ElementTree>,
     /// Whether it is cut.
     pub is_cut: bool,
 }
 
-impl Division {
+impl ElementTree {
     /// How many elements there are in it.
     pub fn leaves(&self) -> usize {
-        if self.parts.is_empty() { 1 } else { self.parts.iter().map(Division::leaves).sum() }
+        if self.parts.is_empty() { 1 } else { self.parts.iter().map(ElementTree::leaves).sum() }
     }
 }
 
@@ -58,7 +58,7 @@ impl SurfaceLight {
         prepared: &Prepared,
         elements: Elements<'_>,
         (leaves, is_dark): (&[u32], &[bool]),
-        (shared, indirect): (&Corners, &[Channels]),
+        (shared, indirect): (&ElementCorners, &[Channels]),
     ) -> SurfaceLight {
         let Elements { hierarchy, around, direct: lit, .. } = elements;
         let mut patch_of = vec![[NONE; 2]; prepared.triangles.len()];
@@ -95,7 +95,7 @@ impl SurfaceLight {
     /// Irradiance at a place of a side of a triangle, W/m², in lanes that are means over all combs.
     ///
     /// - `weights`: of the corners, as the scene orders them.
-    pub(super) fn at(&self, triangle: u32, outside: bool, weights: [f64; 3], part: Part) -> Channels {
+    pub(super) fn at(&self, triangle: u32, outside: bool, weights: [f64; 3], part: IrradiancePart) -> Channels {
         let patch = self.patch_of[triangle as usize][usize::from(!outside)];
         if patch == NONE {
             return Channels::ZERO;
@@ -109,7 +109,7 @@ impl SurfaceLight {
         }
         let of = |(corner, weight): (u32, f64)| {
             let [direct, indirect] = self.values[corner as usize];
-            (if part == Part::All { direct + indirect } else { indirect }) * weight.max(0.0)
+            (if part == IrradiancePart::All { direct + indirect } else { indirect }) * weight.max(0.0)
         };
         corners.into_iter().zip(weights).map(of).fold(Channels::ZERO, |a, b| a + b)
     }
@@ -117,23 +117,23 @@ impl SurfaceLight {
 
 impl SurfaceLight {
     /// How a side of a triangle is divided; none where no light comes.
-    pub(super) fn division(&self, triangle: u32, outside: bool) -> Option<Division> {
+    pub(super) fn division(&self, triangle: u32, outside: bool) -> Option<ElementTree> {
         let patch = self.patch_of[triangle as usize][usize::from(!outside)];
         (patch != NONE).then(|| {
             let node = self.hierarchy.node_of[patch as usize] as usize;
             match self.hierarchy.nodes[node].is_cluster() {
                 true => {
                     let corners = self.hierarchy.patches[patch as usize].corners;
-                    Division { corners, parts: Vec::new(), is_cut: false }
+                    ElementTree { corners, parts: Vec::new(), is_cut: false }
                 }
                 false => self.division_of(node),
             }
         })
     }
 
-    fn division_of(&self, node: usize) -> Division {
+    fn division_of(&self, node: usize) -> ElementTree {
         let node = &self.hierarchy.nodes[node];
         let parts = node.children().filter(|_| !node.is_dark).map(|child| self.division_of(child)).collect();
-        Division { corners: node.corners, parts, is_cut: node.is_cut }
+        ElementTree { corners: node.corners, parts, is_cut: node.is_cut }
     }
 }

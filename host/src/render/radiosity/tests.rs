@@ -6,7 +6,7 @@ use crate::color::Color;
 use crate::illumination::material::Classic;
 use crate::illumination::{Light, Material, Paint};
 use crate::mesh::Mesh;
-use crate::render::Unsolvable;
+use crate::render::RadiosityError;
 use crate::scene::{Interreflection, Object, RadiositySettings, Scene, Shape};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec3};
@@ -51,12 +51,12 @@ fn lamp(at: DVec3) -> Light {
 }
 
 /// Irradiance in the middle of a side of a triangle.
-fn middle(radiosity: &Radiosity, triangle: u32, outside: bool, part: Part) -> f64 {
+fn middle(radiosity: &Radiosity, triangle: u32, outside: bool, part: IrradiancePart) -> f64 {
     radiosity.irradiance(triangle, outside, [1.0 / 3.0; 3], part).0[0]
 }
 
 /// Mean irradiance of a side of some triangles.
-fn mean(prepared: &Prepared, radiosity: &Radiosity, object: usize, outside: bool, part: Part) -> f64 {
+fn mean(prepared: &Prepared, radiosity: &Radiosity, object: usize, outside: bool, part: IrradiancePart) -> f64 {
     let of = &prepared.objects[object];
     let (mut sum, mut all) = (0.0, 0.0);
     for triangle in of.first..of.first + of.count {
@@ -73,11 +73,11 @@ fn in_a_closed_sphere_light_grows_by_one_over_what_is_lost() {
         let prepared = prepared(vec![sphere("sphere", 1.0, 1.0 - loss)], vec![]);
         let inside = |_: u32, outside: bool, _: DVec3| if outside { Channels::ZERO } else { Channels::splat(2.0) };
         let radiosity = solved(&prepared, &coarse(), Some(&inside));
-        let Report { steps, solver_error, left, arrived, unbalanced, .. } = radiosity.report;
+        let RadiosityReport { steps, solver_error, left, arrived, unbalanced, .. } = radiosity.report;
         for triangle in 0..prepared.triangles.len() as u32 {
-            let found = 2.0 + (1.0 - loss) * middle(&radiosity, triangle, false, Part::All);
+            let found = 2.0 + (1.0 - loss) * middle(&radiosity, triangle, false, IrradiancePart::All);
             assert!((found * loss / 2.0 - 1.0).abs() < 1e-6, "{loss}: {found}");
-            assert_eq!(middle(&radiosity, triangle, true, Part::All), 0.0, "outside it is dark");
+            assert_eq!(middle(&radiosity, triangle, true, IrradiancePart::All), 0.0, "outside it is dark");
         }
         assert!(steps < 100 && solver_error < 1e-6, "{loss}: {:?}", radiosity.report);
         assert!((left / arrived).abs() < 1e-6 && unbalanced < 1e-6, "{loss}: {:?}", radiosity.report);
@@ -100,7 +100,7 @@ fn a_closed_room_that_reflects_nearly_all_is_solved_in_few_steps() {
         // All that is sent is absorbed, in the mean over all surfaces.
         let all = 24.0 + 4.0 * PI * 0.16;
         let mean = report.absorbed / 3.0 / (loss * all);
-        let ball = super::tests::mean(&room, &radiosity, 1, true, Part::All);
+        let ball = super::tests::mean(&room, &radiosity, 1, true, IrradiancePart::All);
         assert!((ball / mean - 1.0).abs() < 0.05 + loss * 100.0, "{loss}: {ball} {mean}");
     }
 }
@@ -113,9 +113,9 @@ fn light_that_nothing_takes_away_is_refused_and_no_light_is_none() {
         let inside = move |_: u32, _: bool, _: DVec3| Channels::splat(exitance);
         Radiosity::new(&World::new(&mirror, &plan).expect("a world"), &plan, &coarse(), Some(&inside), &Watch::NOBODY)
     };
-    assert!(matches!(of(1.0), Err(RenderError::Radiosity(Unsolvable::NoLoss))));
+    assert!(matches!(of(1.0), Err(RenderError::Radiosity(RadiosityError::NoLoss))));
     let dark = of(0.0).expect("no light is an answer");
-    assert_eq!(mean(&mirror, &dark, 0, false, Part::All), 0.0);
+    assert_eq!(mean(&mirror, &dark, 0, false, IrradiancePart::All), 0.0);
 }
 
 #[test]
@@ -134,15 +134,15 @@ fn a_sphere_in_a_sphere_sends_all_its_light_to_it_and_gets_its_share_back() {
         |triangle: u32, outside: bool, _: DVec3| Channels::splat(if triangle < inner && outside { 1.0 } else { 0.0 });
     let radiosity = solved(&spheres, &coarse(), Some(&from_inner));
     // Corners lie on the sphere, and all else a little within.
-    let found = mean(&spheres, &radiosity, 1, false, Part::All) / (area(0) / (4.0 * PI * r2 * r2));
+    let found = mean(&spheres, &radiosity, 1, false, IrradiancePart::All) / (area(0) / (4.0 * PI * r2 * r2));
     assert!((found - 1.0).abs() < 0.025, "{found}");
-    assert!(mean(&spheres, &radiosity, 0, true, Part::All) < 1e-6, "a convex body sees nothing of itself");
+    assert!(mean(&spheres, &radiosity, 0, true, IrradiancePart::All) < 1e-6, "a convex body sees nothing of itself");
     let from_outer =
         |triangle: u32, outside: bool, _: DVec3| Channels::splat(if triangle >= inner && !outside { 1.0 } else { 0.0 });
     let radiosity = solved(&spheres, &coarse(), Some(&from_outer));
-    let found = mean(&spheres, &radiosity, 0, true, Part::All);
+    let found = mean(&spheres, &radiosity, 0, true, IrradiancePart::All);
     assert!((found - 1.0).abs() < 0.02, "{found} {:?}", radiosity.report);
-    let own = mean(&spheres, &radiosity, 1, false, Part::All);
+    let own = mean(&spheres, &radiosity, 1, false, IrradiancePart::All);
     assert!((own - (1.0 - ratio)).abs() < 0.02, "{own} {ratio}");
 }
 
@@ -164,12 +164,12 @@ fn a_closed_dark_room_with_lights_outside_stays_dark_to_the_last_bit() {
     let room = &scene.objects[0];
     for triangle in room.first..room.first + room.count {
         for weights in [[1.0 / 3.0; 3], [0.98, 0.01, 0.01], [0.01, 0.01, 0.98], [1.0, 0.0, 0.0], [0.5, 0.5, 0.0]] {
-            assert_eq!(radiosity.irradiance(triangle, false, weights, Part::All), Channels::ZERO);
+            assert_eq!(radiosity.irradiance(triangle, false, weights, IrradiancePart::All), Channels::ZERO);
         }
     }
-    assert!(mean(&scene, &radiosity, 0, true, Part::All) > 0.0);
-    assert!(mean(&scene, &radiosity, 1, false, Part::Indirect) > 0.0);
-    let Report { arrived, left, .. } = radiosity.report;
+    assert!(mean(&scene, &radiosity, 0, true, IrradiancePart::All) > 0.0);
+    assert!(mean(&scene, &radiosity, 1, false, IrradiancePart::Indirect) > 0.0);
+    let RadiosityReport { arrived, left, .. } = radiosity.report;
     assert!((left / arrived).abs() < 1e-6, "{:?}", radiosity.report);
 }
 
@@ -178,21 +178,21 @@ fn the_hierarchy_gives_what_a_full_matrix_gives() {
     let room = prepared(vec![cube("room", 2.0, 0.6)], vec![lamp(DVec3::new(0.3, 0.5, -0.2))]);
     let plan = Plan::new(&room, &room.view());
     let world = World::new(&room, &plan).expect("a world");
-    let sight = Sight::new(&world, None);
-    let inside: Vec<Patch> = patches(&room, &plan, &sight).into_iter().filter(|patch| !patch.outside).collect();
+    let sight = VisibilityTester::new(&world, None);
+    let inside: Vec<RadiosityPatch> = patches(&room, &plan, &sight).into_iter().filter(|patch| !patch.outside).collect();
     let mut elements = Elements::new(Hierarchy::new(inside, 0.1), &sight, (None, true), 0.1);
     elements.divide_where_light_varies(&sight, f64::INFINITY, 0.6);
     let mut links = Vec::new();
     let mut found = Vec::new();
     for error in [0.05, 0.002] {
-        let bound = Bound { irradiance: error * elements.mean_irradiance(), finest: 0.6 };
+        let bound = RefinementBound { irradiance: error * elements.mean_irradiance(), finest: 0.6 };
         refine(&sight, &mut elements, &mut links, bound, &|| false);
         let leaves = elements.hierarchy.leaves();
         let ones = vec![1.0; leaves.len()];
-        let ones = Looks { directions: 1, part: ones.clone(), row: ones, is_dark: vec![false; leaves.len()] };
-        let mut report = Report::default();
+        let ones = LeafVisibility { directions: 1, part: ones.clone(), row: ones, is_dark: vec![false; leaves.len()] };
+        let mut report = RadiosityReport::default();
         let gatherer = Gatherer { sight: &sight, hierarchy: &elements.hierarchy, error: bound.irradiance };
-        let corners = Corners::new(&room, &elements.hierarchy, &leaves);
+        let corners = ElementCorners::new(&room, &elements.hierarchy, &leaves);
         let views = gatherer.views(&links, &corners, &elements.sent);
         let last = Some((&ones, &views));
         let solved = light(&elements, &links, last, (1e-9, &|| false), &mut report).expect("a solution");
@@ -231,9 +231,9 @@ fn the_solution_is_the_same_for_any_number_of_threads() {
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         let radiosity = pool.install(|| solved(&room, &coarse(), None));
-        let at = |triangle: u32| radiosity.irradiance(triangle, false, [0.2, 0.3, 0.5], Part::All);
+        let at = |triangle: u32| radiosity.irradiance(triangle, false, [0.2, 0.3, 0.5], IrradiancePart::All);
         let values: Vec<u64> = (0..room.triangles.len() as u32).map(|t| at(t).0[0].to_bits()).collect();
-        (values, Report { seconds: 0.0, ..radiosity.report })
+        (values, RadiosityReport { seconds: 0.0, ..radiosity.report })
     };
     assert_eq!(with(1), with(2));
 }
@@ -241,9 +241,9 @@ fn the_solution_is_the_same_for_any_number_of_threads() {
 #[test]
 fn nothing_breaks_without_objects_lights_reflectance_or_area() {
     let solved = |objects: Vec<Object>, lights: Vec<Light>| solved(&prepared(objects, lights), &coarse(), None).report;
-    assert_eq!(solved(vec![], vec![]), Report::default());
-    assert_eq!(solved(vec![cube("cube", 1.0, 0.5)], vec![]), Report::default());
-    assert_eq!(solved(vec![cube("cube", 1.0, 0.0)], vec![lamp(DVec3::Y)]), Report::default());
+    assert_eq!(solved(vec![], vec![]), RadiosityReport::default());
+    assert_eq!(solved(vec![cube("cube", 1.0, 0.5)], vec![]), RadiosityReport::default());
+    assert_eq!(solved(vec![cube("cube", 1.0, 0.0)], vec![lamp(DVec3::Y)]), RadiosityReport::default());
     let sliver = Mesh {
         vertices: vec![DVec3::ZERO, DVec3::X, DVec3::X * 2.0, DVec3::new(0.0, 1e-160, 0.0)],
         triangles: vec![[0, 1, 2], [0, 1, 1], [0, 1, 3]],
@@ -265,7 +265,7 @@ fn scenes_of_any_size_have_the_same_light() {
         let room = cube("room", 2.0 * scale, 0.5);
         let light = Light::Point { at: DVec3::new(0.2, 0.3, 0.1) * scale, intensity: Color::grey(scale * scale) };
         let room = prepared(vec![room], vec![light]);
-        mean(&room, &solved(&room, &coarse(), None), 0, false, Part::Indirect)
+        mean(&room, &solved(&room, &coarse(), None), 0, false, IrradiancePart::Indirect)
     };
     let one = of(1.0);
     for scale in [1e-6, 1e6] {
@@ -309,7 +309,7 @@ fn a_patch_of_light_on_a_floor_lights_the_ceiling_as_the_closed_form_tells() {
             let [a, b, c] = corners;
             // Of what is off the triangle, weights are those of the nearest point.
             let off = (a * weights[0] + b * weights[1] + c * weights[2]).distance(at);
-            (faces_down && off < 1e-9).then(|| radiosity.irradiance(triangle, true, weights, Part::Indirect).0[0])
+            (faces_down && off < 1e-9).then(|| radiosity.irradiance(triangle, true, weights, IrradiancePart::Indirect).0[0])
         });
         let found = found.expect("a place on the ceiling");
         assert!((found / exact - 1.0).abs() < 0.015, "{x} {z}: {found} {exact}");
@@ -322,7 +322,7 @@ fn progress_is_told_and_a_solution_that_is_stopped_is_still_one() {
     let room = prepared(vec![cube("room", 2.0, 0.6), sphere("ball", 0.5, 0.8)], vec![lamp(DVec3::new(0.7, 0.8, 0.1))]);
     let plan = Plan::new(&room, &room.view());
     let (cancelled, told) = (AtomicBool::new(false), AtomicU64::new(0));
-    let progress = |amount: Amount| {
+    let progress = |amount: Progress| {
         let done = amount.done as u64;
         assert!(amount.done <= amount.all && done >= told.load(Ordering::Relaxed));
         told.store(done, Ordering::Relaxed);
@@ -334,7 +334,7 @@ fn progress_is_told_and_a_solution_that_is_stopped_is_still_one() {
     assert!(told.load(Ordering::Relaxed) > 0);
     let whole = solved(&room, &coarse(), None);
     assert!(stopped.report.links < whole.report.links);
-    assert!(middle(&stopped, 0, false, Part::All).is_finite());
+    assert!(middle(&stopped, 0, false, IrradiancePart::All).is_finite());
 }
 
 #[test]
@@ -346,7 +346,7 @@ fn ray_tracing_with_radiosity_tells_how_far_that_is_and_stops_there() {
     let plan = Plan::new(&room, &room.view());
     let links = |cancelled: bool| {
         let (cancelled, told) = (AtomicBool::new(cancelled), AtomicU64::new(0));
-        let progress = |amount: Amount| told.store(amount.done as u64, Ordering::Relaxed);
+        let progress = |amount: Progress| told.store(amount.done as u64, Ordering::Relaxed);
         let watch = Watch { cancelled: &cancelled, progress: &progress, ..Watch::NOBODY };
         let (_, report) = ray_tracer_watched(&Task { watch, ..Task::new(&room, &plan) }).expect("a tracer");
         assert!(told.load(Ordering::Relaxed) > 0);
@@ -368,15 +368,15 @@ fn balls_of_many_small_triangles_have_few_elements_and_light_as_the_closed_form_
         &RadiositySettings { error: 0.01, finest: 1.0 / 40.0, ..RadiositySettings::default() },
         Some(&glowing),
     );
-    let Report { patches, elements, .. } = radiosity.report;
+    let RadiosityReport { patches, elements, .. } = radiosity.report;
     assert!(2 * elements < patches, "{elements} of {patches}");
     // The inner one sees nothing but the outer one, which sees of itself what the inner one leaves: 1 - (1/2)².
     for (object, outside, exact) in [(0, true, 1.0), (1, false, 0.75)] {
-        let found = mean(&balls, &radiosity, object, outside, Part::Indirect);
+        let found = mean(&balls, &radiosity, object, outside, IrradiancePart::Indirect);
         assert!((found / exact - 1.0).abs() < 0.015, "{found} {exact}");
         let of = &balls.objects[object];
         let off: Vec<f64> = (of.first..of.first + of.count)
-            .map(|triangle| middle(&radiosity, triangle, outside, Part::Indirect) / exact - 1.0)
+            .map(|triangle| middle(&radiosity, triangle, outside, IrradiancePart::Indirect) / exact - 1.0)
             .collect();
         let square = off.iter().map(|off| off * off).sum::<f64>() / off.len() as f64;
         let most = off.iter().fold(0.0f64, |most, off| most.max(off.abs()));
@@ -390,10 +390,10 @@ fn a_ball_of_face_clusters_that_glows_inside_keeps_all_light() {
     let ball = prepared(vec![ball], vec![]);
     let glowing = |_: u32, outside: bool, _: DVec3| Channels::splat(if outside { 0.0 } else { 1.0 });
     let radiosity = solved(&ball, &coarse(), Some(&glowing));
-    let Report { patches, elements, .. } = radiosity.report;
+    let RadiosityReport { patches, elements, .. } = radiosity.report;
     assert!(4 * elements < patches, "{elements} of {patches}");
     for triangle in [0, 77, 400] {
-        let found = 1.0 + 0.99 * middle(&radiosity, triangle, false, Part::All);
+        let found = 1.0 + 0.99 * middle(&radiosity, triangle, false, IrradiancePart::All);
         assert!((found / 100.0 - 1.0).abs() < 1e-6, "{triangle}: {found}");
     }
 }

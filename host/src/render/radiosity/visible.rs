@@ -3,10 +3,10 @@
 use super::contact::Contacts;
 use super::direct::Exitance;
 use super::elements::Elements;
-use super::exchange::Looks;
-use super::hierarchy::{Hierarchy, NONE, Node, Patch};
-use super::pieces::Pieces;
-use super::sight::{Seen, Sight};
+use super::exchange::LeafVisibility;
+use super::hierarchy::{Hierarchy, NONE, HierarchyNode, RadiosityPatch};
+use super::pieces::DisjointSets;
+use super::sight::{RayTarget, VisibilityTester};
 use glam::DVec3;
 
 /// Directions in which a patch looks around for each of its parts, and at the most.
@@ -17,8 +17,8 @@ const MOST_LOOKS: u32 = 1024;
 ///
 /// - `finest`, `coarsest`: lengths; patches are looked at in parts of the second.
 pub(super) fn lit(
-    sight: &Sight<'_>,
-    patches: Vec<Patch>,
+    sight: &VisibilityTester<'_>,
+    patches: Vec<RadiosityPatch>,
     contacts: &Contacts,
     (exitance, shadows): (Option<Exitance<'_>>, bool),
     [finest, coarsest]: [f64; 2],
@@ -49,7 +49,7 @@ pub(super) fn lit(
 
 /// Of each node that is a leaf, whether no light comes to it.
 fn dark(
-    sight: &Sight<'_>,
+    sight: &VisibilityTester<'_>,
     hierarchy: &Hierarchy,
     (exitance, shadows): (Option<Exitance<'_>>, bool),
     coarsest: f64,
@@ -73,14 +73,14 @@ fn dark(
         }
     };
     let patch_of = numbers(sight, &hierarchy.patches);
-    let looked = |number: usize, node: &Node| {
+    let looked = |number: usize, node: &HierarchyNode| {
         let number = number as u32;
         if !node.is_leaf() {
             return Vec::new();
         }
         let parts = (node.area / (coarsest * coarsest)).ceil().max(1.0);
         let count = (f64::from(LOOKS) * parts).min(f64::from(MOST_LOOKS)) as u32;
-        let of = |seen: Seen| element(hierarchy, &patch_of, seen);
+        let of = |seen: RayTarget| element(hierarchy, &patch_of, seen);
         let seen = sight.around(|index, uniform| hierarchy.place(number, index, uniform), u64::from(number), count);
         let mut seen: Vec<u32> = seen.into_iter().map(of).filter(|node| *node != NONE).collect();
         seen.sort_unstable();
@@ -88,7 +88,7 @@ fn dark(
         seen
     };
     let seen: Vec<Vec<u32>> = sight.map(nodes, looked);
-    let mut joined = Pieces::new(nodes.len());
+    let mut joined = DisjointSets::new(nodes.len());
     for (number, seen) in (0..).zip(&seen) {
         seen.iter().for_each(|other| joined.join(number, *other));
     }
@@ -108,7 +108,7 @@ fn is_any_lit(corners: [DVec3; 3], coarsest: f64, at: &impl Fn(DVec3) -> bool) -
 }
 
 /// The patch of each side of each triangle, outer and inner.
-fn numbers(sight: &Sight<'_>, patches: &[Patch]) -> Vec<[u32; 2]> {
+fn numbers(sight: &VisibilityTester<'_>, patches: &[RadiosityPatch]) -> Vec<[u32; 2]> {
     let mut numbers = vec![[NONE; 2]; sight.world.appearance.prepared.triangles.len()];
     for (number, patch) in (0..).zip(patches) {
         numbers[patch.triangle as usize][usize::from(!patch.outside)] = number;
@@ -117,8 +117,8 @@ fn numbers(sight: &Sight<'_>, patches: &[Patch]) -> Vec<[u32; 2]> {
 }
 
 /// The element that is seen.
-fn element(hierarchy: &Hierarchy, patch_of: &[[u32; 2]], seen: Seen) -> u32 {
-    let Seen::Side { triangle, outside, weights } = seen else { return NONE };
+fn element(hierarchy: &Hierarchy, patch_of: &[[u32; 2]], seen: RayTarget) -> u32 {
+    let RayTarget::Side { triangle, outside, weights } = seen else { return NONE };
     match patch_of[triangle as usize][usize::from(!outside)] {
         NONE => NONE,
         patch => hierarchy.leaf_at(patch, hierarchy.patches[patch as usize].weights(weights)).0,
@@ -129,11 +129,11 @@ fn element(hierarchy: &Hierarchy, patch_of: &[[u32; 2]], seen: Seen) -> u32 {
 ///
 /// - `row`: for each leaf, the part of all that it sees that exchanges light.
 pub(super) fn seen(
-    sight: &Sight<'_>,
+    sight: &VisibilityTester<'_>,
     elements: &Elements<'_>,
     (leaves, row): (&[u32], Vec<f64>),
     directions: u32,
-) -> Looks {
+) -> LeafVisibility {
     let directions = directions.max(1);
     let hierarchy: &Hierarchy = &elements.hierarchy;
     let patch_of = numbers(sight, &hierarchy.patches);
@@ -142,7 +142,7 @@ pub(super) fn seen(
     let looked = |number: usize, leaf: &u32| {
         // Beyond the numbers of all patches.
         let own = (1 << 40) + number as u64;
-        let of = |seen: Seen| match element(hierarchy, &patch_of, seen) {
+        let of = |seen: RayTarget| match element(hierarchy, &patch_of, seen) {
             NONE => NONE,
             leaf => place[leaf as usize],
         };
@@ -153,7 +153,7 @@ pub(super) fn seen(
             .collect::<Vec<u32>>()
     };
     let seen: Vec<Vec<u32>> = sight.map(leaves, looked);
-    let mut joined = Pieces::new(leaves.len());
+    let mut joined = DisjointSets::new(leaves.len());
     for (number, seen) in (0..).zip(&seen) {
         seen.iter().filter(|other| **other != NONE).for_each(|other| joined.join(number, *other));
     }
@@ -161,5 +161,5 @@ pub(super) fn seen(
     let alight = joined.alight(|some| some.iter().map(|number| sends(leaves[*number as usize])).collect());
     let part = |seen: &Vec<u32>| seen.iter().filter(|other| **other != NONE).count() as f64 / f64::from(directions);
     let (part, is_dark) = (seen.iter().map(part).collect(), alight.iter().map(|alight| !alight).collect());
-    Looks { directions, part, row, is_dark }
+    LeafVisibility { directions, part, row, is_dark }
 }

@@ -1,15 +1,15 @@
 //! Accumulation of samples on a film: passes over all pixels, each of which adds samples, that can be stopped and taken up
 //! again anywhere.
 
-use super::tracer::Work;
-use super::{Log, RayTracer};
+use super::tracer::PathScratch;
+use super::{PathLog, RayTracer};
 use crate::memory;
 use crate::picture::PictureError;
-use crate::render::film::{Film, Row};
+use crate::render::film::{Film, FilmRow};
 use crate::render::state::after;
 use crate::render::tally::SHARING;
-use crate::render::two_way::{Balance, CaughtLight};
-use crate::render::{Amount, Order, RayCounts, RenderError, Rendering, SpanCounts, StateError, Watch, denoising};
+use crate::render::two_way::{FluxBalance, PhotonEstimator};
+use crate::render::{Progress, RenderOrder, RayCounts, RenderError, Rendering, SpanCounts, StateError, Watch, denoising};
 use crate::scene::View;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -27,7 +27,7 @@ pub struct Checkpoints<'a> {
 }
 
 /// The threads that an order asks for.
-fn pool(order: &Order) -> Result<ThreadPool, RenderError> {
+fn pool(order: &RenderOrder) -> Result<ThreadPool, RenderError> {
     Ok(ThreadPoolBuilder::new().num_threads(order.threads.map_or(0, |n| n.get())).build()?)
 }
 
@@ -37,7 +37,7 @@ pub struct Accumulated {
     /// How many rays were traced.
     pub rays: RayCounts,
     /// What became of the light of lamps that was followed first, if any was.
-    pub balance: Option<Balance>,
+    pub balance: Option<FluxBalance>,
     /// Whether it was not stopped from outside.
     pub complete: bool,
     /// Wall-clock time, seconds.
@@ -60,7 +60,7 @@ impl RayTracer<'_> {
         &self,
         film: &mut Film,
         view: &View,
-        order: &Order,
+        order: &RenderOrder,
         watch: &Watch<'_>,
         mut checkpoints: Option<Checkpoints<'_>>,
     ) -> Result<Accumulated, RenderError> {
@@ -90,7 +90,7 @@ impl RayTracer<'_> {
             let is_needed = wanting > 0;
             if adaptive.is_some() {
                 let all = film.tallies().len() as u64;
-                (watch.progress)(Amount::of(all - wanting as u64, all, "pixels"));
+                (watch.progress)(Progress::of(all - wanting as u64, all, "pixels"));
             }
             let caught = match &self.two_way {
                 Some(two_way) if is_needed => {
@@ -106,15 +106,15 @@ impl RayTracer<'_> {
                 }
                 _ => None,
             };
-            balance = balance.or(caught.as_ref().map(CaughtLight::balance));
+            balance = balance.or(caught.as_ref().map(PhotonEstimator::balance));
             let tracer = self.tracer(caught.as_ref(), &eye, !film.guides().is_empty());
             loop {
                 let rows = f64::from(order.height);
                 let rows_done = AtomicU64::new(0);
                 let is_due = || due.is_some_and(|due| Instant::now() >= due);
                 let pauses = || watch.is_cancelled() || is_due() || is_late();
-                let row = |(y, mut row): (usize, Row<'_>)| {
-                    let mut work = Work::default();
+                let row = |(y, mut row): (usize, FilmRow<'_>)| {
+                    let mut work = PathScratch::default();
                     for x in 0..row.tallies.len() {
                         let goal = goal(y * order.width as usize + x);
                         while row.tallies[x].count < goal {
@@ -123,7 +123,7 @@ impl RayTracer<'_> {
                             }
                             let (pixel, index) = ([x as u32, y as u32], row.tallies[x].count);
                             let (sample, classes, _) =
-                                self.sample((&tracer, &eye, order), pixel, index, &mut work, Log::SILENT);
+                                self.sample((&tracer, &eye, order), pixel, index, &mut work, PathLog::SILENT);
                             row.add(x, &sample, &classes);
                         }
                     }
@@ -132,12 +132,12 @@ impl RayTracer<'_> {
                     match (order.seconds, order.target) {
                         (Some(seconds), _) => {
                             let done = start.elapsed().as_secs_f64().min(seconds);
-                            (watch.progress)(Amount { done, all: seconds, unit: "seconds" });
+                            (watch.progress)(Progress { done, all: seconds, unit: "seconds" });
                         }
                         // How many it takes is not known.
                         (None, Some(_)) => {}
                         (None, None) => {
-                            (watch.progress)(Amount { done, all: f64::from(order.samples), unit: "samples" });
+                            (watch.progress)(Progress { done, all: f64::from(order.samples), unit: "samples" });
                         }
                     }
                     (work.counts, true)
@@ -190,7 +190,7 @@ impl RayTracer<'_> {
         &self,
         mut film: Film,
         view: &View,
-        order: &Order,
+        order: &RenderOrder,
         watch: &Watch<'_>,
         checkpoints: Option<Checkpoints<'_>>,
     ) -> Result<Rendering, RenderError> {
@@ -222,7 +222,7 @@ impl RayTracer<'_> {
 
     /// How many samples pixels have after each pass: one first, so that there is a whole picture soon, and then twice as many
     /// each time, so that errors and the clock can decide about more; and where light is caught anew.
-    fn passes(&self, order: &Order) -> Vec<u32> {
+    fn passes(&self, order: &RenderOrder) -> Vec<u32> {
         let doubled = std::iter::successors(Some(FIRST_DOUBLED), |samples| samples.checked_mul(2));
         let mut passes = vec![1, order.samples];
         passes.extend(doubled.take_while(|samples| *samples < order.samples));

@@ -3,11 +3,11 @@
 use super::tests::{diffuse, from_above, mirror, object, red, scene};
 use super::two_way_tests::{ball, block, glass, lamp, two_way};
 use super::*;
-use crate::color::{Beyond, Color, Spectrum, shipped};
+use crate::color::{Extrapolation, Color, Spectrum, shipped};
 use crate::illumination::Light;
-use crate::illumination::material::{Body, Index, Material, Transparent};
+use crate::illumination::material::{MaterialKind, RefractiveIndex, Material, Transparent};
 use crate::numeric::bounds::Bounds;
-use crate::render::two_way::Balance;
+use crate::render::two_way::FluxBalance;
 use crate::scene::{Camera, Object, Scene, Shape};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec2, DVec3};
@@ -155,14 +155,14 @@ fn a_prism_turns_each_wavelength_as_snell_and_sellmeier_tell() {
     let (apex, incidence, below) = (PI / 3.0, 58f64.to_radians(), 10.0);
     let corners = [90.0f64, 210.0, 330.0].map(|angle| DVec2::from_angle(angle.to_radians()) * 0.01);
     let prism = Primitive::Prism { contours: vec![corners.to_vec()], height: 0.02 };
-    let material = Transparent::clear(Index::Dispersive(flint.clone()));
-    let material = Material::from(Body::Transparent(material));
+    let material = Transparent::clear(RefractiveIndex::Dispersive(flint.clone()));
+    let material = Material::from(MaterialKind::Transparent(material));
     // The outside of its left face looks towards 150 degrees. Not at the least deviation: there the base mirrors light
     // to the same place.
     let turned = DMat4::from_rotation_z(PI / 6.0 - incidence);
     for wavelength in [480.0, 546.0, 588.0, 650.0] {
         let line = [(-6.0, 0.0), (0.0, 1.0), (6.0, 0.0)].map(|(by, of)| (wavelength + by, of));
-        let line = Spectrum::irregular(&line, Beyond::Zero).expect("a spectrum");
+        let line = Spectrum::irregular(&line, Extrapolation::Zero).expect("a spectrum");
         let light = Light::Directional { direction: DVec3::X, irradiance: Color::Spectrum(line) };
         // Along the light, so that none of it falls there straight.
         let screen = block(DVec3::new(12.0, 0.1, 12.0), DVec3::new(0.0, -below - 0.05, 0.0), diffuse(0.5));
@@ -183,14 +183,14 @@ fn a_prism_turns_each_wavelength_as_snell_and_sellmeier_tell() {
 }
 
 /// What became of parallel light on something over a wide floor, as parts of what met it first.
-fn parts(thing: Object, direction: DVec3) -> Balance {
+fn parts(thing: Object, direction: DVec3) -> FluxBalance {
     let floor = block(DVec3::new(200.0, 0.1, 200.0), DVec3::new(0.0, -10.0, 0.0), diffuse(0.5));
     let light = Light::Directional { direction, irradiance: Color::grey(1.0) };
     let mut scene = scene(vec![thing, floor], vec![light], 4);
     (scene.settings.image.samples, scene.settings.photons.count) = (1, 200_000);
     let balance = two_way(&scene, Some(from_above(1.0)), 2).balance.expect("light is followed");
     let met = balance.sent - balance.straight;
-    Balance {
+    FluxBalance {
         caught: balance.caught / met,
         absorbed: balance.absorbed / met,
         escaped: balance.escaped / met,
@@ -215,8 +215,8 @@ fn a_slab_lets_through_what_fresnel_tells() {
 #[test]
 fn a_ball_of_dark_glass_absorbs_what_fresnel_and_bouguer_tell() {
     let (index, absorption) = (1.5, 0.7);
-    let glass = Transparent { absorption: Color::grey(absorption), ..Transparent::clear(Index::Constant(index)) };
-    let found = parts(ball(1.0, DVec3::ZERO, Body::Transparent(glass)), DVec3::NEG_Y);
+    let glass = Transparent { absorption: Color::grey(absorption), ..Transparent::clear(RefractiveIndex::Constant(index)) };
+    let found = parts(ball(1.0, DVec3::ZERO, MaterialKind::Transparent(glass)), DVec3::NEG_Y);
     // Over the disc, evenly by the square of the distance from its middle. Each chord is as long, each reflection as strong.
     let term = |k: u32| {
         let square = (f64::from(k) + 0.5) / 10_000.0;

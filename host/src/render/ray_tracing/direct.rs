@@ -1,19 +1,19 @@
 //! Light that comes to an element from lights, without a way in between.
 
-use super::draws::Purpose;
-use super::encounter::{Encounter, counted};
+use super::draws::SampleDimension;
+use super::encounter::{PathVertex, counted};
 use crate::color::Channels;
-use crate::illumination::light::Beam;
-use crate::illumination::optics::Which;
+use crate::illumination::light::LightSample;
+use crate::illumination::optics::LobeClass;
 use crate::numeric::ray::Ray;
 use crate::render::RayCounts;
-use crate::render::world::{Way, World};
+use crate::render::world::{Occluders, World};
 
 /// How much shorter a ray to a triangle that emits is, so that it does not meet it.
 const SHORT: f64 = 1.0 - 1e-7;
 
 /// Asks lights.
-pub(super) struct Direct<'a> {
+pub(super) struct DirectLighting<'a> {
     world: &'a World<'a>,
     shadows: bool,
     /// Points of each light that has a size.
@@ -22,10 +22,10 @@ pub(super) struct Direct<'a> {
     spread: bool,
 }
 
-impl<'a> Direct<'a> {
-    pub(super) fn new(world: &'a World<'a>, shadows: bool, samples: u32) -> Direct<'a> {
+impl<'a> DirectLighting<'a> {
+    pub(super) fn new(world: &'a World<'a>, shadows: bool, samples: u32) -> DirectLighting<'a> {
         let spread = world.appearance.sources.iter().any(|(_, source)| !source.is_sharp());
-        Direct { world, shadows, samples, spread }
+        DirectLighting { world, shadows, samples, spread }
     }
 
     /// Whether some light has a size, so that other rays may meet it.
@@ -43,11 +43,11 @@ impl<'a> Direct<'a> {
     /// - `add`: is told what each light brings, by its number.
     pub(super) fn light(
         &self,
-        encounter: &Encounter<'_>,
+        encounter: &PathVertex<'_>,
         counts: &mut RayCounts,
         mut add: impl FnMut(usize, Channels),
     ) -> [Channels; 2] {
-        let Encounter { found, sighting, draws, leg, .. } = encounter;
+        let PathVertex { found, sighting, draws, leg, .. } = encounter;
         let mut sum = [Channels::ZERO; 2];
         for (index, (number, source)) in self.world.appearance.sources.iter().enumerate() {
             let samples = if source.is_sharp() { 1 } else { self.samples };
@@ -60,7 +60,7 @@ impl<'a> Direct<'a> {
             }
             let mut part = [Channels::ZERO; 2];
             for sample in 0..samples {
-                let uniform = draws.of_several(*leg, Purpose::Lights, *number as u32, [sample, samples]);
+                let uniform = draws.of_several(*leg, SampleDimension::Lights, *number as u32, [sample, samples]);
                 if let Some(beam) =
                     source.beam(found.element.position, Some(found.element.normal), uniform, sighting.comb)
                 {
@@ -78,23 +78,23 @@ impl<'a> Direct<'a> {
     }
 
     /// What a beam adds by broad lobes and by narrow ones.
-    fn arriving(&self, encounter: &Encounter<'_>, index: usize, beam: &Beam, counts: &mut RayCounts) -> [Channels; 2] {
-        let Encounter { found, frame, sighting, among, highest, .. } = encounter;
+    fn arriving(&self, encounter: &PathVertex<'_>, index: usize, beam: &LightSample, counts: &mut RayCounts) -> [Channels; 2] {
+        let PathVertex { found, frame, sighting, among, highest, .. } = encounter;
         let optics = found.optics;
         let light = frame.local(beam.towards);
         let source = &self.world.appearance.sources[index].1;
-        let ended = [Which::Solved, Which::Ended].map(|which| optics.value(which, sighting, light));
+        let ended = [LobeClass::Solved, LobeClass::Ended].map(|which| optics.value(which, sighting, light));
         let mut values = [ended[0] + ended[1], Channels::ZERO];
         // Without what a further leg brings.
         let mut whole = values;
-        for (which, value) in Which::CONTINUED.into_iter().zip(&mut values) {
+        for (which, value) in LobeClass::CONTINUED.into_iter().zip(&mut values) {
             let mut continued = optics.value(which, sighting, light);
             let most = continued.max();
             let is_cut = if *highest > 0.0 { !source.is_sky() } else { source.is_caught() };
-            if which == Which::Narrow && most > *highest && is_cut {
+            if which == LobeClass::Narrow && most > *highest && is_cut {
                 continued *= highest / most;
             }
-            whole[usize::from(which == Which::Narrow)] += continued;
+            whole[usize::from(which == LobeClass::Narrow)] += continued;
             if let Some(density) = beam.density
                 && continued != Channels::ZERO
             {
@@ -120,14 +120,14 @@ impl<'a> Direct<'a> {
     }
 
     /// Whether nothing comes from a light to an element, as far as the light buffer knows.
-    fn is_dark(&self, encounter: &Encounter<'_>, index: usize) -> bool {
-        let dark = |from| matches!(self.world.way(from, index), Some(Way::Dark));
+    fn is_dark(&self, encounter: &PathVertex<'_>, index: usize) -> bool {
+        let dark = |from| matches!(self.world.way(from, index), Some(Occluders::Dark));
         let element = &encounter.found.element;
         self.shadows && dark(element.leave_curved) && dark(element.through)
     }
 
     /// The ray to where a beam comes from, and how much of it counts.
-    fn ray(&self, encounter: &Encounter<'_>, index: usize, beam: &Beam, above: bool) -> (Ray, f64) {
+    fn ray(&self, encounter: &PathVertex<'_>, index: usize, beam: &LightSample, above: bool) -> (Ray, f64) {
         let element = &encounter.found.element;
         let origin = if above { element.leave_curved } else { element.through };
         if !beam.distance.is_finite() {

@@ -1,24 +1,24 @@
 //! An element that a ray met, as light and further rays are asked for there.
 
-use super::draws::Draws;
+use super::draws::PathSampler;
 use crate::color::Channels;
-use crate::illumination::distribution::Frame;
-use crate::illumination::optics::{Among, Sighting};
-use crate::render::world::{Found, Media};
+use crate::illumination::distribution::ShadingFrame;
+use crate::illumination::optics::{LobeSelection, ShadingContext};
+use crate::render::world::{SurfaceInteraction, Media};
 
 /// An element that a ray met, with the frame in which its optics has directions.
-pub(super) struct Encounter<'a> {
-    pub(super) found: &'a Found<'a>,
+pub(super) struct PathVertex<'a> {
+    pub(super) found: &'a SurfaceInteraction<'a>,
     /// What a ray is in that goes through it.
     pub(super) behind: Media,
-    pub(super) frame: Frame,
-    pub(super) sighting: Sighting<'a>,
+    pub(super) frame: ShadingFrame,
+    pub(super) sighting: ShadingContext<'a>,
     /// The choices of the sample.
-    pub(super) draws: Draws,
+    pub(super) draws: PathSampler,
     /// The number of the leg that met it.
     pub(super) leg: u32,
     /// Among which lobes a direction is drawn: not among those of mirrors, if all of these are followed beside it.
-    pub(super) among: Among,
+    pub(super) among: LobeSelection,
     /// The greatest value with which it may reflect a lamp, 1/sr.
     pub(super) highest: f64,
     /// Whether lamps that were followed count nothing.

@@ -4,12 +4,12 @@ use super::tests::{diffuse, mirror, object, scene, trace};
 use super::*;
 use crate::color::Color;
 use crate::illumination::material::Classic;
-use crate::illumination::texture::{Laying, Motif, Pattern};
+use crate::illumination::texture::{TextureMapping, Motif, Pattern};
 use crate::illumination::{Light, Paint};
 use crate::numeric::ray::Ray;
 use crate::render::ray_tracer;
-use crate::render::world::{Cone, Sight};
-use crate::render::world::{Found, Met};
+use crate::render::world::{RayCone, BoundedRay};
+use crate::render::world::{SurfaceInteraction, RayHit};
 use crate::scene::{Camera, Composite, Object, Operation, Scene, Shape};
 use crate::solid::Primitive;
 use crate::surface::{Surface, teapot};
@@ -26,7 +26,7 @@ fn ball(radius: f64) -> Shape {
 
 /// Sends parallel rays from many sides and tells of each that meets something: where it began, its direction, what it met.
 /// How many there were, and the part of them that are on an exact surface: shading normals are not of single precision.
-fn met(objects: Vec<Object>, mut tell: impl FnMut(&Ray, &Found<'_>)) -> usize {
+fn met(objects: Vec<Object>, mut tell: impl FnMut(&Ray, &SurfaceInteraction<'_>)) -> usize {
     let prepared = Prepared::new(&scene(objects, Vec::new(), 8)).unwrap_or_else(|e| panic!("{e}"));
     let plan = Plan::new(&prepared, &prepared.view());
     assert!(plan.needs(Stage::ExactSurfaces));
@@ -39,8 +39,8 @@ fn met(objects: Vec<Object>, mut tell: impl FnMut(&Ray, &Found<'_>)) -> usize {
             let at = DVec2::new(f64::from(k % 50) - 24.3, f64::from(k / 50) - 24.8) * (reach / 100.0);
             let origin = center + right * at.x + up * at.y + axis * reach;
             let ray = Ray { origin, direction: axis * -0.7 };
-            let sight = Sight { ray, t_min: 0.0, t_max: f64::INFINITY, cone: Cone::default() };
-            if let Met::Element(found) = tracer.world.meet(&sight, 0, 0.0) {
+            let sight = BoundedRay { ray, t_min: 0.0, t_max: f64::INFINITY, cone: RayCone::default() };
+            if let RayHit::Element(found) = tracer.world.meet(&sight, 0, 0.0) {
                 let on = found.depth;
                 assert!((ray.origin - axis * on - found.element.position).length() < 1e-9, "on its ray");
                 tell(&ray, &found);
@@ -178,7 +178,7 @@ fn a_coarse_ball_is_lit_as_the_ball_up_to_its_terminator() {
 fn mirror_ball(tolerance: f64) -> Scene {
     let paints = vec![Paint::grey(0.1), Paint::grey(0.9)];
     let clouds =
-        Pattern { motif: Motif::Noise { octaves: 1 }, laying: Laying { solid: true, ..Laying::default() }, paints };
+        Pattern { motif: Motif::Noise { octaves: 1 }, laying: TextureMapping { solid: true, ..TextureMapping::default() }, paints };
     let ground = Classic { diffuse: Paint::Pattern(Box::new(clouds)), ..Classic::default() };
     let ground = object(Shape::Ground { size: 60.0 }, DMat4::from_translation(DVec3::Y * -2.0), ground);
     let ball = Object { tolerance: Some(tolerance), ..object(ball(1.0), DMat4::IDENTITY, mirror(0.9)) };

@@ -1,14 +1,14 @@
 //! Tells the way of a sample, and every term that it adds.
 
 use crate::color::Channels;
-use crate::render::world::Found;
+use crate::render::world::SurfaceInteraction;
 use crate::scene::Prepared;
 use glam::DVec3;
 use serde::Serialize;
 
 /// Something that happened on the way of a sample.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Note {
+pub struct PathNote {
     /// How many legs came before.
     pub depth: u32,
     /// What happened, in words.
@@ -20,43 +20,43 @@ pub struct Note {
 }
 
 /// Where notes go; nowhere for most samples.
-pub(super) struct Log<'a>(Option<&'a mut Vec<Note>>);
+pub(super) struct PathLog<'a>(Option<&'a mut Vec<PathNote>>);
 
-impl<'a> Log<'a> {
+impl<'a> PathLog<'a> {
     /// Notes nothing.
-    pub(super) const SILENT: Log<'static> = Log(None);
+    pub(super) const SILENT: PathLog<'static> = PathLog(None);
 
-    pub(super) fn to(notes: &'a mut Vec<Note>) -> Log<'a> {
-        Log(Some(notes))
+    pub(super) fn to(notes: &'a mut Vec<PathNote>) -> PathLog<'a> {
+        PathLog(Some(notes))
     }
 
     /// Notes something, if anyone listens.
     #[inline]
-    pub(super) fn note(&mut self, note: impl FnOnce() -> Note) {
+    pub(super) fn note(&mut self, note: impl FnOnce() -> PathNote) {
         if let Some(notes) = &mut self.0 {
             notes.push(note());
         }
     }
 }
 
-impl Note {
-    fn new(depth: u32, what: String, adds: Option<Channels>) -> Note {
-        Note { depth, what, at: None, adds: adds.map(|adds| adds.0.to_vec()) }
+impl PathNote {
+    fn new(depth: u32, what: String, adds: Option<Channels>) -> PathNote {
+        PathNote { depth, what, at: None, adds: adds.map(|adds| adds.0.to_vec()) }
     }
 
-    pub(super) fn light(depth: u32, number: usize, adds: Channels) -> Note {
-        Note::new(depth, format!("meets light {}", number + 1), Some(adds))
+    pub(super) fn light(depth: u32, number: usize, adds: Channels) -> PathNote {
+        PathNote::new(depth, format!("meets light {}", number + 1), Some(adds))
     }
 
-    pub(super) fn term(depth: u32, what: &str, adds: Channels) -> Note {
-        Note::new(depth, what.into(), Some(adds))
+    pub(super) fn term(depth: u32, what: &str, adds: Channels) -> PathNote {
+        PathNote::new(depth, what.into(), Some(adds))
     }
 
-    pub(super) fn lit(depth: u32, number: usize, adds: Channels) -> Note {
-        Note::new(depth, format!("lit by light {}", number + 1), Some(adds))
+    pub(super) fn lit(depth: u32, number: usize, adds: Channels) -> PathNote {
+        PathNote::new(depth, format!("lit by light {}", number + 1), Some(adds))
     }
 
-    pub(super) fn element(depth: u32, prepared: &Prepared, found: &Found<'_>) -> Note {
+    pub(super) fn element(depth: u32, prepared: &Prepared, found: &SurfaceInteraction<'_>) -> PathNote {
         let object = &prepared.objects[found.object as usize];
         let side = if found.element.outside { "" } else { " from inside" };
         let material = prepared.material(found.triangle).word();
@@ -65,6 +65,6 @@ impl Note {
             "meets {}{side}, {material} material, after {:.6}; normal {:.4} {:.4} {:.4}",
             object.name, found.distance, normal.x, normal.y, normal.z
         );
-        Note { at: Some(found.element.position), ..Note::new(depth, what, None) }
+        PathNote { at: Some(found.element.position), ..PathNote::new(depth, what, None) }
     }
 }

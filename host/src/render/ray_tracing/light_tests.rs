@@ -2,11 +2,11 @@
 
 use super::tests::{diffuse, from_above, mirror, object, red, scene, trace};
 use super::*;
-use crate::color::{Beyond, Color, Spectrum};
+use crate::color::{Extrapolation, Color, Spectrum};
 use crate::illumination::Paint;
-use crate::illumination::light::Patch;
-use crate::illumination::material::{Body, Classic, Coated, Finish, Index, Material, Metal, Transparent};
-use crate::illumination::{Bands, Light};
+use crate::illumination::light::LightShape;
+use crate::illumination::material::{MaterialKind, Classic, Coated, Finish, RefractiveIndex, Material, Metal, Transparent};
+use crate::illumination::{RgbPower, Light};
 use crate::picture::difference;
 use crate::scene::{Camera, Caustics, Interreflection, Parallel, Scene, Shape};
 use crate::solid::Primitive;
@@ -14,8 +14,8 @@ use glam::{DMat4, DVec2, DVec3};
 use std::f64::consts::PI;
 
 fn glass(index: f64, roughness: f64, absorption: f64) -> Material {
-    let (index, absorption) = (Index::Constant(index), Color::grey(absorption));
-    Body::Transparent(Transparent { roughness: roughness.into(), absorption, ..Transparent::clear(index) }).into()
+    let (index, absorption) = (RefractiveIndex::Constant(index), Color::grey(absorption));
+    MaterialKind::Transparent(Transparent { roughness: roughness.into(), absorption, ..Transparent::clear(index) }).into()
 }
 
 fn sky(radiance: f64) -> Light {
@@ -34,8 +34,8 @@ fn mean(rendering: &crate::render::Rendering) -> f64 {
 #[test]
 fn light_of_a_disc_and_of_a_sphere_on_a_floor_follow_their_closed_forms() {
     let center = DVec3::new(0.0, 2.0, 0.0);
-    let disc = Patch::Disc { center, normal: DVec3::NEG_Y, radius: 0.5 };
-    let sphere = Patch::Sphere { center, radius: 0.5 };
+    let disc = LightShape::Disc { center, normal: DVec3::NEG_Y, radius: 0.5 };
+    let sphere = LightShape::Sphere { center, radius: 0.5 };
     for (patch, irradiance) in [(disc, PI * 0.25 / (0.25 + 4.0)), (sphere, PI * 0.25 / 4.0)] {
         let floor = object(Shape::Ground { size: 20.0 }, DMat4::IDENTITY, diffuse(0.8));
         let light = Light::Area { patch, radiance: Color::grey(10.0) };
@@ -53,11 +53,11 @@ fn light_of_a_disc_and_of_a_sphere_on_a_floor_follow_their_closed_forms() {
 
 #[test]
 fn a_white_furnace_hides_what_loses_nothing() {
-    let flat = |value: f64| Spectrum::regular(300.0, 600.0, vec![value; 2], Beyond::Held).expect("a spectrum");
-    let perfect = |finish| Body::Metal(Metal { n: flat(0.0), k: flat(3.0), finish });
+    let flat = |value: f64| Spectrum::regular(300.0, 600.0, vec![value; 2], Extrapolation::Held).expect("a spectrum");
+    let perfect = |finish| MaterialKind::Metal(Metal { n: flat(0.0), k: flat(3.0), finish });
     let rough = Finish::Rough { name: "GGX, all".into(), roughness: 0.4.into() };
     let coated =
-        |roughness| Body::Coated(Coated { diffuse: Paint::grey(1.0), index: 1.5, roughness: f64::into(roughness) });
+        |roughness| MaterialKind::Coated(Coated { diffuse: Paint::grey(1.0), index: 1.5, roughness: f64::into(roughness) });
     let materials: Vec<(Material, f64)> = vec![
         // Of a ball of triangles, some directions above the normal are below a triangle.
         (diffuse(1.0).into(), 5e-3),
@@ -84,7 +84,7 @@ fn glass_of_the_index_of_air_cannot_be_seen_and_absorbs_by_its_thickness() {
         |material| object(Shape::from(Primitive::Box { size: DVec3::new(4.0, 2.0, 4.0) }), DMat4::IDENTITY, material);
     for (index, absorption) in [(1.0, 0.0), (1.0, 0.4), (1.5, 0.0), (1.5, 0.4)] {
         let mut scene = scene(vec![pane(glass(index, 0.0, absorption))], vec![], 2);
-        scene.background = Bands::ONE;
+        scene.background = RgbPower::ONE;
         scene.settings.light.reflection_depth = 100;
         scene.settings.image.samples = 64;
         let found = mean(&trace(&scene, Some(from_above(0.5)), false, 1));
@@ -110,7 +110,7 @@ fn an_eye_in_water_sees_through_water_from_the_beginning() {
     (camera.from, camera.at, camera.field_of_view) = (DVec3::ZERO, DVec3::NEG_Z, 0.1);
     for (objects, way) in [(vec![water.clone(), white.clone()], 3.0), (vec![water, white, clear], 2.0)] {
         let mut scene = scene(objects, vec![], 1);
-        scene.ambient = Bands::ONE;
+        scene.ambient = RgbPower::ONE;
         (scene.settings.image.samples, scene.settings.light.reflection_depth) = (16, 4);
         let found = red(&trace(&scene, Some(View::Camera(camera)), false, 1), 0, 0);
         let expected = f64::exp(-0.3 * way);
@@ -121,7 +121,7 @@ fn an_eye_in_water_sees_through_water_from_the_beginning() {
 #[test]
 fn rays_that_carry_spectra_show_the_colors_of_those_that_carry_bands() {
     // As many samples as there are combs of wavelengths: each has its turn once, and nothing else differs within a pixel.
-    let sun = Light::Directional { direction: DVec3::NEG_Y, irradiance: Color::Bands(Bands::new(3.0, 2.0, 1.0)) };
+    let sun = Light::Directional { direction: DVec3::NEG_Y, irradiance: Color::Bands(RgbPower::new(3.0, 2.0, 1.0)) };
     let floor = Classic { diffuse: Paint::grey(0.6), ..Classic::default() };
     let mut scene = scene(vec![object(Shape::Ground { size: 9.0 }, DMat4::IDENTITY, floor)], vec![sun], 2);
     scene.settings.image.samples = 64;
@@ -141,7 +141,7 @@ fn what_emits_lights_as_the_area_light_of_its_form() {
     glowing.emission = Color::grey(5.0);
     let turned = DMat4::from_translation(DVec3::new(0.0, 2.0, 0.0)) * DMat4::from_rotation_x(PI);
     let lamp = object(Shape::Ground { size: 1.0 }, turned, glowing);
-    let patch = Patch::Rectangle { corner: DVec3::new(-0.5, 2.0, -0.5), across: DVec3::X, up: DVec3::Z };
+    let patch = LightShape::Rectangle { corner: DVec3::new(-0.5, 2.0, -0.5), across: DVec3::X, up: DVec3::Z };
     let light = Light::Area { patch, radiance: Color::grey(5.0) };
     let mut scenes = [scene(vec![floor(), lamp], vec![], 6), scene(vec![floor()], vec![light], 6)];
     let [object, light] = scenes.each_mut().map(|scene: &mut Scene| {
@@ -181,7 +181,7 @@ fn a_thin_gap_between_two_glass_spheres_is_not_lost() {
         let hollow = object(solid(0.5 + gap), DMat4::IDENTITY, glass(1.0, 0.0, 0.0));
         let core = object(solid(0.5), DMat4::IDENTITY, glass(1.5, 0.0, 0.0));
         let mut scene = scene(vec![shell, hollow, core], vec![], 1);
-        scene.background = Bands::ONE;
+        scene.background = RgbPower::ONE;
         (scene.settings.image.samples, scene.settings.geometry.tolerance) = (64, Some(1e-3));
         scene.settings.light.reflection_depth = 60;
         let rendering = trace(&scene, Some(from_above(0.02)), false, 1);
@@ -198,7 +198,7 @@ fn a_lens_is_sharp_where_it_is_focused_and_nowhere_else() {
     let stripe =
         object(Shape::from(Primitive::Box { size: DVec3::new(1.0, 4.0, 0.01) }), DMat4::IDENTITY, diffuse(1.0));
     let mut scene = scene(vec![stripe], vec![], 16);
-    scene.ambient = Bands::ONE;
+    scene.ambient = RgbPower::ONE;
     scene.settings.image.samples = 64;
     let contrast = |focus: f64| {
         let mut camera = Camera::framing(&crate::numeric::bounds::Bounds::of([DVec3::ZERO]));
@@ -232,10 +232,10 @@ fn a_sphere_far_from_the_origin_is_lit_as_one_at_the_origin() {
 #[test]
 fn a_pane_that_lets_everything_through_hides_no_light_of_a_lamp() {
     // Spread and narrow lobes, a lamp with a size and one that emits as an object, with and without a pane between.
-    let coat = Body::Coated(Coated { diffuse: Paint::grey(0.5), index: 1.5, roughness: 0.3.into() });
+    let coat = MaterialKind::Coated(Coated { diffuse: Paint::grey(0.5), index: 1.5, roughness: 0.3.into() });
     let clear = Classic { transparency: Paint::grey(1.0), ..diffuse(0.0) };
     let shining = Material { emission: Color::grey(8.0), ..Material::from(diffuse(0.0)) };
-    let patch = Patch::Rectangle { corner: DVec3::new(-1.5, 2.0, -0.5), across: DVec3::X, up: DVec3::Z };
+    let patch = LightShape::Rectangle { corner: DVec3::new(-1.5, 2.0, -0.5), across: DVec3::X, up: DVec3::Z };
     let lamp = Light::Area { patch, radiance: Color::grey(8.0) };
     let seen = |pane: bool, depth: u32| {
         let floor = object(Shape::Ground { size: 4.0 }, DMat4::IDENTITY, coat.clone());
@@ -260,8 +260,8 @@ fn a_pane_that_lets_everything_through_hides_no_light_of_a_lamp() {
 fn highlights_that_spread_light_sees_are_cut_off_unless_caustics_count() {
     // A small bright lamp over a smooth coat beside a matt wall: what the wall shows of it comes by chance only.
     let wall = DMat4::from_translation(DVec3::new(0.0, 0.0, -1.0)) * DMat4::from_rotation_x(PI / 2.0);
-    let coat = Body::Coated(Coated { diffuse: Paint::grey(0.0), index: 1.5, roughness: 0.03.into() });
-    let lamp = Patch::Sphere { center: DVec3::new(0.0, 1.5, 1.0), radius: 0.02 };
+    let coat = MaterialKind::Coated(Coated { diffuse: Paint::grey(0.0), index: 1.5, roughness: 0.03.into() });
+    let lamp = LightShape::Sphere { center: DVec3::new(0.0, 1.5, 1.0), radius: 0.02 };
     let spots = |caustics: bool| {
         let floor = object(Shape::Ground { size: 4.0 }, DMat4::IDENTITY, coat.clone());
         let wall = object(Shape::Ground { size: 4.0 }, wall, diffuse(0.8));
@@ -308,11 +308,11 @@ fn the_light_buffer_changes_no_picture_and_spares_rays() {
         Light::Directional { direction: DVec3::new(0.2, -1.0, -1.0), irradiance: Color::grey(2.0) },
         Light::Point { at: DVec3::new(0.5, 1.5, 4.0), intensity: Color::grey(20.0) },
         Light::Area {
-            patch: Patch::Sphere { center: DVec3::new(-3.0, 3.0, -2.0), radius: 0.05 },
+            patch: LightShape::Sphere { center: DVec3::new(-3.0, 3.0, -2.0), radius: 0.05 },
             radiance: Color::grey(500.0),
         },
         Light::Area {
-            patch: Patch::Disc { center: DVec3::new(0.0, 6.0, 0.0), normal: DVec3::NEG_Y, radius: 2.0 },
+            patch: LightShape::Disc { center: DVec3::new(0.0, 6.0, 0.0), normal: DVec3::NEG_Y, radius: 2.0 },
             radiance: Color::grey(1.0),
         },
     ];

@@ -41,27 +41,27 @@ mod two_way_tests;
 mod tests;
 
 pub use accumulation::{Accumulated, Checkpoints};
-pub use explain::Note;
+pub use explain::PathNote;
 pub use tracer::ENERGY_CUTOFF;
 
 use super::film::Film;
 use super::indirect::IndirectLight;
-use super::tally::{ByClass, SHARING, Sample};
-use super::two_way::{CaughtLight, Shelf, TwoWay};
-use super::world::{AHEAD, Eye, Media, World};
-use super::{Order, RenderError, Renderer, Rendering, Watch};
+use super::tally::{RadianceByClass, SHARING, PixelSample};
+use super::two_way::{PhotonEstimator, PhotonStore, PhotonMapper};
+use super::world::{AHEAD, CameraRays, Media, World};
+use super::{RenderOrder, RenderError, Renderer, Rendering, Watch};
 use crate::plan::{Plan, Stage};
 use crate::scene::{Prepared, View};
-use draws::{Draws, Purpose};
-use explain::Log;
+use draws::{PathSampler, SampleDimension};
+use explain::PathLog;
 use glam::DVec3;
-use tracer::{First, Tracer, Work};
+use tracer::{FirstHit, PathTracer, PathScratch};
 
 /// A ray tracer that holds a scene and its octree.
 pub struct RayTracer<'a> {
     plan: &'a Plan,
     world: World<'a>,
-    two_way: Option<TwoWay<'a>>,
+    two_way: Option<PhotonMapper<'a>>,
     indirect: Option<Box<dyn IndirectLight>>,
 }
 
@@ -73,7 +73,7 @@ pub struct Explanation {
     /// The wavelengths that it carries, nm; none if it carries red, green and blue.
     pub wavelengths: Option<Vec<f64>>,
     /// What happened, in order.
-    pub notes: Vec<Note>,
+    pub notes: Vec<PathNote>,
     /// Its radiance, linear sRGB.
     pub radiance: [f64; 3],
 }
@@ -83,9 +83,9 @@ impl<'a> RayTracer<'a> {
     ///
     /// - `plan`: of the world. Where it needs radiosity, the light of a solution is to be given by [`RayTracer::with_indirect`].
     /// - `shelf`: where caught light is kept beyond this tracer; nowhere without one.
-    pub fn new(world: World<'a>, plan: &'a Plan, shelf: Option<&'a Shelf>) -> RayTracer<'a> {
+    pub fn new(world: World<'a>, plan: &'a Plan, shelf: Option<&'a PhotonStore>) -> RayTracer<'a> {
         let keeps = |object| plan.keeps_object(object);
-        let two_way = plan.needs(Stage::CaughtLight).then(|| TwoWay::new(&world, keeps, shelf)).flatten();
+        let two_way = plan.needs(Stage::CaughtLight).then(|| PhotonMapper::new(&world, keeps, shelf)).flatten();
         RayTracer { plan, world, two_way, indirect: None }
     }
 
@@ -100,7 +100,7 @@ impl<'a> RayTracer<'a> {
     }
 
     /// The light of lamps that was followed, as the first pass caught it; none if none is followed, or if it was stopped.
-    pub(super) fn caught(&self, watch: &Watch<'_>) -> Option<CaughtLight<'_>> {
+    pub(super) fn caught(&self, watch: &Watch<'_>) -> Option<PhotonEstimator<'_>> {
         self.two_way.as_ref().and_then(|two_way| two_way.caught(&self.world, 0, watch))
     }
 
@@ -109,11 +109,11 @@ impl<'a> RayTracer<'a> {
         self.world.appearance.prepared
     }
 
-    fn tracer<'b>(&'b self, caught: Option<&'b CaughtLight<'b>>, eye: &Eye, guides: bool) -> Tracer<'b> {
+    fn tracer<'b>(&'b self, caught: Option<&'b PhotonEstimator<'b>>, eye: &CameraRays, guides: bool) -> PathTracer<'b> {
         let depth = self.world.appearance.prepared.settings.light.reflection_depth;
         let depth = if self.plan.needs(Stage::Reflection) { depth } else { 0 };
         let around = eye.place().map(|place| Media::around(&self.world, place)).unwrap_or_default();
-        Tracer::new(
+        PathTracer::new(
             &self.world,
             depth,
             self.plan.needs(Stage::Shadows),
@@ -124,9 +124,9 @@ impl<'a> RayTracer<'a> {
         )
     }
 
-    fn eye(&self, view: &View, order: &Order) -> Result<Eye, RenderError> {
+    fn eye(&self, view: &View, order: &RenderOrder) -> Result<CameraRays, RenderError> {
         let prepared = self.world.appearance.prepared;
-        let eye = Eye::new(view, order.width, order.height, &prepared.bounds).ok_or(RenderError::View)?;
+        let eye = CameraRays::new(view, order.width, order.height, &prepared.bounds).ok_or(RenderError::View)?;
         if !self.plan.needs(Stage::Textures) {
             return Ok(eye);
         }
@@ -138,33 +138,33 @@ impl<'a> RayTracer<'a> {
     /// One sample, its light by classes, and the comb of wavelengths that it carries.
     fn sample(
         &self,
-        (tracer, eye, order): (&Tracer<'_>, &Eye, &Order),
+        (tracer, eye, order): (&PathTracer<'_>, &CameraRays, &RenderOrder),
         [x, y]: [u32; 2],
         index: u32,
-        work: &mut Work,
-        log: Log<'_>,
-    ) -> (Sample, ByClass, usize) {
+        work: &mut PathScratch,
+        log: PathLog<'_>,
+    ) -> (PixelSample, RadianceByClass, usize) {
         let pixel = u64::from(y) * u64::from(order.width) + u64::from(x);
-        let draws = Draws::new(order.seed, pixel, index, order.samples);
+        let draws = PathSampler::new(order.seed, pixel, index, order.samples);
         let draws = if self.world.moves() { draws.within(self.prepared().settings.geometry.shutter) } else { draws };
         let ([dx, dy], weight) = draws.position(order.filter);
         let wavelengths = &self.world.appearance.wavelengths;
-        let comb = wavelengths.comb(draws.point(Purpose::Wavelengths)[0]);
+        let comb = wavelengths.comb(draws.point(SampleDimension::Wavelengths)[0]);
         let at = [f64::from(x) + dx, f64::from(y) + dy];
-        let Some(sight) = eye.ray(at, draws.point(Purpose::Lens)) else {
+        let Some(sight) = eye.ray(at, draws.point(SampleDimension::Lens)) else {
             let background = self.world.appearance.beyond(&AHEAD, None, comb, |_, _| 1.0);
             let radiance = if order.matte { DVec3::ZERO } else { weight * wavelengths.seen(comb, background) };
             let classes = [radiance, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO];
-            return (Sample { radiance, weight, albedo: DVec3::splat(weight), ..Sample::default() }, classes, comb);
+            return (PixelSample { radiance, weight, albedo: DVec3::splat(weight), ..PixelSample::default() }, classes, comb);
         };
         let seen = tracer.radiance(&sight, comb, &draws, work, log);
         let first =
-            seen.first.map(|First { distance, normal, object, material }| (distance, normal, [object, material]));
+            seen.first.map(|FirstHit { distance, normal, object, material }| (distance, normal, [object, material]));
         let left_out = order.matte && !seen.covered;
         let light = |class: usize| weight * (wavelengths.seen(comb, seen.radiance[class]) + seen.other[class]);
-        let classes = if left_out { ByClass::default() } else { [0, 1, 2, 3].map(light) };
+        let classes = if left_out { RadianceByClass::default() } else { [0, 1, 2, 3].map(light) };
         let shared = if left_out { 0.0 } else { weight.abs() * seen.shared.sqrt() };
-        let sample = Sample {
+        let sample = PixelSample {
             radiance: classes.into_iter().sum(),
             weight,
             covered: seen.covered,
@@ -185,7 +185,7 @@ impl<'a> RayTracer<'a> {
     pub fn explain(
         &self,
         view: &View,
-        order: &Order,
+        order: &RenderOrder,
         pixel: [u32; 2],
         most: u32,
     ) -> Result<Vec<Explanation>, RenderError> {
@@ -195,8 +195,8 @@ impl<'a> RayTracer<'a> {
             let two_way = self.two_way.as_ref();
             let caught = two_way.and_then(|two_way| two_way.caught(&self.world, pass, &Watch::NOBODY));
             let tracer = self.tracer(caught.as_ref(), &eye, false);
-            let (mut notes, mut work) = (Vec::new(), Work::default());
-            let (sample, _, comb) = self.sample((&tracer, &eye, order), pixel, index, &mut work, Log::to(&mut notes));
+            let (mut notes, mut work) = (Vec::new(), PathScratch::default());
+            let (sample, _, comb) = self.sample((&tracer, &eye, order), pixel, index, &mut work, PathLog::to(&mut notes));
             let wavelengths = &self.world.appearance.wavelengths;
             let wavelengths = wavelengths.is_spectral().then(|| wavelengths.at(comb).to_vec());
             Explanation { sample: index, wavelengths, notes, radiance: sample.radiance.to_array() }
@@ -214,7 +214,7 @@ impl Renderer for RayTracer<'_> {
         Vec::new()
     }
 
-    fn render(&self, view: &View, order: &Order, watch: &Watch<'_>) -> Result<Rendering, RenderError> {
+    fn render(&self, view: &View, order: &RenderOrder, watch: &Watch<'_>) -> Result<Rendering, RenderError> {
         self.go_on(Film::new(order.width, order.height)?, view, order, watch, None)
     }
 }

@@ -5,7 +5,7 @@ use super::*;
 use crate::color::Color;
 use crate::illumination::Material;
 use crate::illumination::fresnel::Dielectric;
-use crate::illumination::material::{Body, Index, Transparent};
+use crate::illumination::material::{MaterialKind, RefractiveIndex, Transparent};
 use crate::numeric::bounds::Bounds;
 use crate::scene::{Camera, Object, Parallel, Shape};
 use crate::solid::Primitive;
@@ -15,8 +15,8 @@ use glam::{DMat4, DVec2, DVec3};
 const GAPS: [f64; 3] = [1e-3, 1e-8, 1e-12];
 
 fn body(index: f64, absorption: f64, priority: i32) -> Material {
-    let clear = Transparent::clear(Index::Constant(index));
-    Body::Transparent(Transparent { absorption: Color::grey(absorption), priority, ..clear }).into()
+    let clear = Transparent::clear(RefractiveIndex::Constant(index));
+    MaterialKind::Transparent(Transparent { absorption: Color::grey(absorption), priority, ..clear }).into()
 }
 
 /// A slab between two heights, wide enough for everything that goes to and fro in it.

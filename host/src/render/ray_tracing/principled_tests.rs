@@ -2,9 +2,9 @@
 
 use super::tests::{diffuse, from_above, object, red, scene, trace};
 use crate::color::Color;
-use crate::illumination::material::{Body, Principled};
-use crate::illumination::texture::{Band, Laying, Motif, Number, Pattern, Varying};
-use crate::illumination::{Bands, Light, Material, Paint};
+use crate::illumination::material::{MaterialKind, Principled};
+use crate::illumination::texture::{Band, TextureMapping, Motif, NumberTexture, Pattern, Varying};
+use crate::illumination::{RgbPower, Light, Material, Paint};
 use crate::scene::{Interreflection, Shape};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec3};
@@ -20,14 +20,14 @@ fn coated() -> Principled {
 }
 
 fn of(principled: Principled) -> Material {
-    Body::Principled(Box::new(principled)).into()
+    MaterialKind::Principled(Box::new(principled)).into()
 }
 
 /// As bright as cells of a checker: a number from one to another.
-fn cells(from: f64, to: f64) -> Number {
+fn cells(from: f64, to: f64) -> NumberTexture {
     let paints = vec![Paint::grey(0.0), Paint::grey(1.0)];
-    let laying = Laying { solid: true, size: DVec3::splat(0.6), ..Laying::default() };
-    Number::Varying(Box::new(Varying {
+    let laying = TextureMapping { solid: true, size: DVec3::splat(0.6), ..TextureMapping::default() };
+    NumberTexture::Varying(Box::new(Varying {
         pattern: Pattern { motif: Motif::Checker, laying, paints },
         band: Band::Mean,
         from,
@@ -96,7 +96,7 @@ fn ambient_light_and_a_background_show_what_it_reflects() {
         (Principled { metallic: 1.0.into(), roughness: 0.0.into(), base_color: Paint::grey(0.5), ..white() }, 0.5),
     ] {
         let mut scene = scene(vec![ball(principled)], vec![], 1);
-        (scene.ambient, scene.background) = (Bands::ONE, Bands::ONE);
+        (scene.ambient, scene.background) = (RgbPower::ONE, RgbPower::ONE);
         scene.settings.image.samples = 16;
         let found = red(&trace(&scene, Some(from_above(0.01)), false, 1), 0, 0);
         assert!((found - expected).abs() < 2e-3, "{found} {expected}");

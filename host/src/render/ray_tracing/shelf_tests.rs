@@ -3,10 +3,10 @@
 use super::two_way_tests::{from_below, lamp, mirror_under_a_ceiling};
 use super::*;
 use crate::color::Color;
-use crate::database::{Kind, Store};
+use crate::database::{RecordKind, Store};
 use crate::illumination::Light;
 use crate::picture::Picture;
-use crate::render::two_way::Balance;
+use crate::render::two_way::FluxBalance;
 use crate::render::{Task, ray_tracer_watched};
 use crate::scene::{Caustics, Scene};
 use glam::DVec3;
@@ -22,13 +22,13 @@ fn two_lamps() -> Scene {
 }
 
 /// A picture with its balance, by a database or without one.
-fn picture(scene: &Scene, path: Option<&Path>) -> (Picture, Balance) {
+fn picture(scene: &Scene, path: Option<&Path>) -> (Picture, FluxBalance) {
     let prepared = Prepared::new(scene).expect("sound");
     let plan = Plan::new(&prepared, &from_below());
-    let shelf = path.map(|path| Shelf::new(path, scene, &prepared, Duration::from_secs(60), true).expect("a database"));
+    let shelf = path.map(|path| PhotonStore::new(path, scene, &prepared, Duration::from_secs(60), true).expect("a database"));
     let tracer =
         ray_tracer_watched(&Task { shelf: shelf.as_ref(), ..Task::new(&prepared, &plan) }).expect("a tracer").0;
-    let rendering = tracer.render(&from_below(), &Order::of(&scene.settings), &Watch::NOBODY).expect("a picture");
+    let rendering = tracer.render(&from_below(), &RenderOrder::of(&scene.settings), &Watch::NOBODY).expect("a picture");
     (rendering.picture, rendering.balance.expect("light was caught"))
 }
 
@@ -54,7 +54,7 @@ fn light_from_a_database_gives_the_same_picture_to_the_bit_and_is_not_followed_a
     let (plain, _) = picture(&scene, None);
     assert_eq!(picture(&scene, Some(&path)).0, plain);
     let store = Store::open(&path).expect("a database");
-    assert_eq!(store.entries(Some(Kind::CaughtLight)).expect("a list").len(), 4, "two lamps, two passes");
+    assert_eq!(store.entries(Some(RecordKind::CaughtLight)).expect("a list").len(), 4, "two lamps, two passes");
 }
 
 #[test]
@@ -102,5 +102,5 @@ fn what_is_no_database_is_an_error_before_anything_is_rendered() {
     std::fs::write(&path, "no database").expect("written");
     let scene = two_lamps();
     let prepared = Prepared::new(&scene).expect("sound");
-    assert!(Shelf::new(&path, &scene, &prepared, Duration::from_secs(60), true).is_err());
+    assert!(PhotonStore::new(&path, &scene, &prepared, Duration::from_secs(60), true).is_err());
 }

@@ -4,7 +4,7 @@ use super::*;
 use crate::color::Color;
 use crate::illumination::Paint;
 use crate::illumination::material::Classic;
-use crate::illumination::{Bands, Light, Material};
+use crate::illumination::{RgbPower, Light, Material};
 use crate::picture::{Operator, compose, difference};
 use crate::render::ray_tracer;
 use crate::scene::{Camera, Object, Projection, Scene, Settings, Shape};
@@ -48,7 +48,7 @@ pub(super) fn trace(scene: &Scene, view: Option<View>, everything: bool, threads
     let view = view.unwrap_or(prepared.view());
     let plan = if everything { Plan::everything(&prepared, &view) } else { Plan::new(&prepared, &view) };
     let tracer = ray_tracer(&prepared, &plan).expect("an octree");
-    let order = Order { threads: NonZeroUsize::new(threads), ..Order::of(&scene.settings) };
+    let order = RenderOrder { threads: NonZeroUsize::new(threads), ..RenderOrder::of(&scene.settings) };
     tracer.render(&view, &order, &Watch::NOBODY).expect("a picture")
 }
 
@@ -78,7 +78,7 @@ fn still_life() -> Scene {
         ),
     ];
     let lights = vec![
-        Light::Point { at: DVec3::new(3.0, 5.0, 4.0), intensity: Color::Bands(Bands::new(30.0, 25.0, 20.0)) },
+        Light::Point { at: DVec3::new(3.0, 5.0, 4.0), intensity: Color::Bands(RgbPower::new(30.0, 25.0, 20.0)) },
         Light::Directional { direction: DVec3::new(1.0, -1.0, -0.5), irradiance: Color::grey(1.0) },
         Light::Point { at: DVec3::new(0.0, 9.0, 0.0), intensity: Color::BLACK },
     ];
@@ -93,7 +93,7 @@ fn still_life() -> Scene {
         parallel: None,
     };
     let mut scene = scene(objects, lights, 40);
-    (scene.camera, scene.ambient, scene.background) = (Some(camera), Bands::splat(0.05), Bands::new(0.3, 0.4, 0.5));
+    (scene.camera, scene.ambient, scene.background) = (Some(camera), RgbPower::splat(0.05), RgbPower::new(0.3, 0.4, 0.5));
     scene.settings.image.samples = 3;
     scene
 }
@@ -148,7 +148,7 @@ fn a_mirror_shows_the_luminance_of_what_it_reflects() {
     );
     let floor = object(Shape::Ground { size: 20.0 }, DMat4::IDENTITY, mirror(0.8));
     let mut scene = scene(vec![floor, wall], vec![], 1);
-    (scene.ambient, scene.background) = (Bands::splat(0.3), Bands::splat(2.0));
+    (scene.ambient, scene.background) = (RgbPower::splat(0.3), RgbPower::splat(2.0));
     let look = |z: f64| Camera {
         from: DVec3::new(0.0, 5.0, z + 5.0),
         at: DVec3::new(0.0, 0.0, z),
@@ -171,7 +171,7 @@ fn two_facing_mirrors_end_by_depth_or_by_energy() {
     let up = object(Shape::Ground { size: 50.0 }, DMat4::IDENTITY, mirror(0.5));
     let down = object(Shape::Ground { size: 50.0 }, DMat4::from_translation(DVec3::Y * 2.0), mirror(0.5));
     let mut scene = scene(vec![up, down], vec![], 1);
-    scene.background = Bands::ONE;
+    scene.background = RgbPower::ONE;
     let straight_down = Camera {
         from: DVec3::Y,
         at: DVec3::ZERO,
@@ -319,7 +319,7 @@ fn forcing_everything_gives_the_same_picture() {
     let mut flat = full.clone();
     flat.objects.retain(|o| matches!(o.shape.word(), "box" | "ground"));
     let mut black = full.clone();
-    black.ambient = Bands::ZERO;
+    black.ambient = RgbPower::ZERO;
     black.objects.iter_mut().for_each(|o| o.material = Some(mirror(0.0).into()));
     let mut plain = full.clone();
     (plain.settings.image.samples, plain.settings.light.reflection_depth) = (1, 0);
@@ -366,7 +366,7 @@ fn stratified_samples_converge_faster_than_random_ones() {
         vec![],
         12,
     );
-    scene.ambient = Bands::ONE;
+    scene.ambient = RgbPower::ONE;
     let to_clip = DMat4::from_scale(DVec3::new(1.2, 1.2, -0.1));
     let view = View::Projection(Projection { to_clip, depth_clipping: false });
     let error = |samples: u32| {
@@ -398,7 +398,7 @@ fn a_cancelled_rendering_keeps_the_rows_that_are_done() {
         progress: &|_| cancelled.store(rows.fetch_add(1, Ordering::Relaxed) + 1 >= 5, Ordering::Relaxed),
         ..Watch::NOBODY
     };
-    let order = Order { threads: NonZeroUsize::new(1), ..Order::of(&scene.settings) };
+    let order = RenderOrder { threads: NonZeroUsize::new(1), ..RenderOrder::of(&scene.settings) };
     let part = tracer.render(&prepared.view(), &order, &watch).expect("a part");
     let begun = part.film.tallies().iter().filter(|tally| tally.count > 0).count();
     assert_eq!((begun, part.complete), (5 * 40, false));
@@ -419,7 +419,7 @@ fn degenerate_views_are_errors() {
     let plan = Plan::new(&prepared, &prepared.view());
     let tracer = ray_tracer(&prepared, &plan).expect("an octree");
     let view = View::Projection(Projection { to_clip: DMat4::ZERO, depth_clipping: true });
-    let result = tracer.render(&view, &Order::of(&scene.settings), &Watch::NOBODY);
+    let result = tracer.render(&view, &RenderOrder::of(&scene.settings), &Watch::NOBODY);
     assert!(matches!(result, Err(RenderError::View)));
 }
 
@@ -432,7 +432,7 @@ fn a_matte_over_the_background_is_the_picture() {
     let plan = Plan::new(&prepared, &view);
     let tracer = ray_tracer(&prepared, &plan).expect("an octree");
     let [picture, matte] = [false, true].map(|matte| {
-        let order = Order { matte, ..Order::of(&scene.settings) };
+        let order = RenderOrder { matte, ..RenderOrder::of(&scene.settings) };
         tracer.render(&view, &order, &Watch::NOBODY).expect("a picture").picture
     });
     let parts = matte.pixels().iter().filter(|p| p.coverage > 0.0 && p.coverage < 1.0).count();

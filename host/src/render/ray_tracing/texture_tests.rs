@@ -5,7 +5,7 @@ use super::two_way_tests::{block, two_way};
 use super::*;
 use crate::color::Color;
 use crate::illumination::material::Classic;
-use crate::illumination::texture::{Content, Image, Laying, Motif, Pattern, Relief};
+use crate::illumination::texture::{ImageContent, Image, TextureMapping, Motif, Pattern, Relief};
 use crate::illumination::{Light, Material, Paint};
 use crate::picture::difference;
 use crate::render::ray_tracer;
@@ -13,14 +13,14 @@ use crate::scene::{Camera, Scene, Shape};
 use glam::{DMat4, DVec3};
 use std::f64::consts::PI;
 
-fn painted(motif: Motif, laying: Laying) -> Classic {
+fn painted(motif: Motif, laying: TextureMapping) -> Classic {
     let paints =
         if matches!(motif, Motif::Image { .. }) { Vec::new() } else { vec![Paint::grey(0.0), Paint::grey(1.0)] };
     Classic { diffuse: Paint::Pattern(Box::new(Pattern { motif, laying, paints })), ..Classic::default() }
 }
 
-fn sized(size: f64) -> Laying {
-    Laying { size: DVec3::splat(size), ..Laying::default() }
+fn sized(size: f64) -> TextureMapping {
+    TextureMapping { size: DVec3::splat(size), ..TextureMapping::default() }
 }
 
 /// A square of side 2 under ambient light alone: the picture is the reflectance.
@@ -103,7 +103,7 @@ fn what_a_curtain_of_a_pattern_lets_through_falls_on_the_floor() {
     let view = from_above(1.0);
     let plan = Plan::new(&prepared, &view);
     let tracer = ray_tracer(&prepared, &plan).expect("an octree");
-    let picture = tracer.render(&view, &Order::of(&scene.settings), &Watch::NOBODY).expect("a picture").picture;
+    let picture = tracer.render(&view, &RenderOrder::of(&scene.settings), &Watch::NOBODY).expect("a picture").picture;
     for (x, square) in [(16, 0.0), (48, 1.0f32)] {
         // Light goes through the curtain down and up again.
         let found = picture.get(x, 32).expect("inside").radiance[0];
@@ -118,7 +118,7 @@ fn a_relief_tilts_what_a_plane_reflects() {
     let image = Image::new("tilted".into(), 1, 1, |_, _| DVec3::new(0.5 + 0.5 * sin, 0.5, 0.5 + 0.5 * cos));
     let lamp = Light::Directional { direction: DVec3::new(-sin, -cos, 0.0), irradiance: Color::grey(1.0) };
     let mut material: Material = Classic { diffuse: Paint::grey(1.0), ..Classic::default() }.into();
-    material.relief = Some(Relief::Normals { image, laying: Laying::default() });
+    material.relief = Some(Relief::Normals { image, laying: TextureMapping::default() });
     let ground = object(Shape::Ground { size: 2.0 }, DMat4::IDENTITY, material);
     let picture = trace(&scene(vec![ground], vec![lamp], 4), Some(from_above(1.0)), false, 1).picture;
     let found = f64::from(picture.get(1, 1).expect("inside").radiance[0]);
@@ -139,9 +139,9 @@ fn one_texel_and_sixteen_thousand_are_as_good_as_any_other_number() {
 fn an_image_in_a_file_that_is_none_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("none.png");
-    assert!(Image::read(&path, Content::Color).is_err());
+    assert!(Image::read(&path, ImageContent::Color).is_err());
     std::fs::write(&path, b"\x89PNG\r\n\x1a\nbroken").expect("written");
-    assert!(Image::read(&path, Content::Color).is_err());
+    assert!(Image::read(&path, ImageContent::Color).is_err());
 }
 
 #[test]
@@ -149,7 +149,7 @@ fn light_from_lamps_follows_the_slope_of_a_relief() {
     // A level mirror, with a relief that rises evenly by 22.5 degrees, throws the sun from above on a wall.
     let image = Image::new("ramp".into(), 16, 16, |x, _| DVec3::splat(f64::from(x) / 15.0));
     let rise = 2.0 * 15.0 / 16.0 * (PI / 8.0).tan();
-    let pattern = Pattern { motif: Motif::Image { image }, laying: Laying::default(), paints: Vec::new() };
+    let pattern = Pattern { motif: Motif::Image { image }, laying: TextureMapping::default(), paints: Vec::new() };
     let mut material = Material::from(mirror(0.8));
     material.relief = Some(Relief::Bumps { pattern, height: rise });
     let objects = vec![

@@ -1,18 +1,18 @@
 //! Follows the legs of a sample's way from the eye: what each meets, and where it goes on.
 
-use super::direct::Direct;
-use super::draws::{Draws, Purpose};
-use super::encounter::{Encounter, counted};
-use super::explain::{Log, Note};
+use super::direct::DirectLighting;
+use super::draws::{PathSampler, SampleDimension};
+use super::encounter::{PathVertex, counted};
+use super::explain::{PathLog, PathNote};
 use crate::color::Channels;
 use crate::color::srgb::LUMINANCE;
-use crate::illumination::light::Source;
-use crate::illumination::optics::{Among, Onward, Sighting};
+use crate::illumination::light::LightSource;
+use crate::illumination::optics::{LobeSelection, BsdfSample, ShadingContext};
 use crate::numeric::ray::Ray;
-use crate::render::indirect::{IndirectLight, Part};
-use crate::render::two_way::CaughtLight;
-use crate::render::world::{Cone, Found, Media, Met, Sight, World, diffuse};
-use crate::render::{Class, RayCounts};
+use crate::render::indirect::{IndirectLight, IrradiancePart};
+use crate::render::two_way::PhotonEstimator;
+use crate::render::world::{RayCone, SurfaceInteraction, Media, RayHit, BoundedRay, World, diffuse};
+use crate::render::{PathClass, RayCounts};
 use crate::scene::Caustics;
 use glam::DVec3;
 
@@ -31,8 +31,8 @@ const MOST_WAITING: usize = 8;
 
 /// A part of a sample's way.
 #[derive(Clone, Copy)]
-struct Leg {
-    sight: Sight,
+struct PathSegment {
+    sight: BoundedRay,
     /// How much of the radiance along it comes to the eye.
     passed: Channels,
     /// How much of the light of a lamp counts that it meets.
@@ -54,9 +54,9 @@ struct Leg {
     /// Whether it only looks for lights: it is one too many for anything else.
     for_lights: bool,
     /// Which turns its light takes from here to the eye.
-    course: Course,
+    course: PathHistory,
     /// What its last turn was.
-    turn: Turn,
+    turn: LastScattering,
     /// Whether light that was followed from lamps counts nothing on it: it was caught where narrow turns bring it to a
     /// broad one.
     is_known: bool,
@@ -66,7 +66,7 @@ struct Leg {
 
 /// Which turns light takes to the eye, by the lobes that it goes on from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Course {
+enum PathHistory {
     /// No broad one.
     Seen,
     /// A broad one first, and none but narrow ones behind.
@@ -77,31 +77,31 @@ enum Course {
     Carried,
 }
 
-impl Course {
+impl PathHistory {
     /// With a turn before those that it has.
-    fn after(self, is_broad: bool) -> Course {
+    fn after(self, is_broad: bool) -> PathHistory {
         match (self, is_broad) {
-            (Course::Seen, true) => Course::Spread,
-            (_, true) => Course::Carried,
-            (Course::Spread, false) => Course::Thrown,
+            (PathHistory::Seen, true) => PathHistory::Spread,
+            (_, true) => PathHistory::Carried,
+            (PathHistory::Spread, false) => PathHistory::Thrown,
             (course, false) => course,
         }
     }
 
     /// The class of light that leaves a lamp on it.
-    fn of_lamps(self) -> Class {
+    fn of_lamps(self) -> PathClass {
         match self {
-            Course::Seen => Class::Emitted,
-            Course::Spread => Class::Direct,
-            Course::Thrown => Class::Caustic,
-            Course::Carried => Class::Indirect,
+            PathHistory::Seen => PathClass::Emitted,
+            PathHistory::Spread => PathClass::Direct,
+            PathHistory::Thrown => PathClass::Caustic,
+            PathHistory::Carried => PathClass::Indirect,
         }
     }
 }
 
 /// What the turns of a leg were since light was spread last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Turn {
+enum LastScattering {
     /// None: it was spread.
     Spread,
     /// It went through polished interfaces only.
@@ -112,15 +112,15 @@ enum Turn {
 
 /// What a sample found.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Seen {
+pub(super) struct PathResult {
     /// Radiance of each class.
-    pub(super) radiance: [Channels; Class::ALL.len()],
+    pub(super) radiance: [Channels; PathClass::ALL.len()],
     /// Radiance of each class at other wavelengths than those of the sample, linear sRGB.
-    pub(super) other: [DVec3; Class::ALL.len()],
+    pub(super) other: [DVec3; PathClass::ALL.len()],
     /// Whether the first leg met an object or light.
     pub(super) covered: bool,
     /// What it met: distance from the eye, normal, object and material.
-    pub(super) first: Option<First>,
+    pub(super) first: Option<FirstHit>,
     /// Variance of its luminance by the chance in caught light that is seen, which other samples share.
     pub(super) shared: f64,
     /// The albedo that is seen, straight or by mirrors and smooth interfaces; a light counts as 1.
@@ -129,13 +129,13 @@ pub(super) struct Seen {
     pub(super) normal: DVec3,
 }
 
-impl Seen {
-    fn add(&mut self, class: Class, radiance: Channels) {
+impl PathResult {
+    fn add(&mut self, class: PathClass, radiance: Channels) {
         self.radiance[class as usize] += radiance;
     }
 
     /// A light that a leg meets.
-    fn guide_by_light(&mut self, leg: &Leg) {
+    fn guide_by_light(&mut self, leg: &PathSegment) {
         if leg.guides {
             self.albedo += leg.passed;
         }
@@ -144,7 +144,7 @@ impl Seen {
 
 /// The first element in sight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct First {
+pub(super) struct FirstHit {
     pub(super) distance: f64,
     pub(super) normal: DVec3,
     pub(super) object: u32,
@@ -153,29 +153,29 @@ pub(super) struct First {
 
 /// What one thread needs for its samples, one after the other.
 #[derive(Default)]
-pub(super) struct Work {
+pub(super) struct PathScratch {
     /// How many rays were traced.
     pub(super) counts: RayCounts,
     /// Legs that wait to be followed; none between samples.
-    waiting: Vec<Leg>,
+    waiting: Vec<PathSegment>,
 }
 
 /// Who counts rays, and who listens.
-struct Counting<'a, 'b> {
+struct SampleRecord<'a, 'b> {
     counts: &'a mut RayCounts,
-    log: &'a mut Log<'b>,
-    seen: &'a mut Seen,
+    log: &'a mut PathLog<'b>,
+    seen: &'a mut PathResult,
 }
 
 /// Follows rays through a scene as its plan tells.
-pub(super) struct Tracer<'a> {
+pub(super) struct PathTracer<'a> {
     world: &'a World<'a>,
-    direct: Direct<'a>,
+    direct: DirectLighting<'a>,
     /// Most legs after the first.
     depth: u32,
     caustics: Caustics,
     /// Light that was caught on its way from lamps.
-    caught: Option<&'a CaughtLight<'a>>,
+    caught: Option<&'a PhotonEstimator<'a>>,
     /// Light that diffuse surfaces send each other, if it is known already.
     indirect: Option<&'a dyn IndirectLight>,
     /// Whether there is light that is not followed from where it comes from.
@@ -186,7 +186,7 @@ pub(super) struct Tracer<'a> {
     guides: bool,
 }
 
-impl<'a> Tracer<'a> {
+impl<'a> PathTracer<'a> {
     /// - `depth`: most legs after the first. `shadows`: whether anything can stand before a light.
     /// - `catches`: whether light of lamps was followed; `caught` is what was caught. `around`: what the eye is in.
     /// - `indirect`: light that diffuse surfaces send each other, if it is known already.
@@ -195,11 +195,11 @@ impl<'a> Tracer<'a> {
         world: &'a World<'a>,
         depth: u32,
         shadows: bool,
-        (catches, caught): (bool, Option<&'a CaughtLight<'a>>),
+        (catches, caught): (bool, Option<&'a PhotonEstimator<'a>>),
         indirect: Option<&'a dyn IndirectLight>,
         around: Media,
         guides: bool,
-    ) -> Tracer<'a> {
+    ) -> PathTracer<'a> {
         let settings = &world.appearance.prepared.settings;
         let caustics = match settings.light.caustics {
             // Rays from the eye may not find again what was caught.
@@ -210,21 +210,21 @@ impl<'a> Tracer<'a> {
         let appearance = &world.appearance;
         let has_others =
             appearance.ambient.is_some() || appearance.sources.iter().any(|(_, source)| !source.is_caught());
-        let direct = Direct::new(world, shadows, settings.light.samples.max(1));
-        Tracer { world, direct, depth, caustics, caught, indirect, has_others, around, guides }
+        let direct = DirectLighting::new(world, shadows, settings.light.samples.max(1));
+        PathTracer { world, direct, depth, caustics, caught, indirect, has_others, around, guides }
     }
 
     /// The radiance that arrives along a line of sight.
     pub(super) fn radiance(
         &self,
-        sight: &Sight,
+        sight: &BoundedRay,
         comb: usize,
-        draws: &Draws,
-        work: &mut Work,
-        mut log: Log<'_>,
-    ) -> Seen {
-        let mut seen = Seen::default();
-        let first = Leg {
+        draws: &PathSampler,
+        work: &mut PathScratch,
+        mut log: PathLog<'_>,
+    ) -> PathResult {
+        let mut seen = PathResult::default();
+        let first = PathSegment {
             sight: *sight,
             passed: Channels::ONE,
             lamps: 1.0,
@@ -236,12 +236,12 @@ impl<'a> Tracer<'a> {
             media: self.around,
             lane: None,
             for_lights: false,
-            course: Course::Seen,
-            turn: Turn::Other,
+            course: PathHistory::Seen,
+            turn: LastScattering::Other,
             is_known: false,
             guides: self.guides,
         };
-        let Work { counts, waiting } = work;
+        let PathScratch { counts, waiting } = work;
         waiting.push(first);
         while let Some(leg) = waiting.pop() {
             match leg.depth {
@@ -250,36 +250,36 @@ impl<'a> Tracer<'a> {
             }
             let direction = leg.sight.ray.direction;
             match self.world.meet(&leg.sight, comb, draws.time) {
-                Met::Nothing => {
+                RayHit::Nothing => {
                     let radiance = match leg.for_lights && !self.direct.has_sky() {
                         true => Channels::ZERO,
                         false => {
                             let ray = Ray { direction: direction.normalize(), ..leg.sight.ray };
-                            let part = |sky: &Source, density| self.part(&leg, sky, density);
+                            let part = |sky: &LightSource, density| self.part(&leg, sky, density);
                             self.world.appearance.beyond(&ray, leg.normal, comb, part)
                         }
                     };
                     seen.add(leg.course.of_lamps(), leg.passed * radiance);
                     seen.guide_by_light(&leg);
                     seen.covered |= leg.depth > 0;
-                    log.note(|| Note::term(leg.depth, "meets nothing", leg.passed * radiance));
+                    log.note(|| PathNote::term(leg.depth, "meets nothing", leg.passed * radiance));
                 }
-                Met::Glow(index, glow) => {
+                RayHit::Glow(index, glow) => {
                     let absorbed = leg.media.absorbed(self.world, glow.t * direction.length() - leg.begin, comb);
                     let (number, source) = &self.world.appearance.sources[index];
                     let radiance = absorbed * glow.radiance * self.part(&leg, source, glow.density);
                     seen.add(leg.course.of_lamps(), leg.passed * radiance);
                     seen.guide_by_light(&leg);
                     seen.covered = true;
-                    log.note(|| Note::light(leg.depth, *number, leg.passed * radiance));
+                    log.note(|| PathNote::light(leg.depth, *number, leg.passed * radiance));
                 }
-                Met::Element(found) => {
+                RayHit::Element(found) => {
                     if leg.depth == 0 {
-                        let Found { depth, object, material, .. } = found;
-                        seen.first = Some(First { distance: depth, normal: found.element.normal, object, material });
+                        let SurfaceInteraction { depth, object, material, .. } = found;
+                        seen.first = Some(FirstHit { distance: depth, normal: found.element.normal, object, material });
                     }
                     seen.covered = true;
-                    let counting = &mut Counting { counts, log: &mut log, seen: &mut seen };
+                    let counting = &mut SampleRecord { counts, log: &mut log, seen: &mut seen };
                     self.arrive(leg, &found, (comb, draws), counting, waiting);
                 }
             }
@@ -290,29 +290,29 @@ impl<'a> Tracer<'a> {
     /// What an element sends back along a leg, and the legs that go on from there.
     fn arrive(
         &self,
-        mut leg: Leg,
-        found: &Found<'_>,
-        (comb, draws): (usize, &Draws),
-        Counting { counts, log, seen }: &mut Counting<'_, '_>,
-        waiting: &mut Vec<Leg>,
+        mut leg: PathSegment,
+        found: &SurfaceInteraction<'_>,
+        (comb, draws): (usize, &PathSampler),
+        SampleRecord { counts, log, seen }: &mut SampleRecord<'_, '_>,
+        waiting: &mut Vec<PathSegment>,
     ) {
         let optics = found.optics;
         let towards = leg.sight.ray.direction.normalize();
         leg.passed *= leg.media.absorbed(self.world, found.distance - leg.begin, comb);
         let crossing = leg.media.crossing(self.world, found, &leg.sight.ray);
         if !crossing.is_interface {
-            let sight = Sight { t_min: crossing.last, ..leg.sight };
-            waiting.push(Leg { sight, begin: found.distance, media: crossing.media, ..leg });
+            let sight = BoundedRay { t_min: crossing.last, ..leg.sight };
+            waiting.push(PathSegment { sight, begin: found.distance, media: crossing.media, ..leg });
             return;
         }
-        log.note(|| Note::element(leg.depth, self.world.appearance.prepared, found));
+        log.note(|| PathNote::element(leg.depth, self.world.appearance.prepared, found));
         if let Some((emission, factor)) =
             self.world.emitted(found, towards, comb, |source, density| self.part(&leg, source, density))
         {
             let radiance = leg.passed * emission * factor;
             seen.add(leg.course.of_lamps(), radiance);
             seen.guide_by_light(&leg);
-            log.note(|| Note::term(leg.depth, "emits", radiance));
+            log.note(|| PathNote::term(leg.depth, "emits", radiance));
         }
         if leg.for_lights && !optics.is_passable() {
             return;
@@ -322,13 +322,13 @@ impl<'a> Tracer<'a> {
         let drawn = match leg.lane {
             None if found.disperses() => {
                 let visibility = self.world.appearance.wavelengths.visibility(comb);
-                leg.passed.drawn(visibility, draws.point(Purpose::Wavelengths)[1])
+                leg.passed.drawn(visibility, draws.point(SampleDimension::Wavelengths)[1])
             }
             _ => None,
         };
         let (lane, alone) = drawn.unwrap_or((leg.lane.unwrap_or(0), leg.passed));
         let side = crossing.side(self.world, comb);
-        let sighting = Sighting { view: frame.local(-towards), comb, side, lane, painted: found.painted() };
+        let sighting = ShadingContext { view: frame.local(-towards), comb, side, lane, painted: found.painted() };
         if leg.for_lights {
             let onward = optics.straight(&sighting);
             waiting.extend(onward.and_then(|onward| self.straight(&leg, found, (onward, 0), draws)));
@@ -341,21 +341,21 @@ impl<'a> Tracer<'a> {
         }
         if let Some(ambient) = &self.world.appearance.ambient {
             let radiance = leg.passed * optics.ambient(&sighting) * ambient.of(comb);
-            seen.add(Class::Indirect, radiance);
-            log.note(|| Note::term(leg.depth, "ambient light", radiance));
+            seen.add(PathClass::Indirect, radiance);
+            log.note(|| PathNote::term(leg.depth, "ambient light", radiance));
         }
         if let Some(radiance) = self.indirect(found, comb).filter(|_| !leg.is_known) {
-            seen.add(Class::Indirect, leg.passed * radiance);
-            log.note(|| Note::term(leg.depth, "light of other surfaces", leg.passed * radiance));
+            seen.add(PathClass::Indirect, leg.passed * radiance);
+            log.note(|| PathNote::term(leg.depth, "light of other surfaces", leg.passed * radiance));
         }
-        let is_worth = |onward: Onward| (leg.passed * onward.weight).max() > WORTH_PARTING;
+        let is_worth = |onward: BsdfSample| (leg.passed * onward.weight).max() > WORTH_PARTING;
         let (count, all_worth) =
             optics.mirrored(&sighting).fold((0, true), |(count, all), onward| (count + 1, all && is_worth(onward)));
         let directions = count + usize::from(optics.spreads());
         let parts = directions <= 1 || waiting.len() + directions <= MOST_WAITING && all_worth;
-        let among = if parts { Among::Spread } else { Among::All };
+        let among = if parts { LobeSelection::Spread } else { LobeSelection::All };
         let highest = self.highest(&leg);
-        let encounter = Encounter {
+        let encounter = PathVertex {
             found,
             behind: crossing.media,
             frame,
@@ -368,7 +368,7 @@ impl<'a> Tracer<'a> {
             alone,
         };
         if optics.answers_lights() {
-            let add = |number, radiance| log.note(|| Note::lit(leg.depth, number, leg.passed * radiance));
+            let add = |number, radiance| log.note(|| PathNote::lit(leg.depth, number, leg.passed * radiance));
             let light = self.direct.light(&encounter, counts, add);
             for (is_broad, radiance) in [true, false].into_iter().zip(light) {
                 seen.add(leg.course.after(is_broad).of_lamps(), leg.passed * radiance);
@@ -376,24 +376,24 @@ impl<'a> Tracer<'a> {
         }
         if let Some(caught) = self.caught.filter(|_| optics.takes() && !leg.is_known) {
             let (light, error) =
-                caught.seen(found, &encounter.sighting, (leg.passed, leg.lane.is_some()), leg.course != Course::Seen);
+                caught.seen(found, &encounter.sighting, (leg.passed, leg.lane.is_some()), leg.course != PathHistory::Seen);
             let first = leg.course.after(true).after(false).of_lamps();
-            if leg.course == Course::Seen {
+            if leg.course == PathHistory::Seen {
                 let seen_as = |(radiance, other): (Channels, DVec3)| {
                     self.world.appearance.wavelengths.seen(comb, radiance) + other
                 };
                 let luminance = light.map(seen_as).into_iter().sum::<DVec3>().dot(LUMINANCE);
                 seen.shared += (luminance * error).powi(2);
             }
-            for (class, (radiance, elsewhere)) in [first, Class::Indirect].into_iter().zip(light) {
+            for (class, (radiance, elsewhere)) in [first, PathClass::Indirect].into_iter().zip(light) {
                 seen.add(class, radiance);
                 seen.other[class as usize] += elsewhere;
-                log.note(|| Note::term(leg.depth, "caught light", radiance));
+                log.note(|| PathNote::term(leg.depth, "caught light", radiance));
             }
         }
         if optics.carries_on() {
-            let point = draws.leg(leg.number, Purpose::Direction, 0);
-            let [choice, _] = draws.leg(leg.number, Purpose::Choice, 0);
+            let point = draws.leg(leg.number, SampleDimension::Direction, 0);
+            let [choice, _] = draws.leg(leg.number, SampleDimension::Choice, 0);
             if parts {
                 let drawn = optics.spreads().then(|| optics.onward(&sighting, choice, point, among)).flatten();
                 let legs = optics.mirrored(&sighting).zip(0..).chain(drawn.map(|onward| (onward, 2)));
@@ -406,25 +406,25 @@ impl<'a> Tracer<'a> {
     }
 
     /// Radiance of an element by light of other diffuse ones, as far as it is known already.
-    fn indirect(&self, found: &Found<'_>, comb: usize) -> Option<Channels> {
+    fn indirect(&self, found: &SurfaceInteraction<'_>, comb: usize) -> Option<Channels> {
         let indirect = self.indirect.filter(|_| found.optics.is_diffuse())?;
         let corners = self.world.appearance.prepared.corners(found.triangle);
         let weights = crate::numeric::triangle::weights(corners, found.element.position);
-        let irradiance = indirect.irradiance(found.triangle, found.element.outside, weights, Part::Indirect);
+        let irradiance = indirect.irradiance(found.triangle, found.element.outside, weights, IrradiancePart::Indirect);
         Some(diffuse(found.optics, comb, found.painted()) * irradiance * std::f64::consts::FRAC_1_PI)
     }
 
     /// How much a light counts that a leg meets.
     ///
     /// - `density`: with which the light would have drawn the leg's direction.
-    fn part(&self, leg: &Leg, source: &Source, density: f64) -> f64 {
-        let is_caustic = leg.density.is_none() && leg.course != Course::Seen;
+    fn part(&self, leg: &PathSegment, source: &LightSource, density: f64) -> f64 {
+        let is_caustic = leg.density.is_none() && leg.course != PathHistory::Seen;
         match self.caustics {
             // What is not followed from lamps counts wherever it is met.
             Caustics::PhotonMapped if !source.is_caught() => counted(leg.density, density),
             Caustics::PhotonMapped if leg.is_known => 0.0,
             // A shadow ray has gone through what is polished.
-            Caustics::LeftOut if leg.turn == Turn::Through && self.world.appearance.clears => 0.0,
+            Caustics::LeftOut if leg.turn == LastScattering::Through && self.world.appearance.clears => 0.0,
             Caustics::LeftOut if source.is_sky() => counted(leg.density, density),
             Caustics::PhotonMapped | Caustics::LeftOut if is_caustic => 0.0,
             _ => leg.lamps * counted(leg.density, density),
@@ -432,17 +432,17 @@ impl<'a> Tracer<'a> {
     }
 
     /// The greatest value with which narrow lobes may reflect a lamp where a leg arrives, 1/sr.
-    fn highest(&self, leg: &Leg) -> f64 {
+    fn highest(&self, leg: &PathSegment) -> f64 {
         match self.caustics {
-            Caustics::PhotonMapped if leg.course != Course::Seen => 0.0,
-            Caustics::LeftOut if leg.course != Course::Seen => HIGHEST,
+            Caustics::PhotonMapped if leg.course != PathHistory::Seen => 0.0,
+            Caustics::LeftOut if leg.course != PathHistory::Seen => HIGHEST,
             _ => f64::INFINITY,
         }
     }
 
     /// The leg that goes on in a direction; none if it is not worth following.
-    fn onward(&self, leg: &Leg, encounter: &Encounter<'_>, onward: Onward, branch: u32) -> Option<Leg> {
-        let Encounter { found, frame, sighting, draws, highest, alone, .. } = *encounter;
+    fn onward(&self, leg: &PathSegment, encounter: &PathVertex<'_>, onward: BsdfSample, branch: u32) -> Option<PathSegment> {
+        let PathVertex { found, frame, sighting, draws, highest, alone, .. } = *encounter;
         if onward.is_straight {
             return self.straight(leg, found, (onward, branch), &draws);
         }
@@ -453,7 +453,7 @@ impl<'a> Tracer<'a> {
         if is_last && (onward.density.is_none() || !self.direct.is_spread()) {
             return None;
         }
-        let goes_back = self.caustics == Caustics::PhotonMapped && !onward.is_broad && leg.course != Course::Seen;
+        let goes_back = self.caustics == Caustics::PhotonMapped && !onward.is_broad && leg.course != PathHistory::Seen;
         let is_known = leg.is_known || goes_back;
         if is_known && !self.has_others {
             return None;
@@ -477,17 +477,17 @@ impl<'a> Tracer<'a> {
         };
         let origin = if through { element.through } else { element.leave };
         let turn = match (onward.density, leg.turn) {
-            (Some(_), _) => Turn::Spread,
-            (None, Turn::Spread | Turn::Through) if through => Turn::Through,
-            _ => Turn::Other,
+            (Some(_), _) => LastScattering::Spread,
+            (None, LastScattering::Spread | LastScattering::Through) if through => LastScattering::Through,
+            _ => LastScattering::Other,
         };
-        Some(Leg {
-            sight: Sight {
+        Some(PathSegment {
+            sight: BoundedRay {
                 ray: Ray { origin, direction },
                 t_min: 0.0,
                 t_max: f64::INFINITY,
                 // A curved mirror widens it more; its many samples make up for that.
-                cone: Cone { width: leg.sight.cone.at(found.distance), ..leg.sight.cone },
+                cone: RayCone { width: leg.sight.cone.at(found.distance), ..leg.sight.cone },
             },
             passed,
             lamps,
@@ -507,25 +507,25 @@ impl<'a> Tracer<'a> {
     }
 
     /// The rest of a leg behind what it goes straight through: the same ray, so that lights are met as if nothing was there.
-    fn straight(&self, leg: &Leg, found: &Found<'_>, (onward, branch): (Onward, u32), draws: &Draws) -> Option<Leg> {
+    fn straight(&self, leg: &PathSegment, found: &SurfaceInteraction<'_>, (onward, branch): (BsdfSample, u32), draws: &PathSampler) -> Option<PathSegment> {
         let is_last = leg.depth >= self.depth;
         if is_last && (leg.density.is_none() || !self.direct.is_spread()) {
             return None;
         }
         let number = leg.number.wrapping_mul(3).wrapping_add(branch);
         let passed = survived(leg.passed * onward.weight, number, draws)?;
-        let sight = Sight { t_min: found.t, ..leg.sight };
+        let sight = BoundedRay { t_min: found.t, ..leg.sight };
         let for_lights = leg.for_lights || is_last;
-        Some(Leg { sight, passed, begin: found.distance, depth: leg.depth + 1, number, for_lights, ..*leg })
+        Some(PathSegment { sight, passed, begin: found.distance, depth: leg.depth + 1, number, for_lights, ..*leg })
     }
 }
 
 /// What of a leg is followed: all of it, or, of one that passes little on, by chance more or nothing.
-fn survived(passed: Channels, number: u32, draws: &Draws) -> Option<Channels> {
+fn survived(passed: Channels, number: u32, draws: &PathSampler) -> Option<Channels> {
     let most = passed.max();
     if most >= ENERGY_CUTOFF {
         return Some(passed);
     }
     let survival = most / ENERGY_CUTOFF;
-    (most > 0.0 && draws.leg(number, Purpose::Survival, 0)[0] < survival).then(|| passed * survival.recip())
+    (most > 0.0 && draws.leg(number, SampleDimension::Survival, 0)[0] < survival).then(|| passed * survival.recip())
 }

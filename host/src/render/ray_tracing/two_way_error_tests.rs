@@ -29,7 +29,7 @@ fn renderings(scene: &Scene, target: Option<f64>) -> Vec<Rendering> {
         let prepared = Prepared::new(&scene).expect("sound");
         let plan = Plan::new(&prepared, &prepared.view());
         let tracer = ray_tracer(&prepared, &plan).expect("an octree");
-        let order = Order { target, ..Order::of(&scene.settings) };
+        let order = RenderOrder { target, ..RenderOrder::of(&scene.settings) };
         tracer.render(&prepared.view(), &order, &Watch::NOBODY).expect("a picture")
     };
     (1..=30).map(rendering).collect()

@@ -6,17 +6,17 @@ use super::two_way_tests::{ball, block, from_below, glass, lamp, mirror_under_a_
 use super::*;
 use crate::color::Color;
 use crate::illumination::Light;
-use crate::illumination::light::Patch;
-use crate::illumination::material::{Body, Index, Transparent};
+use crate::illumination::light::LightShape;
+use crate::illumination::material::{MaterialKind, RefractiveIndex, Transparent};
 use crate::picture::difference;
-use crate::render::two_way::Balance;
+use crate::render::two_way::FluxBalance;
 use crate::scene::{Composite, Object, Operation, Scene, Shape};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec3};
 use std::f64::consts::PI;
 
 /// Follows light, and asks that it is finite and that no more arrives than was sent.
-fn followed(mut scene: Scene, view: Option<View>, photons: u32) -> (Rendering, Balance) {
+fn followed(mut scene: Scene, view: Option<View>, photons: u32) -> (Rendering, FluxBalance) {
     scene.settings.photons.count = photons;
     let rendering = two_way(&scene, view, 2);
     let finite = |pixel: &crate::picture::Pixel| pixel.radiance.iter().all(|band| band.is_finite() && *band >= 0.0);
@@ -94,7 +94,7 @@ fn a_beam_of_a_ten_thousandth_of_a_degree_finds_its_mirror() {
 #[test]
 fn a_lamp_of_a_millionth_is_a_point_that_follows_lambert() {
     let size = 1e-6;
-    let patch = Patch::Disc { center: DVec3::Y, normal: DVec3::NEG_Y, radius: size };
+    let patch = LightShape::Disc { center: DVec3::Y, normal: DVec3::NEG_Y, radius: size };
     let mut scene = mirror_under_a_ceiling(3.0, 15);
     scene.lights = vec![Light::Area { patch, radiance: Color::grey(10.0 / patch.area()) }];
     let (rendering, _) = followed(scene, Some(from_below()), 100_000);
@@ -201,7 +201,7 @@ fn lamps_in_corners_and_on_surfaces_send_no_more_than_they_have() {
         assert!(balance.sent < 4.2 * PI && balance.gained.abs() < 0.1 * balance.sent, "{at}: {balance}");
     }
     // A lamp in the plane of a face.
-    let patch = Patch::Rectangle { corner: DVec3::new(0.2, 1.0, 0.2), across: DVec3::X * 0.5, up: DVec3::Z * 0.5 };
+    let patch = LightShape::Rectangle { corner: DVec3::new(0.2, 1.0, 0.2), across: DVec3::X * 0.5, up: DVec3::Z * 0.5 };
     let light = Light::Area { patch, radiance: Color::grey(1.0) };
     let (_, balance) = followed(scene(objects(), vec![light], 8), Some(from_above(2.0)), 10_000);
     assert!(balance.sent < 0.26 * PI, "{balance}");
@@ -253,8 +253,8 @@ fn glass_of_no_index_is_not_there() {
 #[test]
 fn a_lamp_within_a_ball_of_glass_shines_as_if_alone_but_for_what_the_glass_absorbs() {
     for (index, absorption) in [(1.5, 0.0), (2.42, 0.0), (1.5, 0.8)] {
-        let inside = Transparent { absorption: Color::grey(absorption), ..Transparent::clear(Index::Constant(index)) };
-        let objects = vec![ball(0.5, DVec3::ZERO, Body::Transparent(inside)), floor(4.0, 3.0)];
+        let inside = Transparent { absorption: Color::grey(absorption), ..Transparent::clear(RefractiveIndex::Constant(index)) };
+        let objects = vec![ball(0.5, DVec3::ZERO, MaterialKind::Transparent(inside)), floor(4.0, 3.0)];
         let scene = scene(objects, vec![lamp(DVec3::ZERO, 10.0)], 8);
         let (rendering, _) = followed(scene, Some(down_on(DVec3::NEG_Y * 3.0, 0.5, 1.0)), 100_000);
         // All that is reflected comes to the middle and on to the other side.

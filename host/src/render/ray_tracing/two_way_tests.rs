@@ -3,9 +3,9 @@
 use super::tests::{diffuse, from_above, mirror, object, red, scene};
 use super::*;
 use crate::color::Color;
-use crate::illumination::light::Patch;
-use crate::illumination::material::{Body, Index, Material, Transparent};
-use crate::illumination::{Bands, Light};
+use crate::illumination::light::LightShape;
+use crate::illumination::material::{MaterialKind, RefractiveIndex, Material, Transparent};
+use crate::illumination::{RgbPower, Light};
 use crate::picture::difference;
 use crate::render::ray_tracer;
 use crate::scene::{Camera, Caustics, Interreflection, Object, Scene, Shape};
@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 use std::num::NonZeroUsize;
 
 pub(super) fn glass(index: f64) -> Material {
-    Body::Transparent(Transparent::clear(Index::Constant(index))).into()
+    MaterialKind::Transparent(Transparent::clear(RefractiveIndex::Constant(index))).into()
 }
 
 pub(super) fn block(size: DVec3, at: DVec3, material: impl Into<Material>) -> Object {
@@ -46,7 +46,7 @@ pub(super) fn two_way(scene: &Scene, view: Option<View>, threads: usize) -> Rend
     let plan = Plan::new(&prepared, &view);
     assert!(plan.needs(Stage::CaughtLight));
     let tracer = ray_tracer(&prepared, &plan).expect("an octree");
-    let order = Order { threads: NonZeroUsize::new(threads), ..Order::of(&scene.settings) };
+    let order = RenderOrder { threads: NonZeroUsize::new(threads), ..RenderOrder::of(&scene.settings) };
     let rendering = tracer.render(&view, &order, &Watch::NOBODY).expect("a picture");
     if let Some(balance) = &rendering.balance {
         assert!(balance.residual() < 1e-6 && balance.sent > 0.0, "{balance}");
@@ -115,7 +115,7 @@ fn more_light_makes_it_more_right() {
 
 /// A glass ball and a mirror under a lamp that is large enough for rays from the eye to find it.
 fn ball_and_mirror() -> Scene {
-    let patch = Patch::Rectangle { corner: DVec3::new(-1.5, 4.0, -1.5), across: DVec3::X * 3.0, up: DVec3::Z * 3.0 };
+    let patch = LightShape::Rectangle { corner: DVec3::new(-1.5, 4.0, -1.5), across: DVec3::X * 3.0, up: DVec3::Z * 3.0 };
     let objects = vec![
         block(DVec3::new(8.0, 0.2, 8.0), DVec3::new(0.0, -0.1, 0.0), diffuse(0.7)),
         ball(0.8, DVec3::new(-1.0, 1.0, 0.0), glass(1.5)),
@@ -181,7 +181,7 @@ fn classes_of_light_add_up_and_are_the_same_by_both_ways_of_finding_it() {
         let prepared = Prepared::new(scene).expect("sound");
         let plan = Plan::new(&prepared, &prepared.view());
         let tracer = ray_tracer(&prepared, &plan).expect("an octree");
-        let order = Order::of(&scene.settings);
+        let order = RenderOrder::of(&scene.settings);
         let film = Film::new(16, 16).expect("small").with_classes();
         let film = tracer.go_on(film, &prepared.view(), &order, &Watch::NOBODY, None).expect("a picture").film;
         for (tally, classes) in film.tallies().iter().zip(film.classes()) {
@@ -274,7 +274,7 @@ fn a_second_view_takes_the_light_that_was_caught_for_the_first() {
     let prepared = Prepared::new(&scene).expect("sound");
     let plan = Plan::new(&prepared, &prepared.view());
     let tracer = ray_tracer(&prepared, &plan).expect("an octree");
-    let order = Order::of(&scene.settings);
+    let order = RenderOrder::of(&scene.settings);
     let render = |view: &View| tracer.render(view, &order, &Watch::NOBODY).expect("a picture").picture;
     let (first, above) = (render(&prepared.view()), render(&from_above(3.0)));
     let anew = ray_tracer(&prepared, &plan).expect("an octree");
@@ -296,7 +296,7 @@ fn scenes_without_mirrors_or_lamps_do_without_it() {
         (vec![], vec![light()]),
     ];
     for (objects, lights) in cases {
-        let mut scene = Scene { background: Bands::ONE, ..scene(objects, lights, 8) };
+        let mut scene = Scene { background: RgbPower::ONE, ..scene(objects, lights, 8) };
         scene.settings.light.caustics = Caustics::PhotonMapped;
         let prepared = Prepared::new(&scene).expect("sound");
         let plan = Plan::new(&prepared, &prepared.view());

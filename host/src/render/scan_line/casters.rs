@@ -16,7 +16,7 @@ const NONE: u32 = u32::MAX;
 
 /// A side of one or two triangles, from its lower to its higher vertex.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Edge {
+pub(super) struct CasterEdge {
     pub(super) ends: [u32; 2],
     /// The triangle that goes along it, and one that goes against it.
     triangles: [u32; 2],
@@ -37,7 +37,7 @@ pub(super) struct Casters<'a> {
     pub(super) prepared: &'a Prepared,
     /// Which triangles there are: those of the objects that the plan keeps.
     pub(super) triangles: Vec<u32>,
-    edges: Vec<Edge>,
+    edges: Vec<CasterEdge>,
     /// For all triangles of the scene, the group; empty if all are opaque.
     groups: Vec<u8>,
 }
@@ -59,7 +59,7 @@ impl<'a> Casters<'a> {
     }
 
     /// The edges, sorted by their lower vertex.
-    fn shared(&self) -> Vec<Edge> {
+    fn shared(&self) -> Vec<CasterEdge> {
         let sides = |triangle: u32| {
             let [a, b, c] = self.prepared.triangles[triangle as usize];
             [[a, b], [b, c], [c, a]].into_iter().filter(|[a, b]| a != b)
@@ -82,7 +82,7 @@ impl<'a> Casters<'a> {
                 *end += 1;
             }
         }
-        let mut edges: Vec<Edge> = Vec::with_capacity(half.len() / 2 + 16);
+        let mut edges: Vec<CasterEdge> = Vec::with_capacity(half.len() / 2 + 16);
         for (low, range) in begins.windows(2).enumerate() {
             let first = edges.len();
             for &(high, triangle, against) in &half[range[0] as usize..range[1] as usize] {
@@ -97,7 +97,7 @@ impl<'a> Casters<'a> {
                     None => {
                         let mut triangles = [NONE; 2];
                         triangles[side] = triangle;
-                        edges.push(Edge { ends: [low as u32, high], triangles });
+                        edges.push(CasterEdge { ends: [low as u32, high], triangles });
                     }
                 }
             }
@@ -127,7 +127,7 @@ impl<'a> Casters<'a> {
     /// - `facing`: as [`Casters::facing`] gives it.
     pub(super) fn silhouettes(&self, facing: &[i8]) -> Vec<Silhouette> {
         let of = |triangle: u32| facing.get(triangle as usize).map_or(0, |facing| i32::from(*facing));
-        let silhouette = |edge: &Edge| {
+        let silhouette = |edge: &CasterEdge| {
             let weight = of(edge.triangles[0]) - of(edge.triangles[1]);
             let triangle = edge.triangles[usize::from(edge.triangles[0] == NONE)];
             (weight != 0).then(|| Silhouette { ends: edge.ends, weight, group: self.group(triangle) })

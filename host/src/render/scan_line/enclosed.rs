@@ -13,7 +13,7 @@ use glam::{DVec2, DVec3};
 const MOST_CELLS: f64 = 192.0;
 
 /// The shadow volumes of one light.
-pub(super) struct Enclosed<'a> {
+pub(super) struct ShadowVolumes<'a> {
     casters: &'a Casters<'a>,
     light: LightPosition,
     silhouettes: &'a [Silhouette],
@@ -30,17 +30,17 @@ struct Grid {
     least: DVec2,
     most: DVec2,
     cells: usize,
-    silhouettes: Sorted,
-    triangles: Sorted,
+    silhouettes: CellLists,
+    triangles: CellLists,
 }
 
 /// Numbers, sorted into cells.
-struct Sorted {
+struct CellLists {
     begins: Vec<u32>,
     numbers: Vec<u32>,
 }
 
-impl<'a> Enclosed<'a> {
+impl<'a> ShadowVolumes<'a> {
     /// - `groups`: how many groups of casters there are.
     pub(super) fn new(
         casters: &'a Casters<'a>,
@@ -48,7 +48,7 @@ impl<'a> Enclosed<'a> {
         facing: &'a [i8],
         silhouettes: &'a [Silhouette],
         groups: usize,
-    ) -> Enclosed<'a> {
+    ) -> ShadowVolumes<'a> {
         let offset = match light {
             LightPosition::Point(at) => {
                 (at - casters.prepared.bounds.center())
@@ -59,13 +59,13 @@ impl<'a> Enclosed<'a> {
         // Across the light, so that volumes are wide in the plane.
         let up = (0..3).min_by(|a, b| offset[*a].abs().total_cmp(&offset[*b].abs())).unwrap_or(2);
         let axes = [(up + 1) % 3, (up + 2) % 3, up];
-        let mut enclosed = Enclosed { casters, light, silhouettes, facing, axes, above: vec![0; groups], grid: None };
+        let mut enclosed = ShadowVolumes { casters, light, silhouettes, facing, axes, above: vec![0; groups], grid: None };
         enclosed.above = enclosed.above(groups);
         enclosed
     }
 
     /// Sorts what may be met, for many points.
-    pub(super) fn sorted(mut self) -> Enclosed<'a> {
+    pub(super) fn sorted(mut self) -> ShadowVolumes<'a> {
         self.grid = Some(self.sort());
         self
     }
@@ -182,19 +182,19 @@ impl<'a> Enclosed<'a> {
         let (least, most) = (self.turned(bounds.min - margin).truncate(), self.turned(bounds.max + margin).truncate());
         let size = self.casters.triangles.len() + self.silhouettes.len();
         let cells = ((size as f64).sqrt() / 2.0).clamp(1.0, MOST_CELLS) as usize;
-        let mut grid = Grid { least, most, cells, silhouettes: Sorted::empty(), triangles: Sorted::empty() };
+        let mut grid = Grid { least, most, cells, silhouettes: CellLists::empty(), triangles: CellLists::empty() };
         let silhouettes = self.silhouettes.iter().zip(0..).flat_map(|(silhouette, number)| {
             let grid = &grid;
             self.squares(grid, silhouette).into_iter().map(move |cell| (cell, number))
         });
-        let silhouettes = Sorted::new(silhouettes.collect(), cells * cells);
+        let silhouettes = CellLists::new(silhouettes.collect(), cells * cells);
         let triangles =
             self.casters.triangles.iter().filter(|t| self.facing[**t as usize] != 0).flat_map(|&triangle| {
                 let [a, b, c] = self.casters.prepared.triangles[triangle as usize].map(|i| self.vertex(i).truncate());
                 let (low, high) = (grid.place(a.min(b).min(c)), grid.place(a.max(b).max(c)));
                 (low[1]..=high[1]).flat_map(move |y| (low[0]..=high[0]).map(move |x| (y * cells + x, triangle)))
             });
-        let triangles = Sorted::new(triangles.collect(), cells * cells);
+        let triangles = CellLists::new(triangles.collect(), cells * cells);
         (grid.silhouettes, grid.triangles) = (silhouettes, triangles);
         grid
     }
@@ -277,12 +277,12 @@ impl Grid {
     }
 }
 
-impl Sorted {
-    fn empty() -> Sorted {
-        Sorted { begins: Vec::new(), numbers: Vec::new() }
+impl CellLists {
+    fn empty() -> CellLists {
+        CellLists { begins: Vec::new(), numbers: Vec::new() }
     }
 
-    fn new(pairs: Vec<(usize, u32)>, cells: usize) -> Sorted {
+    fn new(pairs: Vec<(usize, u32)>, cells: usize) -> CellLists {
         let mut begins = vec![0u32; cells + 1];
         pairs.iter().for_each(|(cell, _)| begins[*cell] += 1);
         let mut sum = 0;
@@ -295,7 +295,7 @@ impl Sorted {
             numbers[ends[cell] as usize] = number;
             ends[cell] += 1;
         }
-        Sorted { begins, numbers }
+        CellLists { begins, numbers }
     }
 
     fn of(&self, cell: usize) -> &[u32] {

@@ -1,12 +1,12 @@
 //! Which surfaces the samples of a pixel see, and the elements in the middle of what they see.
 
-use super::shader::{Desk, Line, Shader};
-use super::surfaces::{Found, Part, Pixel, Surface};
+use super::shader::{PixelScratch, SampleSight, Shader};
+use super::surfaces::{PixelInteraction, SampleFragment, StripPixel, PixelSurface};
 use super::visibility::{NONE, Strip};
 use crate::color::Channels;
-use crate::illumination::distribution::Frame;
+use crate::illumination::distribution::ShadingFrame;
 use crate::numeric::ray::{Hit, Ray};
-use crate::render::world::{Element, Sight};
+use crate::render::world::{SurfaceElement, BoundedRay};
 use crate::scene::footprint;
 use glam::DVec3;
 
@@ -16,19 +16,19 @@ const BEYOND: f64 = -1.0;
 
 impl<'a> Shader<'a> {
     /// Finds the surfaces of a pixel, and which samples see them.
-    pub(super) fn gather(&self, pixel: &Pixel, strip: &Strip, desk: &mut Desk<'a>) {
-        let Desk { surfaces, parts, samples, .. } = desk;
+    pub(super) fn gather(&self, pixel: &StripPixel, strip: &Strip, desk: &mut PixelScratch<'a>) {
+        let PixelScratch { surfaces, parts, samples, .. } = desk;
         surfaces.clear();
         parts.clear();
         samples.clear();
         let opaque = strip.near.len();
         for (i, sample) in pixel.samples().enumerate() {
-            samples.push(Line { begin: parts.len(), like: i, glow: None, light: DVec3::ZERO });
+            samples.push(SampleSight { begin: parts.len(), like: i, glow: None, light: DVec3::ZERO });
             let mut add = |triangle: u32, near: f64, fragment: usize| {
                 let before = parts.iter().rfind(|part| part.triangle == triangle).map(|part| part.surface);
                 let surface = before.unwrap_or_else(|| self.surface(surfaces, triangle, near));
                 surfaces[surface].add(triangle, pixel.place(i), [near, self.depth(near)]);
-                parts.push(Part { surface, fragment, triangle, sample: i });
+                parts.push(SampleFragment { surface, fragment, triangle, sample: i });
             };
             for index in strip.layers_of(sample) {
                 let layer = strip.layers[index];
@@ -41,7 +41,7 @@ impl<'a> Shader<'a> {
     }
 
     /// The surface of a pixel to which a triangle belongs.
-    fn surface(&self, surfaces: &mut Vec<Surface>, triangle: u32, near: f64) -> usize {
+    fn surface(&self, surfaces: &mut Vec<PixelSurface>, triangle: u32, near: f64) -> usize {
         let surface = self.begun(triangle, near);
         surfaces.iter().position(|other| surface.goes_on_in(other)).unwrap_or_else(|| {
             surfaces.push(surface);
@@ -50,10 +50,10 @@ impl<'a> Shader<'a> {
     }
 
     /// A surface of which no sample is known yet.
-    fn begun(&self, triangle: u32, near: f64) -> Surface {
+    fn begun(&self, triangle: u32, near: f64) -> PixelSurface {
         let prepared = self.appearance.prepared;
         let [a, b, c] = prepared.corners(triangle);
-        Surface {
+        PixelSurface {
             triangle,
             face: (b - a).cross(c - a).normalize_or_zero(),
             near,
@@ -83,7 +83,7 @@ impl<'a> Shader<'a> {
     }
 
     /// The mean distance of what samples see of a surface, its normal, object and material.
-    pub(super) fn first(&self, surface: &Surface, found: &Found<'_>) -> (f64, DVec3, [u32; 2]) {
+    pub(super) fn first(&self, surface: &PixelSurface, found: &PixelInteraction<'_>) -> (f64, DVec3, [u32; 2]) {
         let [near, depth] = surface.nearness.map(|sum| sum / f64::from(surface.count));
         (self.distance(found.distance, self.depth(near), depth), found.element.normal, found.seen)
     }
@@ -101,10 +101,10 @@ impl<'a> Shader<'a> {
     /// Finds the element in the middle of what samples see of a surface, and tells its number.
     pub(super) fn find<'p>(
         &self,
-        surface: &Surface,
-        parts: impl Iterator<Item = &'p Part>,
-        pixel: &Pixel,
-        (founds, last): (&mut Vec<Found<'a>>, &mut Option<Found<'a>>),
+        surface: &PixelSurface,
+        parts: impl Iterator<Item = &'p SampleFragment>,
+        pixel: &StripPixel,
+        (founds, last): (&mut Vec<PixelInteraction<'a>>, &mut Option<PixelInteraction<'a>>),
     ) -> Option<usize> {
         let part = f64::from(surface.count).recip();
         let middle = surface.sum.map(|sum| sum * part);
@@ -134,12 +134,12 @@ impl<'a> Shader<'a> {
     /// The element that a line of sight meets in a triangle.
     ///
     /// - `least`: the least weight of a corner, 0 where the element must lie within the triangle.
-    pub(super) fn element(&self, triangle: u32, sight: &Sight, least: f64) -> Option<Found<'a>> {
+    pub(super) fn element(&self, triangle: u32, sight: &BoundedRay, least: f64) -> Option<PixelInteraction<'a>> {
         let prepared = self.appearance.prepared;
         let length = sight.ray.direction.length();
         let towards = sight.ray.direction * length.recip();
         let hit = met(&sight.ray, prepared.corners(triangle), triangle, least)?;
-        let mut element = Element::new(prepared, triangle, &sight.ray, &hit, self.appearance.curved)?;
+        let mut element = SurfaceElement::new(prepared, triangle, &sight.ray, &hit, self.appearance.curved)?;
         let (object, material) = (prepared.object_of[triangle as usize], prepared.material_number(triangle));
         let optics = self.appearance.optics(object, material);
         let distance = hit.t * length;
@@ -151,11 +151,11 @@ impl<'a> Shader<'a> {
             element.tilt(-towards, |normal| optics.tilted(&place, normal));
         }
         let normal = element.normal;
-        let frame = optics.along.map_or_else(|| Frame::about(normal), |along| Frame::brushed(normal, along));
+        let frame = optics.along.map_or_else(|| ShadingFrame::about(normal), |along| ShadingFrame::brushed(normal, along));
         let curved = self.is_curved(triangle);
         let is_flat = !curved && !optics.is_textured();
         let seen = [object, material];
-        Some(Found { element, curved, is_flat, frame, optics, distance, seen, towards, triangle, weights, sides })
+        Some(PixelInteraction { element, curved, is_flat, frame, optics, distance, seen, towards, triangle, weights, sides })
     }
 }
 

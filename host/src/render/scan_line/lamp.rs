@@ -23,7 +23,7 @@ impl LightPosition {
 
 /// One point of a light.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Lamp {
+pub(super) struct LampPoint {
     /// Index of the source that it is a point of.
     pub(super) source: usize,
     pub(super) point: LightPoint,

@@ -33,29 +33,29 @@ mod visibility;
 use super::film::Film;
 use super::indirect::IndirectLight;
 use super::tally::Tally;
-use super::world::{AHEAD, Appearance, Eye, World};
-use super::{Amount, Order, RayCounts, RenderError, Renderer, Rendering, SpanCounts, Watch};
+use super::world::{AHEAD, Appearance, CameraRays, World};
+use super::{Progress, RenderOrder, RayCounts, RenderError, Renderer, Rendering, SpanCounts, Watch};
 use crate::color::Channels;
-use crate::illumination::light::Source;
+use crate::illumination::light::LightSource;
 use crate::picture::{Filter, Picture};
 use crate::plan::{Plan, Stage};
 use crate::scene::{Prepared, View};
 use casters::Casters;
-use enclosed::Enclosed;
+use enclosed::ShadowVolumes;
 use glam::DVec3;
-use lamp::{Lamp, LightPosition};
+use lamp::{LampPoint, LightPosition};
 use rayon::prelude::*;
 use reach::Reach;
 use screen::{Screen, Viewpoint};
-use shader::{Desk, Shader};
+use shader::{PixelScratch, Shader};
 use shadow::Shadow;
 use sky_light::SkyLight;
-use spans::{Lines, MOST_LINES, rooks};
+use spans::{SampleLines, MOST_LINES, rooks};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
-use surfaces::Pixel;
-use visibility::{Facets, Strip};
+use surfaces::StripPixel;
+use visibility::{ScreenTriangles, Strip};
 
 /// Most groups of casters that let different light through; what is beyond throws no shadow.
 const MOST_GROUPS: usize = 200;
@@ -71,7 +71,7 @@ pub struct ScanLine<'a> {
     passable: Vec<bool>,
     /// What each group of casters lets through, comb by comb; the first is opaque.
     passing: Vec<Vec<Channels>>,
-    lamps: Vec<Lamp>,
+    lamps: Vec<LampPoint>,
     /// None without a sky, and where a solution is shown.
     sky_light: Option<SkyLight>,
     /// In the place of lamps and shadows.
@@ -79,9 +79,9 @@ pub struct ScanLine<'a> {
 }
 
 /// What the threads share while a picture is made.
-struct Work<'a> {
+struct PictureWork<'a> {
     shader: Shader<'a>,
-    facets: &'a Facets<'a>,
+    facets: &'a ScreenTriangles<'a>,
     shadows: &'a [Shadow],
     offsets: &'a [f64],
     /// Where the samples of a pixel lie in it.
@@ -94,10 +94,10 @@ struct Work<'a> {
 
 /// What one thread needs, band by band.
 #[derive(Default)]
-struct Tools<'a> {
+struct BandScratch<'a> {
     strip: Strip,
     counts: Vec<Vec<i32>>,
-    desk: Desk<'a>,
+    desk: PixelScratch<'a>,
 }
 
 impl<'a> ScanLine<'a> {
@@ -128,7 +128,7 @@ impl<'a> ScanLine<'a> {
         for (source, (_, light)) in appearance.sources.iter().enumerate().filter(|_| solution.is_none()) {
             for point in light.points(samples) {
                 let position = point.at.map_or(LightPosition::Direction(point.towards), LightPosition::Point);
-                lamps.push(Lamp { source, point, position });
+                lamps.push(LampPoint { source, point, position });
             }
         }
         let sky_light = if solution.is_none() { SkyLight::new(&appearance) } else { None };
@@ -136,20 +136,20 @@ impl<'a> ScanLine<'a> {
     }
 
     /// The shadow volumes of a lamp.
-    fn shadows(&self, picture: (&Screen, &Facets<'_>, &Reach<'_>), bands: [usize; 2]) -> Vec<Shadow> {
+    fn shadows(&self, picture: (&Screen, &ScreenTriangles<'_>, &Reach<'_>), bands: [usize; 2]) -> Vec<Shadow> {
         if !self.plan.needs(Stage::Shadows) {
             return Vec::new();
         }
         let groups = self.passing.len();
-        let shadow = |lamp: &Lamp| Shadow::new(&self.casters, lamp.position, picture, bands, groups);
+        let shadow = |lamp: &LampPoint| Shadow::new(&self.casters, lamp.position, picture, bands, groups);
         self.lamps.par_iter().map(shadow).collect()
     }
 
     /// For each lamp, whether points are in its shadow; none where no surface is curved.
-    fn enclosed<'s>(&'s self, shadows: &'s [Shadow]) -> Vec<Option<Enclosed<'s>>> {
+    fn enclosed<'s>(&'s self, shadows: &'s [Shadow]) -> Vec<Option<ShadowVolumes<'s>>> {
         let groups = self.passing.len();
         let of = |Shadow { light, facing, silhouettes, .. }: &'s Shadow| {
-            let new = || Enclosed::new(&self.casters, *light, facing, silhouettes, groups).sorted();
+            let new = || ShadowVolumes::new(&self.casters, *light, facing, silhouettes, groups).sorted();
             self.appearance.curved.then(new)
         };
         shadows.par_iter().map(of).collect()
@@ -157,13 +157,13 @@ impl<'a> ScanLine<'a> {
 
     fn shader<'s>(
         &'s self,
-        eye: &'s Eye,
-        enclosed: &'s [Option<Enclosed<'s>>],
+        eye: &'s CameraRays,
+        enclosed: &'s [Option<ShadowVolumes<'s>>],
         is_parallel: bool,
         matte: bool,
     ) -> Shader<'s> {
         let sources = || self.appearance.sources.iter().map(|(_, source)| source);
-        let (has_surfaces, has_sky) = (sources().any(Source::is_surface), sources().any(Source::is_beyond));
+        let (has_surfaces, has_sky) = (sources().any(LightSource::is_surface), sources().any(LightSource::is_beyond));
         let wavelengths = &self.appearance.wavelengths;
         let background = || {
             let seen = |comb| wavelengths.seen(comb, self.appearance.beyond(&AHEAD, None, comb, |_, _| 1.0));
@@ -190,14 +190,14 @@ impl<'a> ScanLine<'a> {
     fn draw(
         &self,
         (film, picture): (&mut Film, &mut Picture),
-        (view, order): (&View, &Order),
+        (view, order): (&View, &RenderOrder),
         stopped: &(dyn Fn() -> bool + Sync),
         watch: &Watch<'_>,
     ) -> Result<(SpanCounts, bool), RenderError> {
         let prepared = self.appearance.prepared;
         let samples = order.samples.max(1);
         let size = [order.width, order.height];
-        let eye = Eye::new(view, order.width, order.height, &prepared.bounds).ok_or(RenderError::View)?;
+        let eye = CameraRays::new(view, order.width, order.height, &prepared.bounds).ok_or(RenderError::View)?;
         let filter = prepared.settings.light.texture_filter.max(1e-3);
         // Where the samples of a pixel are too many to be looked at together, the groups of them share it.
         let groups = (samples as usize).div_ceil(MOST_LINES) as f64;
@@ -207,12 +207,12 @@ impl<'a> ScanLine<'a> {
         let rows = (MOST_LINES / samples as usize).max(1);
         let lines = rows * samples as usize;
         let bands = (order.height as usize).div_ceil(rows);
-        let facets = Facets::new(prepared, (&self.triangles, &self.passable), &screen, lines, bands);
+        let facets = ScreenTriangles::new(prepared, (&self.triangles, &self.passable), &screen, lines, bands);
         let reach = Reach::new(&prepared.bounds, &screen);
         let shadows = self.shadows((&screen, &facets, &reach), [lines, bands]);
         let enclosed = self.enclosed(&shadows);
         let is_parallel = matches!(screen.viewpoint, Viewpoint::Towards(_));
-        let work = Work {
+        let work = PictureWork {
             shader: self.shader(&eye, &enclosed, is_parallel, order.matte),
             facets: &facets,
             shadows: &shadows,
@@ -232,7 +232,7 @@ impl<'a> ScanLine<'a> {
             .par_chunks_mut(order.width as usize * rows)
             .zip(picture.pixels_mut().par_chunks_mut(order.width as usize * rows))
             .enumerate()
-            .map_init(Tools::default, |tools, (band, (tallies, pixels))| {
+            .map_init(BandScratch::default, |tools, (band, (tallies, pixels))| {
                 if stopped() {
                     return None;
                 }
@@ -240,7 +240,7 @@ impl<'a> ScanLine<'a> {
                 pixels.iter_mut().zip(&*tallies).for_each(|(pixel, tally)| *pixel = tally.pixel());
                 let rows = (tallies.len() / work.width) as u64;
                 let done = done.fetch_add(rows, Ordering::Relaxed) + rows;
-                (watch.progress)(Amount::of(done, order.height.into(), "rows"));
+                (watch.progress)(Progress::of(done, order.height.into(), "rows"));
                 Some(counts)
             })
             .collect();
@@ -249,20 +249,20 @@ impl<'a> ScanLine<'a> {
     }
 }
 
-impl<'a> Work<'a> {
+impl<'a> PictureWork<'a> {
     /// Draws a band of the picture.
-    fn band(&self, scan: &ScanLine<'_>, band: usize, tallies: &mut [Tally], tools: &mut Tools<'a>) -> SpanCounts {
+    fn band(&self, scan: &ScanLine<'_>, band: usize, tallies: &mut [Tally], tools: &mut BandScratch<'a>) -> SpanCounts {
         let samples = self.offsets.len();
         let first = band * self.rows * samples;
         let last = first + tallies.len() / self.width * samples;
         let mut drawn = SpanCounts::default();
-        let Tools { strip, counts, desk } = tools;
+        let BandScratch { strip, counts, desk } = tools;
         desk.clear();
         tallies.fill(Tally::default());
         counts.resize_with(self.shadows.len(), Vec::new);
         for begin in (first..last).step_by(MOST_LINES) {
             let range = begin..(begin + MOST_LINES).min(last);
-            let lines = Lines::new(range.clone(), self.width, self.offsets);
+            let lines = SampleLines::new(range.clone(), self.width, self.offsets);
             strip.spans = 0;
             self.facets.see(band, &lines, strip);
             drawn.surfaces += strip.spans;
@@ -278,7 +278,7 @@ impl<'a> Work<'a> {
                 let tallies = &mut tallies[(row - band * self.rows) * self.width..][..self.width];
                 for (column, tally) in tallies.iter_mut().enumerate() {
                     let first = (from - range.start) * self.width + column;
-                    let pixel = Pixel { at: [column, row], first, stride: self.width, places, mean, part };
+                    let pixel = StripPixel { at: [column, row], first, stride: self.width, places, mean, part };
                     self.shader.shade(&pixel, strip, counts, desk, tally);
                 }
             }
@@ -396,7 +396,7 @@ impl Renderer for ScanLine<'_> {
         left_out
     }
 
-    fn render(&self, view: &View, order: &Order, watch: &Watch<'_>) -> Result<Rendering, RenderError> {
+    fn render(&self, view: &View, order: &RenderOrder, watch: &Watch<'_>) -> Result<Rendering, RenderError> {
         let start = Instant::now();
         let pool = rayon::ThreadPoolBuilder::new().num_threads(order.threads.map_or(0, |n| n.get())).build()?;
         let late = || order.seconds.is_some_and(|seconds| start.elapsed().as_secs_f64() >= seconds);

@@ -1,7 +1,7 @@
 //! Where in the picture a shadow polygon can stand before something: what lies beyond all that is seen need not be drawn.
 
 use super::screen::{Screen, Viewpoint, cut};
-use super::spans::Patch;
+use super::spans::PictureRegion;
 use crate::numeric::bounds::Bounds;
 use glam::{DVec3, DVec4};
 
@@ -39,7 +39,7 @@ impl<'a> Reach<'a> {
     /// no such part.
     ///
     /// - `away`: from each end the direction in which light goes on, of any length.
-    pub(super) fn patch(&self, ends: [DVec3; 2], away: [DVec3; 2]) -> Option<Patch> {
+    pub(super) fn patch(&self, ends: [DVec3; 2], away: [DVec3; 2]) -> Option<PictureRegion> {
         let mut polygon = [DVec4::ZERO; MOST_CORNERS];
         polygon[..4].copy_from_slice(&[
             ends[0].extend(1.0),
@@ -55,7 +55,7 @@ impl<'a> Reach<'a> {
             }
             // Rounding may dent it so that it has too many corners: then it is drawn as a whole.
             let Some(inside) = cut(&polygon[..count], &heights, |a, b, t| a + (b - a) * t) else {
-                return Some(Patch::ALL);
+                return Some(PictureRegion::ALL);
             };
             (polygon, count) = inside;
             if count == 0 {
@@ -66,20 +66,20 @@ impl<'a> Reach<'a> {
     }
 
     /// The part of the picture round a polygon, with a line and a column to spare.
-    fn around(&self, polygon: &[DVec4]) -> Patch {
+    fn around(&self, polygon: &[DVec4]) -> PictureRegion {
         let mut low = [f64::INFINITY; 2];
         let mut high = [f64::NEG_INFINITY; 2];
         for corner in polygon {
             let [x, y, _, w, ..] = self.screen.homogeneous(*corner);
             let at = [x / w, y / w];
             if !(w > 0.0 && at[0].is_finite() && at[1].is_finite()) {
-                return Patch::ALL;
+                return PictureRegion::ALL;
             }
             for i in 0..2 {
                 (low[i], high[i]) = (low[i].min(at[i]), high[i].max(at[i]));
             }
         }
         let range = |i: usize| (low[i] - 1.0).max(0.0) as usize..(high[i] + 2.0).max(0.0) as usize;
-        Patch { columns: range(0), lines: range(1) }
+        PictureRegion { columns: range(0), lines: range(1) }
     }
 }

@@ -18,7 +18,7 @@ pub(super) const MOST_CORNERS: usize = 4 + PLANES;
 
 /// A point in the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Point {
+pub(super) struct ScreenPoint {
     /// Columns from the left border.
     pub(super) x: f64,
     /// Lines of samples: the first is at 0.
@@ -30,7 +30,7 @@ pub(super) struct Point {
 
 /// A point, or a direction, before the division: columns, lines, nearness, divisor, and how far it is behind the near and
 /// before the far plane.
-pub(super) type Corner = [f64; 6];
+pub(super) type ClipCorner = [f64; 6];
 
 /// The eye, or the direction to it where lines of sight are parallel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,27 +41,27 @@ pub(super) enum Viewpoint {
 
 /// A polygon that was clipped.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Outline {
-    corners: [Point; MOST_CORNERS],
+pub(super) struct ClippedPolygon {
+    corners: [ScreenPoint; MOST_CORNERS],
     count: usize,
 }
 
-impl Outline {
+impl ClippedPolygon {
     /// - `corners`: [`MOST_CORNERS`] at the most.
-    pub(super) fn new(corners: &[Point]) -> Outline {
-        let mut outline = Outline { corners: [Point::default(); MOST_CORNERS], count: corners.len().min(MOST_CORNERS) };
+    pub(super) fn new(corners: &[ScreenPoint]) -> ClippedPolygon {
+        let mut outline = ClippedPolygon { corners: [ScreenPoint::default(); MOST_CORNERS], count: corners.len().min(MOST_CORNERS) };
         outline.corners[..outline.count].copy_from_slice(&corners[..outline.count]);
         outline
     }
 
     /// This outline, nearer than everything.
-    pub(super) fn brought_near(mut self) -> Outline {
+    pub(super) fn brought_near(mut self) -> ClippedPolygon {
         self.corners.iter_mut().for_each(|corner| corner.near = f64::MAX);
         self
     }
 
     /// Its corners.
-    pub(super) fn corners(&self) -> &[Point] {
+    pub(super) fn corners(&self) -> &[ScreenPoint] {
         &self.corners[..self.count]
     }
 }
@@ -156,38 +156,38 @@ impl Screen {
     }
 
     /// A point of the scene.
-    pub(super) fn corner(&self, point: DVec3) -> Corner {
+    pub(super) fn corner(&self, point: DVec3) -> ClipCorner {
         let point = (point - self.base).extend(1.0);
         self.rows.map(|row| row.dot(point))
     }
 
     /// What is infinitely far away in a direction.
-    pub(super) fn direction(&self, direction: DVec3) -> Corner {
+    pub(super) fn direction(&self, direction: DVec3) -> ClipCorner {
         self.rows.map(|row| row.truncate().dot(direction))
     }
 
     /// A point, or a direction, whose last number is 0.
-    pub(super) fn homogeneous(&self, point: DVec4) -> Corner {
+    pub(super) fn homogeneous(&self, point: DVec4) -> ClipCorner {
         let point = (point.truncate() - self.base * point.w).extend(point.w);
         self.rows.map(|row| row.dot(point))
     }
 
     /// Beside which planes a corner lies: one bit for each.
-    pub(super) fn outside(&self, corner: &Corner) -> u8 {
+    pub(super) fn outside(&self, corner: &ClipCorner) -> u8 {
         (0..PLANES)
             .filter(|&plane| self.height(plane, corner, f64::MIN_POSITIVE) < 0.0)
             .fold(0, |bits, p| bits | 1 << p)
     }
 
     /// Where a corner is in the picture, if no plane cuts it off.
-    pub(super) fn point(corner: &Corner) -> Point {
-        Point { x: corner[0] / corner[3], y: corner[1] / corner[3], near: corner[2] / corner[3] }
+    pub(super) fn point(corner: &ClipCorner) -> ScreenPoint {
+        ScreenPoint { x: corner[0] / corner[3], y: corner[1] / corner[3], near: corner[2] / corner[3] }
     }
 
     /// Over a plane, 0 and more inside.
     ///
     /// - `least`: the divisor at the eye.
-    fn height(&self, plane: usize, corner: &Corner, least: f64) -> f64 {
+    fn height(&self, plane: usize, corner: &ClipCorner, least: f64) -> f64 {
         let [x, y, _, w, near, far] = *corner;
         let [width, lines] = self.size;
         match plane {
@@ -207,7 +207,7 @@ impl Screen {
     ///
     /// - `depths`: 0 clips at the window and the eye only, 1 also what is before the near or behind the far plane, and -1
     ///   what is behind the near plane.
-    pub(super) fn clip(&self, corners: &[Corner], depths: i32) -> Option<Outline> {
+    pub(super) fn clip(&self, corners: &[ClipCorner], depths: i32) -> Option<ClippedPolygon> {
         let mut polygon = [[0.0; 6]; MOST_CORNERS];
         let mut count = corners.len();
         polygon[..count].copy_from_slice(corners);
@@ -223,13 +223,13 @@ impl Screen {
             if heights[..count].iter().all(|height| *height >= 0.0) {
                 continue;
             }
-            let between = |a: Corner, b: Corner, t: f64| std::array::from_fn(|k| a[k] + (b[k] - a[k]) * t);
+            let between = |a: ClipCorner, b: ClipCorner, t: f64| std::array::from_fn(|k| a[k] + (b[k] - a[k]) * t);
             (polygon, count) = cut(&polygon[..count], &heights, between)?;
             if count < 3 {
                 return None;
             }
         }
-        let mut outline = Outline { corners: [Point::default(); MOST_CORNERS], count };
+        let mut outline = ClippedPolygon { corners: [ScreenPoint::default(); MOST_CORNERS], count };
         for (point, corner) in outline.corners.iter_mut().zip(&polygon[..count]) {
             *point = Screen::point(corner);
             if !(point.x.is_finite() && point.y.is_finite() && point.near.is_finite()) {

@@ -1,17 +1,17 @@
 //! Light that comes from what samples see, once for each pixel and surface.
 
-use super::lamp::Lamp;
-use super::shader::{Desk, Line, Lit, Shader};
-use super::surfaces::{Found, Part, Pixel, Surface};
+use super::lamp::LampPoint;
+use super::shader::{PixelScratch, SampleSight, LampContribution, Shader};
+use super::surfaces::{PixelInteraction, SampleFragment, StripPixel, PixelSurface};
 use super::visibility::{NONE, Strip};
 use crate::color::Channels;
-use crate::illumination::optics::{Interior, Side, Sighting};
-use crate::illumination::texture::Place;
+use crate::illumination::optics::{InteriorMedium, InterfaceIndices, ShadingContext};
+use crate::illumination::texture::TextureFootprint;
 use crate::numeric::ray::Ray;
 use crate::numeric::triangle::weights;
-use crate::render::indirect::Part as Light;
-use crate::render::tally::{Sample, Tally};
-use crate::render::world::{AHEAD, Element, Sight, diffuse};
+use crate::render::indirect::IrradiancePart as Light;
+use crate::render::tally::{PixelSample, Tally};
+use crate::render::world::{AHEAD, SurfaceElement, BoundedRay, diffuse};
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
 
@@ -21,10 +21,10 @@ impl<'a> Shader<'a> {
     /// - `counts`: for each lamp, as [`super::shadow::Shadow::count`] gives them; empty without shadows.
     pub(super) fn shade(
         &self,
-        pixel: &Pixel<'_>,
+        pixel: &StripPixel<'_>,
         strip: &Strip,
         counts: &[Vec<i32>],
-        desk: &mut Desk<'a>,
+        desk: &mut PixelScratch<'a>,
         tally: &mut Tally,
     ) {
         if let Some(sample) = self.single(pixel, strip, counts, &mut desk.last) {
@@ -32,7 +32,7 @@ impl<'a> Shader<'a> {
         }
         self.gather(pixel, strip, desk);
         self.look(pixel, (strip, counts), desk);
-        let Desk { surfaces, parts, founds, mixtures, lit, samples, .. } = desk;
+        let PixelScratch { surfaces, parts, founds, mixtures, lit, samples, .. } = desk;
         for comb in 0..self.appearance.wavelengths.combs() {
             for surface in surfaces.iter_mut() {
                 let Some(index) = surface.found else { continue };
@@ -57,8 +57,8 @@ impl<'a> Shader<'a> {
     }
 
     /// Finds what the samples of a pixel see, by the light of which lamps, and which of them get the same light.
-    fn look(&self, pixel: &Pixel<'_>, (strip, counts): (&Strip, &[Vec<i32>]), desk: &mut Desk<'a>) {
-        let Desk { surfaces, parts, founds, mixtures, lit, samples, last } = desk;
+    fn look(&self, pixel: &StripPixel<'_>, (strip, counts): (&Strip, &[Vec<i32>]), desk: &mut PixelScratch<'a>) {
+        let PixelScratch { surfaces, parts, founds, mixtures, lit, samples, last } = desk;
         founds.clear();
         mixtures.clear();
         lit.clear();
@@ -69,7 +69,7 @@ impl<'a> Shader<'a> {
             if let Some(found) = surface.found.map(|found| &founds[found]) {
                 mixtures.push(found.optics.is_textured().then(|| found.optics.mix(&self.place(found))));
                 let is_dark =
-                    |lit: &Lit| own().all(|part| self.is_shaded(lit, counts, (part.fragment, strip), found.triangle));
+                    |lit: &LampContribution| own().all(|part| self.is_shaded(lit, counts, (part.fragment, strip), found.triangle));
                 lit.extend(self.lights(found).filter(|lit| !is_dark(lit)));
             }
             surface.lit = begin..lit.len();
@@ -96,10 +96,10 @@ impl<'a> Shader<'a> {
     }
 
     /// Adds up what was found sample by sample.
-    fn add_samples(&self, pixel: &Pixel<'_>, desk: &Desk<'a>, tally: &mut Tally) {
-        let Desk { surfaces, parts, founds, samples, .. } = desk;
+    fn add_samples(&self, pixel: &StripPixel<'_>, desk: &PixelScratch<'a>, tally: &mut Tally) {
+        let PixelScratch { surfaces, parts, founds, samples, .. } = desk;
         let scale = (self.appearance.wavelengths.combs() as f64).recip();
-        let mut last: Option<(Sample, u32)> = None;
+        let mut last: Option<(PixelSample, u32)> = None;
         for i in 0..pixel.count() {
             if i > 0
                 && samples[i].like == samples[i - 1].like
@@ -115,7 +115,7 @@ impl<'a> Shader<'a> {
             let covered = first.is_some() || glow.is_some();
             let light = samples[samples[i].like].light * scale;
             let radiance = if self.matte && !covered { DVec3::ZERO } else { light };
-            let sample = Sample { radiance, covered, first, ..Sample::default() };
+            let sample = PixelSample { radiance, covered, first, ..PixelSample::default() };
             if let Some((before, count)) = last.replace((sample, 1)) {
                 tally.add_alike(&before, count);
             }
@@ -128,11 +128,11 @@ impl<'a> Shader<'a> {
     /// What all samples of a pixel get, if they see one opaque triangle, or nothing, by the light of the same lamps.
     fn single(
         &self,
-        pixel: &Pixel<'_>,
+        pixel: &StripPixel<'_>,
         strip: &Strip,
         counts: &[Vec<i32>],
-        last: &mut Option<Found<'a>>,
-    ) -> Option<Sample> {
+        last: &mut Option<PixelInteraction<'a>>,
+    ) -> Option<PixelSample> {
         let triangle = strip.seen[pixel.first];
         let alike = |sample: usize| {
             strip.seen[sample] == triangle && counts.iter().all(|counts| counts[sample] == counts[pixel.first])
@@ -142,7 +142,7 @@ impl<'a> Shader<'a> {
         }
         if triangle == NONE {
             let radiance = if self.matte { DVec3::ZERO } else { self.background? };
-            return Some(Sample { radiance, ..Sample::default() });
+            return Some(PixelSample { radiance, ..PixelSample::default() });
         }
         let sight = self.eye.ray(pixel.middle(), [0.5; 2])?;
         if !last.as_mut().is_some_and(|found| found.meet(triangle, &sight.ray)) {
@@ -162,19 +162,19 @@ impl<'a> Shader<'a> {
         }
         let [mean, depth] = nearness.map(|sum| sum * pixel.part);
         let distance = self.distance(found.distance, self.depth(mean), depth);
-        Some(Sample {
+        Some(PixelSample {
             radiance,
             covered: true,
             first: Some((distance, found.element.normal, found.seen)),
-            ..Sample::default()
+            ..PixelSample::default()
         })
     }
 
     /// Whether two samples of a pixel, of which none glows, surely get the same light: they see the same surfaces in as many
     /// volumes of shadow.
-    fn is_alike(&self, [a, b]: [&[Part]; 2], strip: &Strip, counts: &[Vec<i32>]) -> bool {
+    fn is_alike(&self, [a, b]: [&[SampleFragment]; 2], strip: &Strip, counts: &[Vec<i32>]) -> bool {
         let fragments = strip.fragments();
-        let sees_sky = |parts: &[Part]| parts.last().is_none_or(|part| part.fragment >= strip.near.len());
+        let sees_sky = |parts: &[SampleFragment]| parts.last().is_none_or(|part| part.fragment >= strip.near.len());
         let volumes = |counts: &Vec<i32>, a: usize, b: usize| {
             (0..self.passing.len()).all(|group| counts[group * fragments + a] == counts[group * fragments + b])
         };
@@ -188,17 +188,17 @@ impl<'a> Shader<'a> {
     /// The light that comes to one sample.
     fn sample(
         &self,
-        (surfaces, founds, lit): (&[Surface], &[Found<'a>], &[Lit]),
-        (samples, parts): (&[Line], &[Part]),
+        (surfaces, founds, lit): (&[PixelSurface], &[PixelInteraction<'a>], &[LampContribution]),
+        (samples, parts): (&[SampleSight], &[SampleFragment]),
         (strip, counts): (&Strip, &[Vec<i32>]),
-        (pixel, i): (&Pixel<'_>, usize),
+        (pixel, i): (&StripPixel<'_>, usize),
         comb: usize,
     ) -> Channels {
         let mut sum = Channels::ZERO;
         let mut passed = Channels::ONE;
         // What the line of sight is in, and from where on.
-        let mut inside: Option<(&Interior, f64)> = None;
-        let Line { glow, .. } = samples[i];
+        let mut inside: Option<(&InteriorMedium, f64)> = None;
+        let SampleSight { glow, .. } = samples[i];
         let at = pixel.place(i);
         let shines = || self.glow(at, comb).map_or(Channels::ZERO, |(_, radiance)| radiance);
         let parts = seen_by(samples, parts, i);
@@ -232,14 +232,14 @@ impl<'a> Shader<'a> {
         let ray = self
             .eye
             .ray(at, [0.5; 2])
-            .map_or(AHEAD, |Sight { ray, .. }| Ray { direction: ray.direction.normalize(), ..ray });
+            .map_or(AHEAD, |BoundedRay { ray, .. }| Ray { direction: ray.direction.normalize(), ..ray });
         sum + passed * self.appearance.beyond(&ray, None, comb, |_, _| 1.0)
     }
 
     /// In how many volumes of a group of casters a sample is.
     fn volumes(
         &self,
-        lit: &Lit,
+        lit: &LampContribution,
         counts: &[i32],
         (fragment, strip): (usize, &Strip),
         (triangle, group): (u32, usize),
@@ -249,13 +249,13 @@ impl<'a> Shader<'a> {
     }
 
     /// Whether no light of a lamp comes to a sample.
-    fn is_shaded(&self, lit: &Lit, counts: &[Vec<i32>], sample: (usize, &Strip), triangle: u32) -> bool {
+    fn is_shaded(&self, lit: &LampContribution, counts: &[Vec<i32>], sample: (usize, &Strip), triangle: u32) -> bool {
         let Some(counts) = counts.get(lit.lamp) else { return false };
         lit.known.unwrap_or_else(|| self.volumes(lit, counts, sample, (triangle, 0)) > 0)
     }
 
     /// The part of a lamp's light that comes to a sample.
-    fn arrived(&self, lit: &Lit, counts: &[Vec<i32>], sample: (usize, &Strip), triangle: u32, comb: usize) -> Channels {
+    fn arrived(&self, lit: &LampContribution, counts: &[Vec<i32>], sample: (usize, &Strip), triangle: u32, comb: usize) -> Channels {
         if self.is_shaded(lit, counts, sample, triangle) {
             return Channels::ZERO;
         }
@@ -272,7 +272,7 @@ impl<'a> Shader<'a> {
     /// The nearest light that is a surface and no object in a line of sight: where, in lengths of its direction, and its
     /// radiance.
     fn glow(&self, at: [f64; 2], comb: usize) -> Option<(f64, Channels)> {
-        let Sight { ray, t_min, t_max, .. } = self.eye.ray(at, [0.5; 2])?;
+        let BoundedRay { ray, t_min, t_max, .. } = self.eye.ray(at, [0.5; 2])?;
         self.appearance.glow(&ray, t_min, t_max, comb).map(|(_, glow)| (glow.t, glow.radiance))
     }
 
@@ -281,7 +281,7 @@ impl<'a> Shader<'a> {
     fn glow_behind<'p>(
         &self,
         at: [f64; 2],
-        parts: impl Iterator<Item = (&'p Part, Option<&'p Found<'a>>)>,
+        parts: impl Iterator<Item = (&'p SampleFragment, Option<&'p PixelInteraction<'a>>)>,
         strip: &Strip,
     ) -> Option<usize>
     where
@@ -293,7 +293,7 @@ impl<'a> Shader<'a> {
         for (part, found) in parts {
             // What was found once for the pixel is met elsewhere by each sample: a lamp may be close before it.
             let met = found.map_or(f64::INFINITY, |found| {
-                let Element { position, face, .. } = found.element;
+                let SurfaceElement { position, face, .. } = found.element;
                 let met = (position - ray.origin).dot(face) / ray.direction.dot(face);
                 if met > 0.0 { met } else { found.distance / ray.direction.length() }
             });
@@ -309,25 +309,25 @@ impl<'a> Shader<'a> {
     }
 
     /// Where an element is in the patterns of its material.
-    fn place(&self, found: &Found<'_>) -> Place {
+    fn place(&self, found: &PixelInteraction<'_>) -> TextureFootprint {
         self.appearance.prepared.place(found.triangle, found.weights, found.sides)
     }
 
     /// How an element is looked at.
     ///
     /// - `painted`: what the patterns of its material give.
-    fn sighting<'p>(&self, found: &Found<'_>, comb: usize, painted: &'p [Channels]) -> Sighting<'p> {
+    fn sighting<'p>(&self, found: &PixelInteraction<'_>, comb: usize, painted: &'p [Channels]) -> ShadingContext<'p> {
         let index = found.optics.interior.as_ref().map_or(Channels::ONE, |interior| interior.index.of(comb));
         let side = match found.element.outside {
-            true => Side { before: Channels::ONE, behind: index, inside: false },
-            false => Side { before: index, behind: Channels::ONE, inside: found.optics.interior.is_some() },
+            true => InterfaceIndices { before: Channels::ONE, behind: index, inside: false },
+            false => InterfaceIndices { before: index, behind: Channels::ONE, inside: found.optics.interior.is_some() },
         };
-        Sighting { view: found.frame.local(-found.towards), comb, side, lane: 0, painted }
+        ShadingContext { view: found.frame.local(-found.towards), comb, side, lane: 0, painted }
     }
 
     /// What an element sends to the eye without lamps.
-    fn own(&self, found: &Found<'_>, sighting: &Sighting<'_>) -> Channels {
-        let Found { element, optics, .. } = found;
+    fn own(&self, found: &PixelInteraction<'_>, sighting: &ShadingContext<'_>) -> Channels {
+        let PixelInteraction { element, optics, .. } = found;
         let mut own = optics.emission.as_ref().map_or(Channels::ZERO, |emission| emission.of(sighting.comb));
         if let Some(solution) = self.solution {
             // Elements of flat triangles are moved from pixel to pixel without their weights.
@@ -349,14 +349,14 @@ impl<'a> Shader<'a> {
     }
 
     /// The lamps that an element answers, and how their shadows are counted; what they add is not yet known.
-    fn lights(&self, found: &Found<'a>) -> impl Iterator<Item = Lit> {
+    fn lights(&self, found: &PixelInteraction<'a>) -> impl Iterator<Item = LampContribution> {
         let answers = self.solution.is_none() && found.optics.answers_lights();
         let lamps = if answers { self.lamps } else { &[] };
         lamps.iter().enumerate().map(|(number, lamp)| self.between(number, lamp, found))
     }
 
     /// What a lamp adds where nothing stands between.
-    fn adds(&self, lit: &Lit, Found { element, frame, optics, .. }: &Found<'_>, sighting: &Sighting<'_>) -> Channels {
+    fn adds(&self, lit: &LampContribution, PixelInteraction { element, frame, optics, .. }: &PixelInteraction<'_>, sighting: &ShadingContext<'_>) -> Channels {
         let lamp = &self.lamps[lit.lamp];
         let source = &self.appearance.sources[lamp.source].1;
         let Some(beam) = source.beam_from(&lamp.point, element.position, sighting.comb) else { return Channels::ZERO };
@@ -366,10 +366,10 @@ impl<'a> Shader<'a> {
     }
 
     /// How shadows are counted that fall on an element by the light of a lamp.
-    fn between(&self, number: usize, lamp: &Lamp, Found { element, curved, .. }: &Found<'a>) -> Lit {
+    fn between(&self, number: usize, lamp: &LampPoint, PixelInteraction { element, curved, .. }: &PixelInteraction<'a>) -> LampContribution {
         let towards = lamp.position.from(element.position);
         let is_before = towards.dot(element.face) > 0.0;
-        let mut lit = Lit { lamp: number, adds: Channels::ZERO, turned: 0, known: None };
+        let mut lit = LampContribution { lamp: number, adds: Channels::ZERO, turned: 0, known: None };
         if towards.dot(element.normal) < 0.0 {
             // The light arrives behind the triangle, which is one more in between, or one less.
             lit.turned = if is_before { 1 } else { -1 };
@@ -383,7 +383,7 @@ impl<'a> Shader<'a> {
 }
 
 /// The part of light that goes straight through an element.
-fn through(found: &Found<'_>, sighting: &Sighting<'_>) -> Channels {
+fn through(found: &PixelInteraction<'_>, sighting: &ShadingContext<'_>) -> Channels {
     match &found.optics.interior {
         Some(_) => Channels::ONE - found.optics.surrounded(&from_outside(found, sighting)),
         None => found.optics.straight(sighting).map_or(Channels::ZERO, |onward| onward.weight),
@@ -391,16 +391,16 @@ fn through(found: &Found<'_>, sighting: &Sighting<'_>) -> Channels {
 }
 
 /// As an element of a transparent body is looked at from outside: what is not bent is never reflected totally.
-fn from_outside<'p>(found: &Found<'_>, sighting: &Sighting<'p>) -> Sighting<'p> {
+fn from_outside<'p>(found: &PixelInteraction<'_>, sighting: &ShadingContext<'p>) -> ShadingContext<'p> {
     match (found.element.outside, sighting.side) {
         (true, _) => *sighting,
-        (false, Side { before, behind, .. }) => {
-            Sighting { side: Side { before: behind, behind: before, inside: false }, ..*sighting }
+        (false, InterfaceIndices { before, behind, .. }) => {
+            ShadingContext { side: InterfaceIndices { before: behind, behind: before, inside: false }, ..*sighting }
         }
     }
 }
 
 /// The parts of a sample of a pixel, from the nearest.
-fn seen_by<'p>(samples: &[Line], parts: &'p [Part], i: usize) -> &'p [Part] {
+fn seen_by<'p>(samples: &[SampleSight], parts: &'p [SampleFragment], i: usize) -> &'p [SampleFragment] {
     &parts[samples[i].begin..samples.get(i + 1).map_or(parts.len(), |next| next.begin)]
 }

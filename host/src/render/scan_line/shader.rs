@@ -1,19 +1,19 @@
 //! What lights the samples of a picture, and what a thread keeps from pixel to pixel.
 
 use super::casters::Casters;
-use super::enclosed::Enclosed;
-use super::lamp::Lamp;
+use super::enclosed::ShadowVolumes;
+use super::lamp::LampPoint;
 use super::sky_light::SkyLight;
-use super::surfaces::{Found, Part, Surface};
+use super::surfaces::{PixelInteraction, SampleFragment, PixelSurface};
 use crate::color::Channels;
-use crate::illumination::optics::Mixture;
+use crate::illumination::optics::TextureMixture;
 use crate::render::indirect::IndirectLight;
-use crate::render::world::{Appearance, Eye};
+use crate::render::world::{Appearance, CameraRays};
 use glam::DVec3;
 
 /// What a lamp adds.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Lit {
+pub(super) struct LampContribution {
     pub(super) lamp: usize,
     /// At the wavelengths that are looked at.
     pub(super) adds: Channels,
@@ -25,7 +25,7 @@ pub(super) struct Lit {
 
 /// The line of sight of a sample.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Line {
+pub(super) struct SampleSight {
     /// Where its parts begin.
     pub(super) begin: usize,
     /// The first sample of the pixel that gets the same light.
@@ -40,16 +40,16 @@ pub(super) struct Line {
 pub(super) struct Shader<'a> {
     pub(super) appearance: &'a Appearance<'a>,
     pub(super) casters: &'a Casters<'a>,
-    pub(super) lamps: &'a [Lamp],
+    pub(super) lamps: &'a [LampPoint],
     /// The light of skies, if there are some.
     pub(super) sky_light: Option<&'a SkyLight>,
     /// The light of all surfaces, if lamps are not asked.
     pub(super) solution: Option<&'a dyn IndirectLight>,
     /// For each lamp with shadows.
-    pub(super) enclosed: &'a [Option<Enclosed<'a>>],
+    pub(super) enclosed: &'a [Option<ShadowVolumes<'a>>],
     /// What each group of casters lets through, comb by comb.
     pub(super) passing: &'a [Vec<Channels>],
-    pub(super) eye: &'a Eye,
+    pub(super) eye: &'a CameraRays,
     /// Whether every sample sees bands of light through nothing passable, and no light that is a surface.
     pub(super) is_plain: bool,
     pub(super) matte: bool,
@@ -64,21 +64,21 @@ pub(super) struct Shader<'a> {
 
 /// What a thread keeps from pixel to pixel.
 #[derive(Default)]
-pub(super) struct Desk<'a> {
-    pub(super) surfaces: Vec<Surface>,
-    pub(super) parts: Vec<Part>,
+pub(super) struct PixelScratch<'a> {
+    pub(super) surfaces: Vec<PixelSurface>,
+    pub(super) parts: Vec<SampleFragment>,
     /// Elements of the surfaces, and what their patterns are mixed of.
-    pub(super) founds: Vec<Found<'a>>,
-    pub(super) mixtures: Vec<Option<Mixture<'a>>>,
+    pub(super) founds: Vec<PixelInteraction<'a>>,
+    pub(super) mixtures: Vec<Option<TextureMixture<'a>>>,
     /// What lamps add, surface by surface.
-    pub(super) lit: Vec<Lit>,
+    pub(super) lit: Vec<LampContribution>,
     /// For each sample of the pixel.
-    pub(super) samples: Vec<Line>,
+    pub(super) samples: Vec<SampleSight>,
     /// The last element: its neighbours may differ in their place only.
-    pub(super) last: Option<Found<'a>>,
+    pub(super) last: Option<PixelInteraction<'a>>,
 }
 
-impl Desk<'_> {
+impl PixelScratch<'_> {
     /// Forgets the last pixel, so that no picture depends on which thread made which part of it.
     pub(super) fn clear(&mut self) {
         self.last = None;

@@ -9,26 +9,26 @@
 //! Crow 1977, shadow algorithms for computer graphics; the multiplicity of edges after Bergeron 1986.
 
 use super::casters::{Casters, Silhouette};
-use super::enclosed::Enclosed;
+use super::enclosed::ShadowVolumes;
 use super::lamp::LightPosition;
 use super::reach::Reach;
-use super::screen::{Corner, MOST_CORNERS, Outline, Point, Screen};
-use super::spans::{Lines, Nearness, Patch};
-use super::visibility::{Bands, Facets, Strip, lines_of};
+use super::screen::{ClipCorner, MOST_CORNERS, ClippedPolygon, ScreenPoint, Screen};
+use super::spans::{SampleLines, Nearness, PictureRegion};
+use super::visibility::{BandLists, ScreenTriangles, Strip, lines_of};
 use glam::DVec3;
 use rayon::prelude::*;
 
 /// A shadow polygon.
-struct Shade {
-    outline: Outline,
+struct ShadowPolygon {
+    outline: ClippedPolygon,
     /// Where it may stand before something.
-    within: Patch,
+    within: PictureRegion,
     /// How many volumes are entered where it is seen to turn clockwise.
     weight: i32,
     group: u8,
 }
 
-impl Shade {
+impl ShadowPolygon {
     /// Its first and last line.
     fn lines(&self) -> [f64; 2] {
         let [first, last] = lines_of(self.outline.corners());
@@ -38,8 +38,8 @@ impl Shade {
 
 /// The shadow volumes of one light in the picture.
 pub(super) struct Shadow {
-    polygons: Vec<Shade>,
-    bands: Bands,
+    polygons: Vec<ShadowPolygon>,
+    bands: BandLists,
     /// In how many volumes of each group the eye is.
     start: Vec<i32>,
     pub(super) facing: Vec<i8>,
@@ -52,7 +52,7 @@ impl Shadow {
     pub(super) fn new(
         casters: &Casters<'_>,
         light: LightPosition,
-        (screen, facets, reach): (&Screen, &Facets<'_>, &Reach<'_>),
+        (screen, facets, reach): (&Screen, &ScreenTriangles<'_>, &Reach<'_>),
         [lines, bands]: [usize; 2],
         groups: usize,
     ) -> Shadow {
@@ -60,10 +60,10 @@ impl Shadow {
         let silhouettes = casters.silhouettes(&facing);
         let start = casters.start(&light, screen.viewpoint);
         let start = start.map_or(vec![0; groups], |start| {
-            Enclosed::new(casters, light, &facing, &silhouettes, groups).counts(start)
+            ShadowVolumes::new(casters, light, &facing, &silhouettes, groups).counts(start)
         });
         let behind = |silhouette: &Silhouette| side(casters, &light, (screen, facets, reach), silhouette);
-        let mut polygons: Vec<Shade> = silhouettes.par_iter().with_min_len(1 << 8).filter_map(behind).collect();
+        let mut polygons: Vec<ShadowPolygon> = silhouettes.par_iter().with_min_len(1 << 8).filter_map(behind).collect();
         if screen.clips_near() {
             for &triangle in casters.triangles.iter().filter(|triangle| facing[**triangle as usize] != 0) {
                 let corners = casters.prepared.corners(triangle).map(|corner| screen.corner(corner));
@@ -73,12 +73,12 @@ impl Shadow {
                     let weight = -i32::from(facing[triangle as usize]) * screen.handed();
                     // Nearer than everything.
                     let outline = outline.brought_near();
-                    polygons.push(Shade { outline, within: Patch::ALL, weight, group: casters.group(triangle) });
+                    polygons.push(ShadowPolygon { outline, within: PictureRegion::ALL, weight, group: casters.group(triangle) });
                 }
             }
         }
-        let ranges: Vec<[f64; 2]> = polygons.iter().map(Shade::lines).collect();
-        let bands = Bands::new(&ranges, lines, bands);
+        let ranges: Vec<[f64; 2]> = polygons.iter().map(ShadowPolygon::lines).collect();
+        let bands = BandLists::new(&ranges, lines, bands);
         Shadow { polygons, bands, start, facing, silhouettes, light }
     }
 
@@ -89,7 +89,7 @@ impl Shadow {
         &self,
         (casters, handed): (&Casters<'_>, i32),
         band: usize,
-        lines: &Lines,
+        lines: &SampleLines,
         strip: &Strip,
         counts: &mut Vec<i32>,
     ) -> u64 {
@@ -101,14 +101,14 @@ impl Shadow {
         let samples = strip.near.len();
         let mut spans = 0;
         for &number in self.bands.of(band) {
-            let Shade { outline, within, weight, group } = &self.polygons[number as usize];
+            let ShadowPolygon { outline, within, weight, group } = &self.polygons[number as usize];
             let Some(nearness) = Nearness::new(outline.corners()) else { continue };
             let [low, high] = columns_of(outline.corners());
             let columns = within.columns.start.max(low)..within.columns.end.min(high).min(lines.width);
             let rows =
                 [lines.range.start.max(within.lines.start), lines.range.end.min(within.lines.end)].map(|y| y as f64);
             let columns = strip.before(columns, |from, to| nearness.most([from, to], rows));
-            let within = Patch { columns, lines: within.lines.clone() };
+            let within = PictureRegion { columns, lines: within.lines.clone() };
             let counts = &mut counts[usize::from(*group) * fragments..][..fragments];
             lines.spans(outline.corners(), &within, |span| {
                 spans += 1;
@@ -165,8 +165,8 @@ impl Shadow {
 }
 
 /// The columns of a polygon, the last one excluded.
-fn columns_of(corners: &[Point]) -> [usize; 2] {
-    let range = |[low, high]: [f64; 2], p: &Point| [low.min(p.x), high.max(p.x)];
+fn columns_of(corners: &[ScreenPoint]) -> [usize; 2] {
+    let range = |[low, high]: [f64; 2], p: &ScreenPoint| [low.min(p.x), high.max(p.x)];
     let [low, high] = corners.iter().fold([f64::INFINITY, f64::NEG_INFINITY], range);
     [low.max(0.0) as usize, (high.max(0.0) + 1.0) as usize]
 }
@@ -175,13 +175,13 @@ fn columns_of(corners: &[Point]) -> [usize; 2] {
 fn side(
     casters: &Casters<'_>,
     light: &LightPosition,
-    (screen, facets, reach): (&Screen, &Facets<'_>, &Reach<'_>),
+    (screen, facets, reach): (&Screen, &ScreenTriangles<'_>, &Reach<'_>),
     silhouette: &Silhouette,
-) -> Option<Shade> {
+) -> Option<ShadowPolygon> {
     let ends = silhouette.ends.map(|i| casters.prepared.vertices[i as usize]);
     let away = |end: DVec3| screen.direction(-light.from(end));
     let [a, b] = ends.map(|end| screen.corner(end));
-    let mut corners: [Corner; 4] = [a, b, away(ends[1]), away(ends[0])];
+    let mut corners: [ClipCorner; 4] = [a, b, away(ends[1]), away(ends[0])];
     let count = if matches!(light, LightPosition::Direction(_)) { 3 } else { 4 };
     corners[3] = if count == 3 { corners[2] } else { corners[3] };
     let corners = &corners[..count];
@@ -192,17 +192,17 @@ fn side(
     }
     let outline = if any == 0 {
         // The places of the vertices are those of the triangles, bit by bit.
-        let mut points = [Point::default(); MOST_CORNERS];
+        let mut points = [ScreenPoint::default(); MOST_CORNERS];
         points[0] = facets.point(silhouette.ends[0]);
         points[1] = facets.point(silhouette.ends[1]);
         points[2] = Screen::point(&corners[2]);
         points[count - 1] = Screen::point(&corners[count - 1]);
-        Outline::new(&points[..count])
+        ClippedPolygon::new(&points[..count])
     } else {
         screen.clip(corners, 0)?
     };
     let within = reach.patch(ends, ends.map(|end| -light.from(end)))?;
-    Some(Shade { outline, within, weight: silhouette.weight * screen.handed(), group: silhouette.group })
+    Some(ShadowPolygon { outline, within, weight: silhouette.weight * screen.handed(), group: silhouette.group })
 }
 
 /// The planes that clip shadow polygons: the window and the eye.

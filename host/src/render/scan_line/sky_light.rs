@@ -1,8 +1,8 @@
 //! The light of skies on what is drawn without rays: from all around, and without shadows.
 
 use crate::color::Channels;
-use crate::illumination::light::Source;
-use crate::numeric::sequence::Sequence;
+use crate::illumination::light::LightSource;
+use crate::numeric::sequence::SobolSequence;
 use crate::render::world::Appearance;
 use glam::DVec3;
 
@@ -27,9 +27,9 @@ pub(super) struct SkyLight {
 impl SkyLight {
     /// That of the lights that are made ready; none without a sky.
     pub(super) fn new(appearance: &Appearance<'_>) -> Option<SkyLight> {
-        let skies: Vec<&Source> =
+        let skies: Vec<&LightSource> =
             appearance.sources.iter().map(|(_, source)| source).filter(|source| source.is_sky()).collect();
-        let sequence = Sequence::new(0, 0);
+        let sequence = SobolSequence::new(0, 0);
         let of_comb = |comb: usize| {
             let mut sums = [Channels::ZERO; 9];
             for sky in &skies {

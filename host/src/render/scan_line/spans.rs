@@ -1,6 +1,6 @@
 //! Polygons to spans: which samples of a line a polygon covers, and how near it is there.
 
-use super::screen::Point;
+use super::screen::ScreenPoint;
 use std::ops::Range;
 
 /// Most lines of samples that are drawn together.
@@ -41,7 +41,7 @@ pub(super) struct Span {
 
 /// Lines that are drawn together.
 #[derive(Clone, Debug)]
-pub(super) struct Lines {
+pub(super) struct SampleLines {
     /// Which, [`MOST_LINES`] at the most.
     pub(super) range: Range<usize>,
     /// Columns.
@@ -52,22 +52,22 @@ pub(super) struct Lines {
 
 /// The part of the picture in which a polygon is wanted: columns, and lines.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Patch {
+pub(super) struct PictureRegion {
     pub(super) columns: Range<usize>,
     pub(super) lines: Range<usize>,
 }
 
-impl Patch {
+impl PictureRegion {
     /// All of it.
-    pub(super) const ALL: Patch = Patch { columns: 0..usize::MAX, lines: 0..usize::MAX };
+    pub(super) const ALL: PictureRegion = PictureRegion { columns: 0..usize::MAX, lines: 0..usize::MAX };
 }
 
-impl Lines {
+impl SampleLines {
     /// - `range`: which lines; `width`: how many columns. `offsets`: where samples lie in their pixels, for each line of a
     ///   row of pixels.
-    pub(super) fn new(range: Range<usize>, width: usize, offsets: &[f64]) -> Lines {
+    pub(super) fn new(range: Range<usize>, width: usize, offsets: &[f64]) -> SampleLines {
         let offset = |i: usize| offsets[(range.start + i) % offsets.len()];
-        Lines { offsets: std::array::from_fn(offset), range, width }
+        SampleLines { offsets: std::array::from_fn(offset), range, width }
     }
 
     /// Where the samples of a line lie in their pixels.
@@ -80,7 +80,7 @@ impl Lines {
     ///
     /// Sides that two polygons share are crossed at the same place bit by bit: no sample between them is lost or found twice.
     #[inline]
-    pub(super) fn spans(&self, corners: &[Point], within: &Patch, mut give: impl FnMut(Span)) {
+    pub(super) fn spans(&self, corners: &[ScreenPoint], within: &PictureRegion, mut give: impl FnMut(Span)) {
         if rises_once(corners) {
             self.monotone(corners, within, &mut give);
         } else {
@@ -92,7 +92,7 @@ impl Lines {
     }
 
     #[inline]
-    fn monotone(&self, corners: &[Point], within: &Patch, give: &mut impl FnMut(Span)) {
+    fn monotone(&self, corners: &[ScreenPoint], within: &PictureRegion, give: &mut impl FnMut(Span)) {
         let range = self.range.start.max(within.lines.start)..self.range.end.min(within.lines.end);
         let columns = within.columns.start.min(self.width)..within.columns.end.min(self.width);
         if columns.is_empty() {
@@ -130,7 +130,7 @@ impl Lines {
 
 /// Whether the corners go down and up once only.
 #[inline]
-fn rises_once(corners: &[Point]) -> bool {
+fn rises_once(corners: &[ScreenPoint]) -> bool {
     if corners.len() <= 3 {
         return true;
     }
@@ -155,7 +155,7 @@ fn up(value: f64) -> usize {
 /// Nearness over the picture: linear, and never beyond that of the corners.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Nearness {
-    at: Point,
+    at: ScreenPoint,
     by_column: f64,
     by_line: f64,
     least: f64,
@@ -165,9 +165,9 @@ pub(super) struct Nearness {
 impl Nearness {
     /// Through the corners of a polygon in a plane; none if it is seen edge on.
     #[inline]
-    pub(super) fn new(corners: &[Point]) -> Option<Nearness> {
+    pub(super) fn new(corners: &[ScreenPoint]) -> Option<Nearness> {
         let at = corners[0];
-        let apart = |p: &Point| (p.x - at.x, p.y - at.y, p.near - at.near);
+        let apart = |p: &ScreenPoint| (p.x - at.x, p.y - at.y, p.near - at.near);
         // The fan of the whole polygon: thin ends count little.
         let (mut area, mut by_column, mut by_line) = (0.0, 0.0, 0.0);
         let (mut least, mut most) = (at.near, at.near);

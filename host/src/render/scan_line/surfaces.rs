@@ -1,10 +1,10 @@
 //! Surfaces in a pixel: which samples see them, and the element in the middle of what they see.
 
 use crate::color::Channels;
-use crate::illumination::distribution::Frame;
-use crate::illumination::optics::Optics;
+use crate::illumination::distribution::ShadingFrame;
+use crate::illumination::optics::Bsdf;
 use crate::numeric::ray::Ray;
-use crate::render::world::Element;
+use crate::render::world::SurfaceElement;
 use glam::DVec3;
 use std::ops::Range;
 
@@ -16,7 +16,7 @@ const FLAT: f64 = 1.0 - 1e-12;
 const BESIDE: f64 = 0.01;
 
 /// A pixel of a strip.
-pub(super) struct Pixel<'p> {
+pub(super) struct StripPixel<'p> {
     /// Column, row.
     pub(super) at: [usize; 2],
     /// Its first sample in the strip, and how far the next are apart.
@@ -29,7 +29,7 @@ pub(super) struct Pixel<'p> {
     pub(super) part: f64,
 }
 
-impl Pixel<'_> {
+impl StripPixel<'_> {
     /// How many samples it has.
     pub(super) fn count(&self) -> usize {
         self.places.len()
@@ -53,7 +53,7 @@ impl Pixel<'_> {
 
 /// What a sample sees: which surface of the pixel, and where its counts are.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Part {
+pub(super) struct SampleFragment {
     pub(super) surface: usize,
     pub(super) fragment: usize,
     pub(super) triangle: u32,
@@ -62,7 +62,7 @@ pub(super) struct Part {
 }
 
 /// A surface in a pixel.
-pub(super) struct Surface {
+pub(super) struct PixelSurface {
     /// The triangle that was seen first, its normal, and how near it was.
     pub(super) triangle: u32,
     pub(super) face: DVec3,
@@ -86,9 +86,9 @@ pub(super) struct Surface {
     pub(super) lit: Range<usize>,
 }
 
-impl Surface {
+impl PixelSurface {
     /// Whether two triangles are lit as one.
-    pub(super) fn goes_on_in(&self, other: &Surface) -> bool {
+    pub(super) fn goes_on_in(&self, other: &PixelSurface) -> bool {
         self.curved == other.curved
             && self.seen == other.seen
             && (self.near - other.near).abs() <= BESIDE * self.near.abs()
@@ -110,15 +110,15 @@ impl Surface {
 
 /// An element in a pixel.
 #[derive(Clone, Copy)]
-pub(super) struct Found<'a> {
-    pub(super) element: Element,
+pub(super) struct PixelInteraction<'a> {
+    pub(super) element: SurfaceElement,
     /// Whether its triangle stands for a curved surface.
     pub(super) curved: bool,
     /// Whether neighbours in its triangle differ in their place only.
     pub(super) is_flat: bool,
     /// About its normal.
-    pub(super) frame: Frame,
-    pub(super) optics: &'a Optics,
+    pub(super) frame: ShadingFrame,
+    pub(super) optics: &'a Bsdf,
     pub(super) distance: f64,
     /// Object and material.
     pub(super) seen: [u32; 2],
@@ -129,7 +129,7 @@ pub(super) struct Found<'a> {
     pub(super) sides: [DVec3; 2],
 }
 
-impl Found<'_> {
+impl PixelInteraction<'_> {
     /// Moves to where another line of sight meets a triangle, if it is the same, flat and without a texture.
     #[inline]
     pub(super) fn meet(&mut self, triangle: u32, ray: &Ray) -> bool {

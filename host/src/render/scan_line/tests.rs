@@ -2,12 +2,12 @@
 
 use super::*;
 use crate::color::Color;
-use crate::illumination::light::Patch;
-use crate::illumination::material::{Body, Classic, Index, Transparent};
-use crate::illumination::texture::{Laying, Motif, Pattern};
-use crate::illumination::{Bands, Material, Paint};
+use crate::illumination::light::LightShape;
+use crate::illumination::material::{MaterialKind, Classic, RefractiveIndex, Transparent};
+use crate::illumination::texture::{TextureMapping, Motif, Pattern};
+use crate::illumination::{RgbPower, Material, Paint};
 use crate::numeric::ray::Ray;
-use crate::octree::{Octree, Settings as OctreeSettings};
+use crate::octree::{Octree, OctreeSettings as OctreeSettings};
 use crate::render::ray_tracer;
 use crate::scene::{Camera, Object, Parallel, Projection, Scene, Settings, Shape};
 use crate::solid::Primitive;
@@ -47,7 +47,7 @@ fn boxes() -> Vec<Object> {
 }
 
 fn pane(at: DVec3, turned: f64) -> Object {
-    let through = Paint::Plain(Color::Bands(Bands::new(0.8, 0.5, 0.3)));
+    let through = Paint::Plain(Color::Bands(RgbPower::new(0.8, 0.5, 0.3)));
     let material = Classic { transparency: through, ..diffuse(0.2) };
     let transform = DMat4::from_translation(at) * DMat4::from_rotation_y(turned);
     object(Shape::from(Primitive::Box { size: DVec3::new(1.5, 2.0, 0.1) }), transform, material)
@@ -60,7 +60,7 @@ fn facing(z: f64) -> DMat4 {
 
 /// Squares, light and dark.
 fn checker(size: f64) -> Paint {
-    let laying = Laying { size: DVec3::splat(size), ..Laying::default() };
+    let laying = TextureMapping { size: DVec3::splat(size), ..TextureMapping::default() };
     let paints = vec![Paint::grey(0.1), Paint::grey(0.9)];
     Paint::Pattern(Pattern { motif: Motif::Checker, laying, paints }.into())
 }
@@ -88,12 +88,12 @@ fn usual() -> Camera {
 
 fn scene(objects: Vec<Object>, lights: Lamps, camera: Camera) -> Scene {
     let settings = Settings::of_size(72, 64, 16);
-    let (ambient, background) = (Bands::splat(0.05), Bands::new(0.3, 0.4, 0.5));
+    let (ambient, background) = (RgbPower::splat(0.05), RgbPower::new(0.3, 0.4, 0.5));
     Scene { objects, lights, settings, camera: Some(camera), ambient, background, ..Scene::default() }
 }
 
-fn order(scene: &Scene, threads: usize) -> Order {
-    Order { threads: NonZeroUsize::new(threads), ..Order::of(&scene.settings) }
+fn order(scene: &Scene, threads: usize) -> RenderOrder {
+    RenderOrder { threads: NonZeroUsize::new(threads), ..RenderOrder::of(&scene.settings) }
 }
 
 fn scan(scene: &Scene, view: Option<View>, threads: usize) -> Rendering {
@@ -110,7 +110,7 @@ fn compared(scene: &Scene, view: Option<View>) -> [f64; 3] {
     let prepared = Prepared::new(scene).unwrap_or_else(|e| panic!("{e}"));
     let view = view.unwrap_or(prepared.view());
     let plan = Plan::new(&prepared, &view);
-    let order = Order { samples: 64, ..order(scene, 2) };
+    let order = RenderOrder { samples: 64, ..order(scene, 2) };
     let traced = ray_tracer(&prepared, &plan).expect("ready").render(&view, &order, &Watch::NOBODY);
     let (traced, drawn) = (traced.expect("a picture"), scan(scene, Some(view), 2));
     let mut sums = [0.0; 3];
@@ -223,7 +223,7 @@ fn an_eye_inside_an_object_sees_its_inside() {
 #[test]
 fn a_light_with_a_size_gives_its_light_from_its_points() {
     let (across, up) = (DVec3::new(1.0, 0.0, 0.0), DVec3::new(0.0, 0.0, 1.0));
-    let patch = Patch::Rectangle { corner: DVec3::new(-1.5, 4.0, -0.5), across, up };
+    let patch = LightShape::Rectangle { corner: DVec3::new(-1.5, 4.0, -0.5), across, up };
     let light = crate::illumination::Light::Area { patch, radiance: Color::grey(20.0) };
     let mut scene = scene(boxes(), vec![light], usual());
     scene.settings.light.samples = 64;
@@ -235,7 +235,7 @@ fn a_light_with_a_size_gives_its_light_from_its_points() {
 fn a_diffuse_floor_under_a_lamp_follows_its_closed_form() {
     let mut scene = scene(vec![ground(50.0)], vec![lamp(DVec3::new(0.0, 2.0, 0.0))], usual());
     (scene.settings.image.width, scene.settings.image.height, scene.settings.image.samples) = (21, 21, 1);
-    scene.ambient = Bands::ZERO;
+    scene.ambient = RgbPower::ZERO;
     let half = 5.25;
     let rows = [
         DVec4::new(1.0 / half, 0.0, 0.0, 0.0),
@@ -275,7 +275,7 @@ fn points_are_in_shadow_volumes_where_rays_to_the_light_are_stopped() {
     for light in lights {
         let facing = casters.facing(&light);
         let silhouettes = casters.silhouettes(&facing);
-        let enclosed = Enclosed::new(&casters, light, &facing, &silhouettes, 1).sorted();
+        let enclosed = ShadowVolumes::new(&casters, light, &facing, &silhouettes, 1).sorted();
         for _ in 0..points {
             let mut within = |low: f64, high: f64| random.random_range(low..high);
             let point = DVec3::new(within(-2.0, 2.0), within(-0.2, 2.0), within(-2.0, 2.0));
@@ -317,7 +317,7 @@ fn a_highlight_is_the_same_however_many_samples_see_it() {
 #[test]
 fn a_lamp_is_seen_behind_panes_and_before_a_wall() {
     let lamp = crate::illumination::Light::Area {
-        patch: Patch::Sphere { center: DVec3::ZERO, radius: 0.5 },
+        patch: LightShape::Sphere { center: DVec3::ZERO, radius: 0.5 },
         radiance: Color::grey(7.0),
     };
     let wall = object(
@@ -350,19 +350,19 @@ fn a_lamp_is_seen_behind_panes_and_before_a_wall() {
 #[test]
 fn mirrors_metals_and_glass_show_the_ambient_light() {
     let mirror = Classic { mirror: Paint::grey(0.8), ..diffuse(0.0) };
-    let glass = Transparent { absorption: Color::grey(2.0), ..Transparent::clear(Index::Constant(1.5)) };
+    let glass = Transparent { absorption: Color::grey(2.0), ..Transparent::clear(RefractiveIndex::Constant(1.5)) };
     let slab = Shape::from(Primitive::Box { size: DVec3::new(9.0, 9.0, 0.5) });
     // Of each face of the glass 4 %, of the rest what a way of half a unit leaves.
     let (reflected, left) = (0.04, 0.96 * (-1.0_f64).exp());
     for (shape, material, ambient, background) in [
         (Shape::Ground { size: 9.0 }, Material::from(mirror), 0.8, 0.0),
-        (slab, Body::Transparent(glass).into(), reflected * (1.0 + left), left * 0.96),
+        (slab, MaterialKind::Transparent(glass).into(), reflected * (1.0 + left), left * 0.96),
     ] {
         let transform = if matches!(shape, Shape::Ground { .. }) { facing(0.0) } else { DMat4::IDENTITY };
         let mut scene =
             scene(vec![object(shape, transform, material)], Vec::new(), camera(DVec3::Z * 600.0, DVec3::ZERO));
         scene.camera = scene.camera.map(|camera| Camera { field_of_view: 0.1, ..camera });
-        scene.ambient = Bands::new(0.2, 0.4, 0.6);
+        scene.ambient = RgbPower::new(0.2, 0.4, 0.6);
         let found = scan(&scene, None, 1).film.tallies()[32 * 72 + 36].mean();
         let expected = scene.ambient * ambient + scene.background * background;
         assert!((found - expected).abs().max_element() < 1e-6, "{found}, not {expected}");
@@ -373,8 +373,8 @@ fn mirrors_metals_and_glass_show_the_ambient_light() {
 fn glass_that_bends_no_light_is_what_ray_tracing_sees() {
     // A block and a ball in it that absorbs a little, and an eye that looks through both at the shadow of another block.
     let glass = |absorption: f64| {
-        let (index, absorption) = (Index::Constant(1.0 + 1e-9), Color::grey(absorption));
-        Material::from(Body::Transparent(Transparent { absorption, ..Transparent::clear(index) }))
+        let (index, absorption) = (RefractiveIndex::Constant(1.0 + 1e-9), Color::grey(absorption));
+        Material::from(MaterialKind::Transparent(Transparent { absorption, ..Transparent::clear(index) }))
     };
     let at = DMat4::from_translation(DVec3::new(0.0, 0.8, 0.0));
     let size = DVec3::splat(1.5);
@@ -440,7 +440,7 @@ fn a_cancelled_picture_keeps_what_was_finished() {
     let view = prepared.view();
     let plan = Plan::new(&prepared, &view);
     let cancelled = AtomicBool::new(false);
-    let stop = |_: Amount| cancelled.store(true, Ordering::Relaxed);
+    let stop = |_: Progress| cancelled.store(true, Ordering::Relaxed);
     let watch = Watch { cancelled: &cancelled, progress: &stop, ..Watch::NOBODY };
     let scan = ScanLine::new(&prepared, &plan).expect("ready");
     let drawn = scan.render(&view, &order(&scene, 1), &watch).expect("a part");
@@ -474,7 +474,7 @@ fn a_sky_lights_what_nothing_shades_as_ray_tracing_finds_it() {
     ] {
         let ball = object(Shape::from(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY, material);
         let mut scene = scene(vec![ball], vec![sky(map)], camera(DVec3::new(2.0, 1.0, 4.0), DVec3::ZERO));
-        scene.ambient = Bands::ZERO;
+        scene.ambient = RgbPower::ZERO;
         let [mean, ..] = compared(&scene, None);
         assert!(mean < most, "{name}: off by {mean} in the mean");
     }

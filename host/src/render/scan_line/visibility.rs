@@ -1,7 +1,7 @@
 //! Which triangles the samples of a strip of the picture see.
 
-use super::screen::{Corner, Outline, Point, Screen};
-use super::spans::{Lines, Nearness, Patch, Span};
+use super::screen::{ClipCorner, ClippedPolygon, ScreenPoint, Screen};
+use super::spans::{SampleLines, Nearness, PictureRegion, Span};
 use crate::scene::Prepared;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -11,23 +11,23 @@ pub(super) const NONE: u32 = u32::MAX;
 
 /// Something to be drawn: a triangle, whole or clipped.
 #[derive(Clone, Copy, Debug)]
-struct Facet {
+struct ScreenTriangle {
     triangle: u32,
     /// Which of the outlines it has, if it was clipped.
     outline: u32,
 }
 
 /// Numbers of what is drawn, for each band of the picture, in order.
-pub(super) struct Bands {
+pub(super) struct BandLists {
     begins: Vec<u32>,
     numbers: Vec<u32>,
 }
 
-impl Bands {
+impl BandLists {
     /// Sorts what is drawn by the bands that it is in.
     ///
     /// - `ranges`: the first and the last line of each. `lines`: of a band; `bands`: how many there are.
-    pub(super) fn new(ranges: &[[f64; 2]], lines: usize, bands: usize) -> Bands {
+    pub(super) fn new(ranges: &[[f64; 2]], lines: usize, bands: usize) -> BandLists {
         let of = |range: &[f64; 2]| {
             let [from, to] = range.map(|y| (y / lines as f64).floor().clamp(0.0, bands as f64 - 1.0) as usize);
             if range[1] < 0.0 || range[0] >= (lines * bands) as f64 { 0..0 } else { from..to + 1 }
@@ -46,7 +46,7 @@ impl Bands {
                 ends[band] += 1;
             }
         }
-        Bands { begins, numbers }
+        BandLists { begins, numbers }
     }
 
     /// Those of a band.
@@ -56,24 +56,24 @@ impl Bands {
 }
 
 /// The first and the last line of a polygon.
-pub(super) fn lines_of(corners: &[Point]) -> [f64; 2] {
+pub(super) fn lines_of(corners: &[ScreenPoint]) -> [f64; 2] {
     corners.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p.y), high.max(p.y)])
 }
 
 /// All triangles in the picture.
-pub(super) struct Facets<'a> {
+pub(super) struct ScreenTriangles<'a> {
     prepared: &'a Prepared,
-    points: Vec<Point>,
-    facets: Vec<Facet>,
-    outlines: Vec<Outline>,
-    bands: Bands,
+    points: Vec<ScreenPoint>,
+    facets: Vec<ScreenTriangle>,
+    outlines: Vec<ClippedPolygon>,
+    bands: BandLists,
     /// For each triangle of the scene, whether light goes straight through it; empty if none is so.
     passable: &'a [bool],
 }
 
 /// A passable surface before the opaque one of a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Layer {
+pub(super) struct PassableLayer {
     pub(super) sample: u32,
     pub(super) near: f64,
     pub(super) triangle: u32,
@@ -94,14 +94,14 @@ pub(super) struct Strip {
     /// For each tile of columns, the least nearness of what its samples see, infinite where there is nothing.
     farthest: Vec<f64>,
     /// Passable surfaces, sample by sample from the nearest.
-    pub(super) layers: Vec<Layer>,
+    pub(super) layers: Vec<PassableLayer>,
     /// Where the layers of each sample begin, if there are any at all.
     pub(super) begins: Vec<u32>,
     /// Spans that were drawn.
     pub(super) spans: u64,
 }
 
-impl<'a> Facets<'a> {
+impl<'a> ScreenTriangles<'a> {
     /// Places the triangles in the picture.
     ///
     /// - `lines`: of a band; `bands`: how many there are.
@@ -111,14 +111,14 @@ impl<'a> Facets<'a> {
         screen: &Screen,
         lines: usize,
         bands: usize,
-    ) -> Facets<'a> {
+    ) -> ScreenTriangles<'a> {
         let place = |vertex: &glam::DVec3| {
             let corner = screen.corner(*vertex);
             (Screen::point(&corner), screen.outside(&corner))
         };
-        let (points, outside): (Vec<Point>, Vec<u8>) =
+        let (points, outside): (Vec<ScreenPoint>, Vec<u8>) =
             prepared.vertices.par_iter().with_min_len(1 << 12).map(place).unzip();
-        let placed = |&triangle: &u32| -> Option<([f64; 2], u32, Option<Box<Outline>>)> {
+        let placed = |&triangle: &u32| -> Option<([f64; 2], u32, Option<Box<ClippedPolygon>>)> {
             let [a, b, c] = prepared.triangles[triangle as usize].map(|i| i as usize);
             let beside = [outside[a], outside[b], outside[c]];
             if beside[0] & beside[1] & beside[2] != 0 {
@@ -129,7 +129,7 @@ impl<'a> Facets<'a> {
                 // Between two lines of samples there is nothing to draw.
                 return (range[0].ceil() < range[1].ceil()).then_some((range, triangle, None));
             }
-            let corners: [Corner; 3] = prepared.corners(triangle).map(|corner| screen.corner(corner));
+            let corners: [ClipCorner; 3] = prepared.corners(triangle).map(|corner| screen.corner(corner));
             let outline = screen.clip(&corners, 1)?;
             Some((lines_of(outline.corners()), triangle, Some(Box::new(outline))))
         };
@@ -140,21 +140,21 @@ impl<'a> Facets<'a> {
             let outline = if clipped.is_some() { outlines.len() as u32 } else { NONE };
             outlines.extend(clipped.map(|outline| *outline));
             ranges.push(range);
-            facets.push(Facet { triangle, outline });
+            facets.push(ScreenTriangle { triangle, outline });
         }
-        let bands = Bands::new(&ranges, lines, bands);
-        Facets { prepared, points, facets, outlines, bands, passable }
+        let bands = BandLists::new(&ranges, lines, bands);
+        ScreenTriangles { prepared, points, facets, outlines, bands, passable }
     }
 
     /// Where a vertex is in the picture; worth nothing for one that is cut off.
-    pub(super) fn point(&self, vertex: u32) -> Point {
+    pub(super) fn point(&self, vertex: u32) -> ScreenPoint {
         self.points[vertex as usize]
     }
 
     /// Gives the facets of a band that are passable or not.
-    fn each(&self, band: usize, passable: bool, mut give: impl FnMut(u32, &[Point])) {
+    fn each(&self, band: usize, passable: bool, mut give: impl FnMut(u32, &[ScreenPoint])) {
         for &number in self.bands.of(band) {
-            let Facet { triangle, outline } = self.facets[number as usize];
+            let ScreenTriangle { triangle, outline } = self.facets[number as usize];
             if self.passable.get(triangle as usize).copied().unwrap_or(false) != passable {
                 continue;
             }
@@ -166,7 +166,7 @@ impl<'a> Facets<'a> {
     }
 
     /// Finds what the samples of some lines of a band see.
-    pub(super) fn see(&self, band: usize, lines: &Lines, strip: &mut Strip) {
+    pub(super) fn see(&self, band: usize, lines: &SampleLines, strip: &mut Strip) {
         let samples = lines.range.len() * lines.width;
         let Strip { near, seen, farthest, layers, begins, spans } = strip;
         near.clear();
@@ -178,7 +178,7 @@ impl<'a> Facets<'a> {
         let first = |span: &Span| (span.line - lines.range.start) * lines.width;
         self.each(band, false, |triangle, corners| {
             let Some(nearness) = Nearness::new(corners) else { return };
-            lines.spans(corners, &Patch::ALL, |span| {
+            lines.spans(corners, &PictureRegion::ALL, |span| {
                 *spans += 1;
                 let (start, step, bounded) = nearness.along(&span, lines.offset(span.line));
                 let range = first(&span) + span.from..first(&span) + span.to;
@@ -206,14 +206,14 @@ impl<'a> Facets<'a> {
         }
         self.each(band, true, |triangle, corners| {
             let Some(nearness) = Nearness::new(corners) else { return };
-            lines.spans(corners, &Patch::ALL, |span| {
+            lines.spans(corners, &PictureRegion::ALL, |span| {
                 *spans += 1;
                 let (start, step, _) = nearness.along(&span, lines.offset(span.line));
                 for i in 0..span.to - span.from {
                     let sample = first(&span) + span.from + i;
                     let value = nearness.bound(start + step * i as f64);
                     if value > near[sample] {
-                        layers.push(Layer { sample: sample as u32, near: value, triangle, turns: span.turns });
+                        layers.push(PassableLayer { sample: sample as u32, near: value, triangle, turns: span.turns });
                     }
                 }
             });

@@ -14,7 +14,7 @@ mod tests;
 mod tile;
 mod tree;
 
-pub use tile::Tile;
+pub use tile::ColorTile;
 
 use super::RenderError;
 use super::radiosity::Radiosity;
@@ -24,10 +24,10 @@ use crate::illumination::Light;
 use crate::plan::Plan;
 use crate::scene::Prepared;
 use glam::DVec3;
-use points::Points;
+use points::PointTree;
 use rayon::prelude::*;
-use tile::Corner;
-use tree::{Looks, Node, Piece};
+use tile::TileCorner;
+use tree::{TileShading, TileNode, TrianglePiece};
 
 /// Colours of a tile may be so far from those of its elements: a step of eight bits.
 const TOLERANCE: f64 = 1.0 / 255.0;
@@ -46,7 +46,7 @@ const LAMP_SIDES: usize = 32;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tiling {
     /// The tiles, in the order of the triangles; lamps last.
-    pub tiles: Vec<Tile>,
+    pub tiles: Vec<ColorTile>,
     /// The elements for which they stand, where those of two sides lie upon each other counted once.
     pub elements: usize,
     /// How far a colour may be from that of an element, 0..=1.
@@ -65,7 +65,7 @@ impl Tiling {
     /// Ours; that colours at corners are mixed between them: Gouraud 1971, Cohen and Greenberg 1985.
     pub fn new(solution: &Radiosity, prepared: &Prepared, plan: &Plan, most: usize) -> Result<Tiling, RenderError> {
         let appearance = Appearance::new(prepared, plan)?;
-        let looks = Looks { solution, appearance: &appearance };
+        let looks = TileShading { solution, appearance: &appearance };
         let shown = |triangle: &u32| {
             let object = prepared.object_of[*triangle as usize];
             let optics = appearance.optics(object, prepared.material_number(*triangle));
@@ -73,13 +73,13 @@ impl Tiling {
             plan.keeps_object(object as usize) && !optics.is_passable() && (b - a).cross(c - a) != DVec3::ZERO
         };
         let triangles: Vec<u32> = (0..prepared.triangles.len() as u32).filter(shown).collect();
-        let trees: Vec<Node> = triangles.par_iter().map(|triangle| looks.tree(*triangle)).collect();
+        let trees: Vec<TileNode> = triangles.par_iter().map(|triangle| looks.tree(*triangle)).collect();
         let lamps = lamps(prepared, plan, &appearance);
-        let mut tiling = Tiling { elements: trees.iter().map(Node::leaves).sum(), ..Tiling::default() };
+        let mut tiling = Tiling { elements: trees.iter().map(TileNode::leaves).sum(), ..Tiling::default() };
         let mut tolerance = TOLERANCE;
         let grid = Grid { step: (NEAR * prepared.bounds.diagonal()).max(f64::MIN_POSITIVE) };
         loop {
-            let mut pieces: Vec<Vec<Piece>> = trees.iter().map(|tree| tree.pieces(tolerance)).collect();
+            let mut pieces: Vec<Vec<TrianglePiece>> = trees.iter().map(|tree| tree.pieces(tolerance)).collect();
             let outlines = outlines(&mut pieces, grid);
             let corners: usize = outlines.iter().flatten().map(Vec::len).sum();
             if corners > most && tolerance < 1.0 {
@@ -89,7 +89,7 @@ impl Tiling {
             let tiles =
                 triangles.par_iter().zip(pieces).zip(outlines).flat_map_iter(|((triangle, pieces), outlines)| {
                     let looks = &looks;
-                    let tile = move |(piece, outline): (Piece, Vec<Corner>)| looks.tile(*triangle, &piece, &outline);
+                    let tile = move |(piece, outline): (TrianglePiece, Vec<TileCorner>)| looks.tile(*triangle, &piece, &outline);
                     pieces.into_iter().zip(outlines).filter(|(_, outline)| outline.len() > 2).map(tile)
                 });
             tiling.tiles = tiles.collect();
@@ -131,14 +131,14 @@ impl Grid {
 
 /// The corners of all pieces with those that neighbours have on their edges. Divides pieces that would have too many. Of a
 /// piece that is next to nothing, fewer than three are left.
-fn outlines(pieces: &mut [Vec<Piece>], grid: Grid) -> Vec<Vec<Vec<Corner>>> {
+fn outlines(pieces: &mut [Vec<TrianglePiece>], grid: Grid) -> Vec<Vec<Vec<TileCorner>>> {
     loop {
         let mut keys: Vec<[i64; 3]> =
             pieces.iter().flatten().flat_map(|piece| piece.corners.map(|corner| grid.key(corner))).collect();
         keys.sort_unstable();
         keys.dedup();
-        let points = Points::new(keys.into_iter().map(|key| grid.point(key)).collect());
-        let outlines: Vec<Vec<Vec<Corner>>> = pieces
+        let points = PointTree::new(keys.into_iter().map(|key| grid.point(key)).collect());
+        let outlines: Vec<Vec<Vec<TileCorner>>> = pieces
             .par_iter()
             .map(|pieces| pieces.iter().map(|piece| outline(piece, &points, grid)).collect())
             .collect();
@@ -163,8 +163,8 @@ fn outlines(pieces: &mut [Vec<Piece>], grid: Grid) -> Vec<Vec<Vec<Corner>>> {
 }
 
 /// The corners of a piece and those that others have on its edges.
-fn outline(piece: &Piece, points: &Points, grid: Grid) -> Vec<Corner> {
-    let mut corners: Vec<Corner> = Vec::with_capacity(3);
+fn outline(piece: &TrianglePiece, points: &PointTree, grid: Grid) -> Vec<TileCorner> {
+    let mut corners: Vec<TileCorner> = Vec::with_capacity(3);
     for i in 0..3 {
         let j = (i + 1) % 3;
         let ends = [i, j].map(|i| grid.snapped(piece.corners[i]));
@@ -182,7 +182,7 @@ fn outline(piece: &Piece, points: &Points, grid: Grid) -> Vec<Corner> {
 }
 
 /// The surfaces that emit and are no objects; they do not emit on their reverse.
-fn lamps(prepared: &Prepared, plan: &Plan, appearance: &Appearance<'_>) -> Vec<Tile> {
+fn lamps(prepared: &Prepared, plan: &Plan, appearance: &Appearance<'_>) -> Vec<ColorTile> {
     let wavelengths = &appearance.wavelengths;
     let lamp = |(number, light): (usize, &Light)| {
         let Some((patch, radiance)) = light.surface() else { return Vec::new() };
@@ -193,7 +193,7 @@ fn lamps(prepared: &Prepared, plan: &Plan, appearance: &Appearance<'_>) -> Vec<T
         let combs = wavelengths.combs();
         let seen: DVec3 = (0..combs).map(|comb| wavelengths.seen(comb, strength.of(comb))).sum();
         let color = [srgb::encoded(seen / combs as f64), DVec3::ZERO];
-        let tile = |corners: Vec<DVec3>| Tile { colors: vec![color; corners.len()], corners };
+        let tile = |corners: Vec<DVec3>| ColorTile { colors: vec![color; corners.len()], corners };
         patch.polygons(LAMP_SIDES).into_iter().map(tile).collect()
     };
     prepared.lights.iter().enumerate().flat_map(lamp).collect()

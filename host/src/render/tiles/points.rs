@@ -7,7 +7,7 @@ const FEW: usize = 8;
 
 /// Points in boxes within boxes.
 #[derive(Debug, Default)]
-pub(super) struct Points {
+pub(super) struct PointTree {
     points: Vec<DVec3>,
     boxes: Vec<Enclosing>,
 }
@@ -23,10 +23,10 @@ struct Enclosing {
     parts: [usize; 2],
 }
 
-impl Points {
+impl PointTree {
     /// Takes points up.
-    pub(super) fn new(points: Vec<DVec3>) -> Points {
-        let mut all = Points { points, boxes: Vec::new() };
+    pub(super) fn new(points: Vec<DVec3>) -> PointTree {
+        let mut all = PointTree { points, boxes: Vec::new() };
         if !all.points.is_empty() {
             all.enclose(0, all.points.len());
         }
@@ -99,7 +99,7 @@ mod tests {
         let step = |k: usize| k as f64 / 16.0;
         let grid = (0..17).flat_map(|i| (0..17).map(move |k| DVec3::new(step(i), step(k), step((i * k) % 5))));
         let points: Vec<DVec3> = grid.collect();
-        let all = Points::new(points.clone());
+        let all = PointTree::new(points.clone());
         for (from, to) in [(0, 288), (3, 200), (17, 33), (16, 272), (40, 41), (5, 5)] {
             let ends = [points[from], points[to]];
             let along = ends[1] - ends[0];
@@ -116,6 +116,6 @@ mod tests {
             let found: Vec<f64> = all.between(ends, 1e-9).into_iter().map(|(part, _)| part).collect();
             assert_eq!(found, expected, "{from} {to}");
         }
-        assert!(Points::new(Vec::new()).between([DVec3::ZERO, DVec3::X], 1.0).is_empty());
+        assert!(PointTree::new(Vec::new()).between([DVec3::ZERO, DVec3::X], 1.0).is_empty());
     }
 }

@@ -2,12 +2,12 @@
 
 use super::*;
 use crate::color::Color;
-use crate::illumination::light::Patch;
+use crate::illumination::light::LightShape;
 use crate::illumination::material::Classic;
 use crate::illumination::{Material, Paint};
 use crate::render::Watch;
 use crate::render::World;
-use crate::render::indirect::{IndirectLight, Part};
+use crate::render::indirect::{IndirectLight, IrradiancePart};
 use crate::scene::{Interreflection, RadiositySettings};
 use crate::scene::{Object, Scene, Shape};
 use crate::solid::Primitive;
@@ -28,7 +28,7 @@ fn solid(primitive: Primitive, at: DVec3, material: Material) -> Object {
 fn room() -> Prepared {
     let floor = Primitive::Box { size: DVec3::new(4.0, 0.5, 4.0) };
     let block = Primitive::Box { size: DVec3::new(1.0, 1.0, 1.0) };
-    let patch = Patch::Rectangle { corner: DVec3::new(-0.5, 3.0, -0.5), across: DVec3::X, up: DVec3::Z };
+    let patch = LightShape::Rectangle { corner: DVec3::new(-0.5, 3.0, -0.5), across: DVec3::X, up: DVec3::Z };
     let scene = Scene {
         objects: vec![
             solid(floor, DVec3::new(0.0, -0.25, 0.0), matt(0.8, 0.1, 0.1)),
@@ -102,7 +102,7 @@ fn tiles_stand_for_more_elements_where_the_light_is_even_and_have_their_colours(
         });
         let Some(triangle) = around else { continue };
         let weights = crate::numeric::triangle::weights(prepared.corners(triangle), middle);
-        let irradiance = solution.irradiance(triangle, true, weights, Part::All);
+        let irradiance = solution.irradiance(triangle, true, weights, IrradiancePart::All);
         let body = if prepared.object_of[triangle as usize] == 0 { [0.8, 0.1, 0.1] } else { [0.7; 3] };
         let expected = srgb::encoded(DVec3::from([0, 1, 2].map(|k| irradiance.0[k] * body[k] * FRAC_1_PI)));
         let shown = tile.colors.iter().map(|[front, _]| *front).sum::<DVec3>() / 3.0;
@@ -160,14 +160,14 @@ fn tiles_do_not_depend_on_the_number_of_threads() {
 fn a_long_edge_beside_many_small_elements_is_cut_so_that_no_tile_has_too_many_corners() {
     let triangle = |corners: [[f64; 2]; 3]| {
         let corners = corners.map(|[x, y]| DVec3::new(x, y, 0.0));
-        Piece { corners, weights: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] }
+        TrianglePiece { corners, weights: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] }
     };
     let mut small = vec![triangle([[0.0, 0.0], [1.0, 0.0], [0.0, -1.0]])];
     for _ in 0..9 {
         // Those at the upper edge.
         small = small
             .iter()
-            .flat_map(Piece::quarters)
+            .flat_map(TrianglePiece::quarters)
             .filter(|piece| piece.corners.iter().filter(|corner| corner.y == 0.0).count() == 2)
             .collect();
     }

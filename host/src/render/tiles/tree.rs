@@ -1,10 +1,10 @@
 //! A triangle with its elements and their colours, and which of its parts may be one tile.
 
-use super::tile::{Corner, Tile};
+use super::tile::{TileCorner, ColorTile};
 use crate::color::{Channels, srgb};
 use crate::numeric::triangle::weights;
-use crate::render::indirect::{IndirectLight, Part};
-use crate::render::radiosity::{Division, Radiosity};
+use crate::render::indirect::{IndirectLight, IrradiancePart};
+use crate::render::radiosity::{ElementTree, Radiosity};
 use crate::render::world::{Appearance, diffuse};
 use glam::{DVec3, Vec3};
 use std::f64::consts::FRAC_1_PI;
@@ -15,7 +15,7 @@ const ASIDE: f64 = 1e-6;
 
 /// A triangle, or one of the four into which the middles of its edges divide such a piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Piece {
+pub(super) struct TrianglePiece {
     /// Its corners, the same to the bit for all pieces that share them.
     pub(super) corners: [DVec3; 3],
     /// The weights of the corners of the triangle there.
@@ -23,22 +23,22 @@ pub(super) struct Piece {
 }
 
 /// The point in the middle between two.
-fn middle((p, u): Corner, (q, v): Corner) -> Corner {
+fn middle((p, u): TileCorner, (q, v): TileCorner) -> TileCorner {
     (0.5 * (p + q), std::array::from_fn(|i| 0.5 * (u[i] + v[i])))
 }
 
-impl Piece {
+impl TrianglePiece {
     /// A whole triangle.
-    fn whole(corners: [DVec3; 3]) -> Piece {
-        Piece { corners, weights: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] }
+    fn whole(corners: [DVec3; 3]) -> TrianglePiece {
+        TrianglePiece { corners, weights: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] }
     }
 
     /// The pieces at its corners, and the one in the middle.
-    pub(super) fn quarters(&self) -> [Piece; 4] {
+    pub(super) fn quarters(&self) -> [TrianglePiece; 4] {
         let [a, b, c] = [0, 1, 2].map(|i| (self.corners[i], self.weights[i]));
         let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
         [[a, ab, ca], [ab, b, bc], [ca, bc, c], [bc, ca, ab]]
-            .map(|of| Piece { corners: of.map(|corner| corner.0), weights: of.map(|corner| corner.1) })
+            .map(|of| TrianglePiece { corners: of.map(|corner| corner.0), weights: of.map(|corner| corner.1) })
     }
 
     /// The weights in its middle.
@@ -52,27 +52,27 @@ type Colors = [Vec3; 2];
 
 /// A piece with the pieces into which it is divided.
 #[derive(Debug)]
-pub(super) struct Node {
-    piece: Piece,
+pub(super) struct TileNode {
+    piece: TrianglePiece,
     /// How far mixtures of the colours of its corners are from those of its elements, 0..=1.
     off: f32,
-    children: Vec<Node>,
+    children: Vec<TileNode>,
 }
 
-impl Node {
+impl TileNode {
     /// How many elements there are in it.
     pub(super) fn leaves(&self) -> usize {
-        if self.children.is_empty() { 1 } else { self.children.iter().map(Node::leaves).sum() }
+        if self.children.is_empty() { 1 } else { self.children.iter().map(TileNode::leaves).sum() }
     }
 
     /// The largest pieces of it whose colours are off by no more than a tolerance.
-    pub(super) fn pieces(&self, tolerance: f64) -> Vec<Piece> {
+    pub(super) fn pieces(&self, tolerance: f64) -> Vec<TrianglePiece> {
         let mut pieces = Vec::new();
         self.add_pieces(tolerance, &mut pieces);
         pieces
     }
 
-    fn add_pieces(&self, tolerance: f64, pieces: &mut Vec<Piece>) {
+    fn add_pieces(&self, tolerance: f64, pieces: &mut Vec<TrianglePiece>) {
         if !self.children.is_empty() && f64::from(self.off) > tolerance {
             self.children.iter().for_each(|child| child.add_pieces(tolerance, pieces));
         } else {
@@ -82,20 +82,20 @@ impl Node {
 }
 
 /// How the solution divides the outer and the inner side of a piece; the corners of the inner side run the other way.
-type Sides<'d> = [Option<&'d Division>; 2];
+type Sides<'d> = [Option<&'d ElementTree>; 2];
 
 /// The parts of a piece. Where its two sides are not divided alike, they are those of the side that has more of them.
-fn parts<'d>(triangle: [DVec3; 3], piece: &Piece, sides: Sides<'d>) -> Vec<(Piece, Sides<'d>)> {
+fn parts<'d>(triangle: [DVec3; 3], piece: &TrianglePiece, sides: Sides<'d>) -> Vec<(TrianglePiece, Sides<'d>)> {
     /// Which quarter of the inner side lies behind a quarter of the outer one.
     const BEHIND: [usize; 4] = [0, 2, 1, 3];
     let [outer, inner] = sides.map(|side| side.filter(|side| !side.parts.is_empty()));
-    let quarters = |outer: Option<&'d Division>, inner: Option<&'d Division>| {
+    let quarters = |outer: Option<&'d ElementTree>, inner: Option<&'d ElementTree>| {
         let of = |k: usize| [outer.map(|side| &side.parts[k]), inner.map(|side| &side.parts[BEHIND[k]])];
         piece.quarters().into_iter().enumerate().map(|(k, quarter)| (quarter, of(k))).collect()
     };
-    let is_cut = |side: Option<&Division>| side.is_some_and(|side| side.is_cut);
-    let leaves = |side: Option<&Division>| side.map_or(0, Division::leaves);
-    let whole = |corners: [DVec3; 3]| Piece { corners, weights: corners.map(|corner| weights(triangle, corner)) };
+    let is_cut = |side: Option<&ElementTree>| side.is_some_and(|side| side.is_cut);
+    let leaves = |side: Option<&ElementTree>| side.map_or(0, ElementTree::leaves);
+    let whole = |corners: [DVec3; 3]| TrianglePiece { corners, weights: corners.map(|corner| weights(triangle, corner)) };
     match (outer, inner) {
         (None, None) => Vec::new(),
         (outer, inner) if !is_cut(outer) && !is_cut(inner) => quarters(outer, inner),
@@ -112,27 +112,27 @@ fn parts<'d>(triangle: [DVec3; 3], piece: &Piece, sides: Sides<'d>) -> Vec<(Piec
 }
 
 /// What surfaces look like in the light of a solution.
-pub(super) struct Looks<'a> {
+pub(super) struct TileShading<'a> {
     pub(super) solution: &'a Radiosity,
     pub(super) appearance: &'a Appearance<'a>,
 }
 
-impl Looks<'_> {
+impl TileShading<'_> {
     /// A triangle with all elements of both its sides.
-    pub(super) fn tree(&self, triangle: u32) -> Node {
-        let piece = Piece::whole(self.appearance.prepared.corners(triangle));
+    pub(super) fn tree(&self, triangle: u32) -> TileNode {
+        let piece = TrianglePiece::whole(self.appearance.prepared.corners(triangle));
         let sides = [true, false].map(|outside| self.solution.division(triangle, outside));
         self.node(triangle, piece, sides.each_ref().map(Option::as_ref), &mut Vec::new())
     }
 
     /// A piece with the elements in it, of which it adds the corners and their colours.
-    fn node(&self, triangle: u32, piece: Piece, sides: Sides<'_>, samples: &mut Vec<(DVec3, Colors)>) -> Node {
+    fn node(&self, triangle: u32, piece: TrianglePiece, sides: Sides<'_>, samples: &mut Vec<(DVec3, Colors)>) -> TileNode {
         let center = piece.center();
         let colors = piece.weights.map(|weights| self.colors(triangle, aside(weights, center)));
         let parts = parts(self.appearance.prepared.corners(triangle), &piece, sides);
         if parts.is_empty() {
             samples.extend(piece.corners.into_iter().zip(colors));
-            return Node { piece, off: 0.0, children: Vec::new() };
+            return TileNode { piece, off: 0.0, children: Vec::new() };
         }
         let first = samples.len();
         let children = parts.into_iter().map(|(part, sides)| self.node(triangle, part, sides, samples)).collect();
@@ -142,14 +142,14 @@ impl Looks<'_> {
             [0, 1].map(|side| (mixed(side) - seen[side]).abs().max_element()).into_iter().fold(0.0, f32::max)
         };
         let off = samples[first..].iter().map(off).fold(0.0, f32::max);
-        Node { piece, off, children }
+        TileNode { piece, off, children }
     }
 
     /// The tile of a piece with more corners.
-    pub(super) fn tile(&self, triangle: u32, piece: &Piece, outline: &[Corner]) -> Tile {
+    pub(super) fn tile(&self, triangle: u32, piece: &TrianglePiece, outline: &[TileCorner]) -> ColorTile {
         let center = piece.center();
-        let color = |(_, weights): &Corner| self.colors(triangle, aside(*weights, center)).map(Vec3::as_dvec3);
-        Tile { corners: outline.iter().map(|corner| corner.0).collect(), colors: outline.iter().map(color).collect() }
+        let color = |(_, weights): &TileCorner| self.colors(triangle, aside(*weights, center)).map(Vec3::as_dvec3);
+        ColorTile { corners: outline.iter().map(|corner| corner.0).collect(), colors: outline.iter().map(color).collect() }
     }
 
     /// The colours of a place of a triangle, as a display gets them.
@@ -157,7 +157,7 @@ impl Looks<'_> {
         let Appearance { prepared, wavelengths, .. } = self.appearance;
         let optics = self.appearance.optics(prepared.object_of[triangle as usize], prepared.material_number(triangle));
         let mixture = optics.is_textured().then(|| optics.mix(&prepared.place(triangle, weights, Default::default())));
-        let irradiance = [true, false].map(|outside| self.solution.irradiance(triangle, outside, weights, Part::All));
+        let irradiance = [true, false].map(|outside| self.solution.irradiance(triangle, outside, weights, IrradiancePart::All));
         let mut seen = [DVec3::ZERO; 2];
         let combs = wavelengths.combs();
         for comb in 0..combs {

@@ -15,22 +15,22 @@ const WIDER: f64 = 1.0 + 1e-9;
 const BELOW_ONE: f64 = 1.0_f64.next_down();
 
 /// The density with which a direction or line is drawn, and the point of the square that gives it.
-pub(super) type Aimed = (f64, [f64; 2]);
+pub(super) type DirectionPdf = (f64, [f64; 2]);
 
 /// A ball around something that mirrors or refracts.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Ball {
+pub(super) struct BoundingSphere {
     pub(super) center: DVec3,
     pub(super) radius: f64,
 }
 
-impl Ball {
+impl BoundingSphere {
     /// The ball that fills a cone.
     ///
     /// - `way`: from the tip to the middle of the ball. `cosine`: of the half angle, which is known to the last digit of it.
-    pub(super) fn in_cone(tip: DVec3, way: DVec3, cosine: f64) -> Ball {
+    pub(super) fn in_cone(tip: DVec3, way: DVec3, cosine: f64) -> BoundingSphere {
         let off = 1.0 - cosine + 2.0 * f64::EPSILON;
-        Ball { center: tip + way, radius: way.length() * (off * (2.0 - off)).sqrt() }
+        BoundingSphere { center: tip + way, radius: way.length() * (off * (2.0 - off)).sqrt() }
     }
 
     /// A direction towards it from a point, even in solid angle; every direction from inside.
@@ -68,7 +68,7 @@ impl Ball {
     }
 
     /// The density of [`Ball::direction`], 1/sr, and the point of the square that gives a direction; none beside the ball.
-    pub(super) fn density(&self, from: DVec3, direction: DVec3) -> Option<Aimed> {
+    pub(super) fn density(&self, from: DVec3, direction: DVec3) -> Option<DirectionPdf> {
         let offset = self.center - from;
         let Some(cap) = self.cap(offset) else { return Some((0.5 / TAU, sphere_inverse(direction))) };
         let along = offset.dot(direction);
@@ -91,7 +91,7 @@ impl Ball {
     }
 
     /// The density of [`Ball::line`], one over an area, and the point of the square that gives a line; none beside the ball.
-    pub(super) fn line_density(&self, direction: DVec3, on: DVec3) -> Option<Aimed> {
+    pub(super) fn line_density(&self, direction: DVec3, on: DVec3) -> Option<DirectionPdf> {
         let offset = on - self.center;
         let aside = offset - direction * offset.dot(direction);
         let square = self.radius * self.radius;
@@ -139,46 +139,46 @@ fn sphere_inverse(direction: DVec3) -> [f64; 2] {
 /// # Source
 /// Jensen 2001, projection maps; found by following light instead of by projection.
 #[derive(Clone, Debug)]
-pub(super) struct Guide {
+pub(super) struct ProjectionMap {
     /// The part of all up to each row.
     rows: Vec<f64>,
     /// In each row, the part of it up to each cell.
     columns: Vec<f64>,
 }
 
-impl Guide {
+impl ProjectionMap {
     /// Cells along each side.
     const SIDE: usize = 32;
     /// How often what is not wanted is asked for, for each time that the same area is that is.
     const UNWANTED: f64 = 0.03;
 
     /// Every cell alike.
-    pub(super) fn even() -> Guide {
-        Guide::of(&[true; Guide::SIDE * Guide::SIDE])
+    pub(super) fn even() -> ProjectionMap {
+        ProjectionMap::of(&[true; ProjectionMap::SIDE * ProjectionMap::SIDE])
     }
 
     /// - `used`: points of the square that were of use; cells beside theirs are wanted, too.
-    pub(super) fn around(used: &[[f64; 2]]) -> Guide {
-        let mut wanted = [false; Guide::SIDE * Guide::SIDE];
+    pub(super) fn around(used: &[[f64; 2]]) -> ProjectionMap {
+        let mut wanted = [false; ProjectionMap::SIDE * ProjectionMap::SIDE];
         for place in used {
-            let [column, row] = place.map(|c| (c * Guide::SIDE as f64) as usize);
-            for row in row.saturating_sub(1)..(row + 2).min(Guide::SIDE) {
-                for column in column.saturating_sub(1)..(column + 2).min(Guide::SIDE) {
-                    wanted[row * Guide::SIDE + column] = true;
+            let [column, row] = place.map(|c| (c * ProjectionMap::SIDE as f64) as usize);
+            for row in row.saturating_sub(1)..(row + 2).min(ProjectionMap::SIDE) {
+                for column in column.saturating_sub(1)..(column + 2).min(ProjectionMap::SIDE) {
+                    wanted[row * ProjectionMap::SIDE + column] = true;
                 }
             }
         }
-        Guide::of(&wanted)
+        ProjectionMap::of(&wanted)
     }
 
-    fn of(wanted: &[bool]) -> Guide {
-        let mut guide = Guide { rows: Vec::with_capacity(Guide::SIDE), columns: Vec::with_capacity(wanted.len()) };
+    fn of(wanted: &[bool]) -> ProjectionMap {
+        let mut guide = ProjectionMap { rows: Vec::with_capacity(ProjectionMap::SIDE), columns: Vec::with_capacity(wanted.len()) };
         let mut all = 0.0;
-        for row in wanted.chunks(Guide::SIDE) {
+        for row in wanted.chunks(ProjectionMap::SIDE) {
             let mut below = 0.0;
             let first = guide.columns.len();
             for wanted in row {
-                below += if *wanted { 1.0 } else { Guide::UNWANTED };
+                below += if *wanted { 1.0 } else { ProjectionMap::UNWANTED };
                 guide.columns.push(below);
             }
             guide.columns[first..].iter_mut().for_each(|part| *part /= below);
@@ -192,16 +192,16 @@ impl Guide {
     /// A point of the square, more often where it is wanted.
     pub(super) fn draw(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let (row, y) = within(&self.rows, y);
-        let (column, x) = within(&self.columns[row * Guide::SIDE..(row + 1) * Guide::SIDE], x);
-        [(column as f64 + x) / Guide::SIDE as f64, (row as f64 + y) / Guide::SIDE as f64]
+        let (column, x) = within(&self.columns[row * ProjectionMap::SIDE..(row + 1) * ProjectionMap::SIDE], x);
+        [(column as f64 + x) / ProjectionMap::SIDE as f64, (row as f64 + y) / ProjectionMap::SIDE as f64]
     }
 
     /// The density of [`Guide::draw`].
     pub(super) fn density(&self, place: [f64; 2]) -> f64 {
-        let [column, row] = place.map(|c| (c * Guide::SIDE as f64) as usize);
+        let [column, row] = place.map(|c| (c * ProjectionMap::SIDE as f64) as usize);
         let part = |below: &[f64], i: usize| below[i] - if i == 0 { 0.0 } else { below[i - 1] };
-        let columns = &self.columns[row * Guide::SIDE..(row + 1) * Guide::SIDE];
-        part(&self.rows, row) * part(columns, column) * (Guide::SIDE * Guide::SIDE) as f64
+        let columns = &self.columns[row * ProjectionMap::SIDE..(row + 1) * ProjectionMap::SIDE];
+        part(&self.rows, row) * part(columns, column) * (ProjectionMap::SIDE * ProjectionMap::SIDE) as f64
     }
 }
 
@@ -213,7 +213,7 @@ fn within(below: &[f64], uniform: f64) -> (usize, f64) {
 }
 
 /// Balls around all triangles that a test chooses, as tight as so many allow.
-pub(super) fn balls(prepared: &Prepared, is_meant: impl Fn(u32) -> bool) -> Vec<Ball> {
+pub(super) fn balls(prepared: &Prepared, is_meant: impl Fn(u32) -> bool) -> Vec<BoundingSphere> {
     let mut parts: Vec<Part> = Vec::new();
     for object in &prepared.objects {
         let triangles = object.first..object.first + object.count;
@@ -234,7 +234,7 @@ pub(super) fn balls(prepared: &Prepared, is_meant: impl Fn(u32) -> bool) -> Vec<
 }
 
 /// The ball around all triangles that a test chooses; none if there are none.
-pub(super) fn everything(prepared: &Prepared, is_meant: impl Fn(u32) -> bool) -> Option<Ball> {
+pub(super) fn everything(prepared: &Prepared, is_meant: impl Fn(u32) -> bool) -> Option<BoundingSphere> {
     let meant: Vec<u32> = (0..prepared.triangles.len() as u32).filter(|triangle| is_meant(*triangle)).collect();
     (!meant.is_empty()).then(|| Part::new(prepared, meant).ball).filter(|ball| ball.radius > 0.0)
 }
@@ -242,7 +242,7 @@ pub(super) fn everything(prepared: &Prepared, is_meant: impl Fn(u32) -> bool) ->
 /// Some triangles in a ball.
 struct Part {
     triangles: Vec<u32>,
-    ball: Ball,
+    ball: BoundingSphere,
     /// How much of the disc of the ball they leave empty, as seen from all sides in the mean, square units.
     empty: f64,
 }
@@ -258,7 +258,7 @@ impl Part {
         };
         // Of a closed and convex surface a quarter is seen in the mean.
         let seen = 0.25 * triangles.iter().map(area).sum::<f64>();
-        Part { triangles, ball: Ball { center, radius }, empty: PI * radius * radius - seen }
+        Part { triangles, ball: BoundingSphere { center, radius }, empty: PI * radius * radius - seen }
     }
 
     fn is_loose(&self) -> bool {
@@ -288,12 +288,12 @@ fn halves(prepared: &Prepared, mut triangles: Vec<u32>) -> [Vec<u32>; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::sequence::Sequence;
+    use crate::numeric::sequence::SobolSequence;
 
     #[test]
     fn directions_and_lines_to_a_ball_are_even_and_all_of_them() {
-        let ball = Ball { center: DVec3::new(1.0, 2.0, 3.0), radius: 0.5 };
-        let sequence = Sequence::new(2, 2);
+        let ball = BoundingSphere { center: DVec3::new(1.0, 2.0, 3.0), radius: 0.5 };
+        let sequence = SobolSequence::new(2, 2);
         let from = DVec3::new(-1.0, 0.5, 2.0);
         let axis = (ball.center - from).normalize();
         let mean: DVec3 = (0..4096).map(|i| ball.direction(from, sequence.point(i, 0))).sum::<DVec3>() / 4096.0;
@@ -319,8 +319,8 @@ mod tests {
 
     #[test]
     fn a_guide_draws_what_is_wanted_and_knows_how_often() {
-        let guide = Guide::around(&[[0.1, 0.2], [0.11, 0.99], [0.0, 0.0]]);
-        let sequence = Sequence::new(3, 3);
+        let guide = ProjectionMap::around(&[[0.1, 0.2], [0.11, 0.99], [0.0, 0.0]]);
+        let sequence = SobolSequence::new(3, 3);
         let count = 1 << 14;
         // The mean of what is drawn over its density is the integral over the square.
         let drawn = || (0..count).map(|i| guide.draw(sequence.point(i, 0)));
@@ -330,7 +330,7 @@ mod tests {
         assert!((mean(&|_| 1.0) - 1.0).abs() < 2e-2 && (mean(&|[x, y]| x + 2.0 * y) - 1.5).abs() < 3e-2);
         let wanted = drawn().filter(|[x, y]| *x < 0.16 && (*y < 0.06 || (0.15..0.26).contains(y) || *y > 0.93)).count();
         assert!(wanted as f64 > 0.1 * f64::from(count), "{wanted}");
-        let even = Guide::even();
+        let even = ProjectionMap::even();
         assert!(drawn().all(|place| (even.density(place) - 1.0).abs() < 1e-9));
         let there = even.draw([0.3, 0.7]);
         assert!((there[0] - 0.3).abs() < 1e-12 && (there[1] - 0.7).abs() < 1e-12);

@@ -3,10 +3,10 @@
 //! What a lamp sends to where is found for each lamp by itself; only how many ways it gets depends on the others. Where other
 //! lamps change, its ways thus stay the same, though there may be fewer or more of them.
 
-use super::aim::{Ball, Guide};
-use super::flight::{Choices, Purpose};
-use super::lamps::{Aim, Lamp};
-use super::{Chunk, TwoWay};
+use super::aim::{BoundingSphere, ProjectionMap};
+use super::flight::{PhotonSampler, PhotonDimension};
+use super::lamps::{PhotonTarget, PhotonSource};
+use super::{PathBatch, PhotonMapper};
 use crate::render::world::World;
 use rayon::prelude::*;
 
@@ -22,7 +22,7 @@ const LEAST_PART: f64 = 0.05;
 const NARROW: f64 = 0.9;
 
 /// What a few ways from a lamp to a ball brought.
-struct Explored {
+struct PilotResult {
     /// Flux, W.
     caught: f64,
     /// The root mean square of what a way adds to it. With ways in proportion to this, chance shows least in all together.
@@ -31,10 +31,10 @@ struct Explored {
     /// Neyman 1934, optimal allocation.
     deviation: f64,
     /// Where they have to be sent.
-    guide: Guide,
+    guide: ProjectionMap,
 }
 
-impl TwoWay<'_> {
+impl PhotonMapper<'_> {
     /// How many ways from each of so many lamps, and to each of so many balls, are followed first.
     pub(super) fn pilot(photons: u32, lamps: usize, balls: usize) -> u32 {
         let pilot = (photons / 8).clamp(*PILOT.start(), *PILOT.end());
@@ -47,7 +47,7 @@ impl TwoWay<'_> {
     ///
     /// - `lamps`: indices into the sources. `everything`: the ball around what sends light on by broad turns; none if
     ///   nothing does.
-    pub(super) fn divide(&mut self, world: &World<'_>, lamps: &[usize], everything: Option<Ball>) {
+    pub(super) fn divide(&mut self, world: &World<'_>, lamps: &[usize], everything: Option<BoundingSphere>) {
         let photons = world.appearance.prepared.settings.photons.count;
         let wide = everything.map(|ball| {
             self.balls.push(ball);
@@ -61,16 +61,16 @@ impl TwoWay<'_> {
             if let Some((at, axis, cosine)) = cone {
                 let far = world.appearance.prepared.bounds.diagonal();
                 balls.push(self.balls.len());
-                self.balls.push(Ball::in_cone(at, axis * far, cosine));
+                self.balls.push(BoundingSphere::in_cone(at, axis * far, cosine));
             }
-            let (part, count) = (1.0 / balls.len() as f64, TwoWay::pilot(photons, lamps.len(), balls.len()));
-            let aims = balls.into_iter().map(|ball| Aim { ball, part, count, guide: Guide::even() }).collect();
-            self.lamps.push(Lamp { source: *lamp, aims, caught: None, name: None });
+            let (part, count) = (1.0 / balls.len() as f64, PhotonMapper::pilot(photons, lamps.len(), balls.len()));
+            let aims = balls.into_iter().map(|ball| PhotonTarget { ball, part, count, guide: ProjectionMap::even() }).collect();
+            self.lamps.push(PhotonSource { source: *lamp, aims, caught: None, name: None });
         }
         let chunks =
             (0..self.lamps.len()).flat_map(|lamp| (0..self.lamps[lamp].aims.len()).map(move |aim| (lamp, aim)));
-        let chunks: Vec<Chunk> = chunks.map(|(lamp, aim)| Chunk { lamp, aim, number: 0 }).collect();
-        let found: Vec<Explored> = chunks.par_iter().map(|chunk| self.explore(world, chunk, wide)).collect();
+        let chunks: Vec<PathBatch> = chunks.map(|(lamp, aim)| PathBatch { lamp, aim, number: 0 }).collect();
+        let found: Vec<PilotResult> = chunks.par_iter().map(|chunk| self.explore(world, chunk, wide)).collect();
         let all: f64 = found.iter().map(|explored| explored.deviation).sum();
         if all <= 0.0 {
             self.lamps.clear();
@@ -79,11 +79,11 @@ impl TwoWay<'_> {
         let mut found = found.into_iter();
         let mut shares: Vec<f64> = Vec::with_capacity(self.lamps.len());
         for lamp in &mut self.lamps {
-            let found: Vec<Explored> = found.by_ref().take(lamp.aims.len()).collect();
+            let found: Vec<PilotResult> = found.by_ref().take(lamp.aims.len()).collect();
             let deviation: f64 = found.iter().map(|explored| explored.deviation).sum();
             lamp.caught = Some(found.iter().map(|explored| explored.caught).sum()).filter(|caught| *caught > 0.0);
             let least = LEAST_PART / found.len() as f64;
-            let part = |explored: &Explored| (explored.deviation / deviation.max(f64::MIN_POSITIVE)).max(least);
+            let part = |explored: &PilotResult| (explored.deviation / deviation.max(f64::MIN_POSITIVE)).max(least);
             let sum: f64 = found.iter().map(part).sum();
             for (aim, explored) in lamp.aims.iter_mut().zip(found) {
                 (aim.part, aim.guide) = (part(&explored) / sum, explored.guide);
@@ -99,8 +99,8 @@ impl TwoWay<'_> {
     }
 
     /// Follows a few ways from a lamp to a ball: what they bring, and where they have to be sent.
-    fn explore(&self, world: &World<'_>, chunk: &Chunk, wide: Option<usize>) -> Explored {
-        let Aim { ball, count, part, .. } = self.lamps[chunk.lamp].aims[chunk.aim];
+    fn explore(&self, world: &World<'_>, chunk: &PathBatch, wide: Option<usize>) -> PilotResult {
+        let PhotonTarget { ball, count, part, .. } = self.lamps[chunk.lamp].aims[chunk.aim];
         let mut used = Vec::new();
         let (mut sum, mut squares) = (0.0, 0.0);
         for index in 0..count {
@@ -108,13 +108,13 @@ impl TwoWay<'_> {
             // What goes everywhere is of use everywhere: what little of it is found tells too little.
             let is_of_use = if Some(ball) == wide { balance.sent > 0.0 } else { balance.caught > 0.0 };
             if is_of_use {
-                let choices = Choices::new(self.sequence(world, PILOT_PASS, chunk), index);
-                used.push(choices.point(Purpose::Aim, 0));
+                let choices = PhotonSampler::new(self.sequence(world, PILOT_PASS, chunk), index);
+                used.push(choices.point(PhotonDimension::Aim, 0));
             }
             sum += balance.caught;
             squares += balance.caught * balance.caught;
         }
         let count = f64::from(count);
-        Explored { caught: part * sum / count, deviation: part * (squares / count).sqrt(), guide: Guide::around(&used) }
+        PilotResult { caught: part * sum / count, deviation: part * (squares / count).sqrt(), guide: ProjectionMap::around(&used) }
     }
 }

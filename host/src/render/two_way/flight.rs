@@ -1,13 +1,13 @@
 //! Light on its way from a lamp: through mirrors and glass to where it is caught.
 
-use super::aim::Ball;
-use super::surfaces::Surfaces;
+use super::aim::BoundingSphere;
+use super::surfaces::SmoothSurfaces;
 use crate::color::Channels;
-use crate::illumination::distribution::Frame;
-use crate::illumination::optics::{Among, Onward, Sighting};
+use crate::illumination::distribution::ShadingFrame;
+use crate::illumination::optics::{LobeSelection, BsdfSample, ShadingContext};
 use crate::numeric::ray::Ray;
-use crate::numeric::sequence::Sequence;
-use crate::render::world::{Cone, Crossing, Found, Media, Met, Sight, World};
+use crate::numeric::sequence::SobolSequence;
+use crate::render::world::{RayCone, MediumInterface, SurfaceInteraction, Media, RayHit, BoundedRay, World};
 use glam::DVec3;
 use serde::Serialize;
 use std::f64::consts::PI;
@@ -28,7 +28,7 @@ const WIDTH: f64 = 1e-6;
 
 /// Light that was caught on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Caught {
+pub(super) struct Photon {
     pub(super) position: DVec3,
     /// Towards where it came from, unit length.
     pub(super) towards: DVec3,
@@ -51,7 +51,7 @@ pub(super) fn side_of(surface: u32, outside: bool) -> u32 {
 ///
 /// `sent`, `again` and `gained` together are all the others together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Balance {
+pub struct FluxBalance {
     /// Ways that were followed.
     pub ways: u64,
     /// How many of them were taken from a database.
@@ -74,7 +74,7 @@ pub struct Balance {
     pub stopped: f64,
 }
 
-impl Balance {
+impl FluxBalance {
     /// What is missing on one side, as a part of all.
     pub fn residual(&self) -> f64 {
         let arrived = self.straight + self.caught + self.absorbed + self.escaped + self.stopped;
@@ -82,8 +82,8 @@ impl Balance {
     }
 
     /// The balance of ways with another flux.
-    pub(super) fn scaled(&self, factor: f64) -> Balance {
-        Balance {
+    pub(super) fn scaled(&self, factor: f64) -> FluxBalance {
+        FluxBalance {
             ways: self.ways,
             before: self.before,
             sent: self.sent * factor,
@@ -98,7 +98,7 @@ impl Balance {
     }
 }
 
-impl std::fmt::Display for Balance {
+impl std::fmt::Display for FluxBalance {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let part = |watts: f64| 100.0 * watts / self.sent.max(f64::MIN_POSITIVE);
         write!(f, "{} ways of light followed", self.ways)?;
@@ -122,11 +122,11 @@ impl std::fmt::Display for Balance {
     }
 }
 
-impl std::ops::Add for Balance {
-    type Output = Balance;
+impl std::ops::Add for FluxBalance {
+    type Output = FluxBalance;
 
-    fn add(self, other: Balance) -> Balance {
-        Balance {
+    fn add(self, other: FluxBalance) -> FluxBalance {
+        FluxBalance {
             ways: self.ways + other.ways,
             before: self.before + other.before,
             sent: self.sent + other.sent,
@@ -143,15 +143,15 @@ impl std::ops::Add for Balance {
 
 /// Choices on one way: each has its number.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Choices {
-    sequence: Sequence,
+pub(super) struct PhotonSampler {
+    sequence: SobolSequence,
     index: u32,
 }
 
 /// What a choice is for.
 #[derive(Clone, Copy, Debug)]
 #[repr(u64)]
-pub(super) enum Purpose {
+pub(super) enum PhotonDimension {
     /// Where light leaves the lamp.
     Start,
     /// Where it goes.
@@ -169,19 +169,19 @@ pub(super) enum Purpose {
     Survival,
 }
 
-impl Choices {
-    pub(super) fn new(sequence: Sequence, index: u32) -> Choices {
-        Choices { sequence, index }
+impl PhotonSampler {
+    pub(super) fn new(sequence: SobolSequence, index: u32) -> PhotonSampler {
+        PhotonSampler { sequence, index }
     }
 
-    pub(super) fn point(&self, purpose: Purpose, turn: u32) -> [f64; 2] {
+    pub(super) fn point(&self, purpose: PhotonDimension, turn: u32) -> [f64; 2] {
         self.sequence.point(self.index, u64::from(turn) << 8 | purpose as u64)
     }
 }
 
 /// Light that goes out.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Ray0 {
+pub(super) struct EmittedPhoton {
     pub(super) ray: Ray,
     pub(super) flux: Channels,
     pub(super) comb: usize,
@@ -189,24 +189,24 @@ pub(super) struct Ray0 {
 }
 
 /// Follows light and keeps account of it.
-pub(super) struct Flight<'a> {
+pub(super) struct PhotonTracer<'a> {
     pub(super) world: &'a World<'a>,
-    pub(super) surfaces: &'a Surfaces,
+    pub(super) surfaces: &'a SmoothSurfaces,
     /// Around what mirrors or refracts.
-    pub(super) balls: &'a [Ball],
+    pub(super) balls: &'a [BoundingSphere],
     /// Most turns.
     pub(super) turns: u32,
     /// The flux of light as it is caught, in the mean, W: more than this is sent on in parts, and of less only some. None if
     /// it is not known yet.
     pub(super) typical: Option<f64>,
     /// Legs to be followed; none between ways.
-    pub(super) waiting: Vec<Leg>,
-    pub(super) caught: Vec<Caught>,
-    pub(super) balance: Balance,
+    pub(super) waiting: Vec<PhotonSegment>,
+    pub(super) caught: Vec<Photon>,
+    pub(super) balance: FluxBalance,
 }
 
 /// What is known of light on its way.
-pub(super) struct Leg {
+pub(super) struct PhotonSegment {
     ray: Ray,
     t_min: f64,
     flux: Channels,
@@ -222,21 +222,21 @@ pub(super) struct Leg {
     is_again: bool,
 }
 
-impl Flight<'_> {
+impl PhotonTracer<'_> {
     fn watts(&self, flux: Channels) -> f64 {
         let lanes = self.world.appearance.wavelengths.lanes();
         flux.0[..lanes].iter().sum::<f64>() / lanes as f64
     }
 
     /// Follows light to its end.
-    pub(super) fn follow(&mut self, start: &Ray0, choices: &Choices) {
-        let Ray0 { ray, flux, comb, time } = *start;
+    pub(super) fn follow(&mut self, start: &EmittedPhoton, choices: &PhotonSampler) {
+        let EmittedPhoton { ray, flux, comb, time } = *start;
         self.balance.ways += 1;
         self.balance.sent += self.watts(flux);
         let first = flux.max();
-        let cone = Cone { width: WIDTH * self.world.appearance.prepared.bounds.diagonal(), growth: 0.0 };
+        let cone = RayCone { width: WIDTH * self.world.appearance.prepared.bounds.diagonal(), growth: 0.0 };
         let media = Media::default();
-        let leg = Leg {
+        let leg = PhotonSegment {
             ray,
             t_min: 0.0,
             flux,
@@ -259,11 +259,11 @@ impl Flight<'_> {
             if leg.flux.max() <= 0.0 {
                 continue;
             }
-            let sight = Sight { ray: leg.ray, t_min: leg.t_min, t_max: f64::INFINITY, cone };
+            let sight = BoundedRay { ray: leg.ray, t_min: leg.t_min, t_max: f64::INFINITY, cone };
             match self.world.meet(&sight, comb, time) {
-                Met::Nothing => self.balance.escaped += self.watts(leg.flux),
-                Met::Glow(..) => self.balance.absorbed += self.watts(leg.flux),
-                Met::Element(found) => {
+                RayHit::Nothing => self.balance.escaped += self.watts(leg.flux),
+                RayHit::Glow(..) => self.balance.absorbed += self.watts(leg.flux),
+                RayHit::Element(found) => {
                     let length = found.distance - leg.t_min * leg.ray.direction.length();
                     leg.media.notice(&found);
                     let left = leg.flux * leg.media.absorbed(self.world, length, comb);
@@ -273,7 +273,7 @@ impl Flight<'_> {
                     if crossing.is_interface {
                         self.arrive(&leg, &found, (comb, crossing), choices);
                     } else {
-                        self.waiting.push(Leg { t_min: crossing.last, media: crossing.media, ..leg });
+                        self.waiting.push(PhotonSegment { t_min: crossing.last, media: crossing.media, ..leg });
                     }
                 }
             }
@@ -281,7 +281,7 @@ impl Flight<'_> {
     }
 
     /// Ends a leg by chance where it is faint, or gives it what others have lost.
-    fn survive(&mut self, leg: &mut Leg, first: f64, choices: &Choices) {
+    fn survive(&mut self, leg: &mut PhotonSegment, first: f64, choices: &PhotonSampler) {
         let faint = match leg.is_again {
             true => (first * FAINT).max(FAINT_AGAIN * self.typical.unwrap_or(0.0)),
             false if leg.turns > CERTAIN_TURNS => first * FAINT,
@@ -290,19 +290,19 @@ impl Flight<'_> {
         let part = leg.flux.max() / faint;
         if part < 1.0 {
             let before = self.watts(leg.flux);
-            let survives = choices.point(Purpose::Survival, leg.number)[0] < part;
+            let survives = choices.point(PhotonDimension::Survival, leg.number)[0] < part;
             leg.flux = if survives { leg.flux * part.recip() } else { Channels::ZERO };
             self.balance.gained += self.watts(leg.flux) - before;
         }
     }
 
     /// Catches light on an element, and sends it on.
-    fn arrive(&mut self, leg: &Leg, found: &Found<'_>, (comb, crossing): (usize, Crossing), choices: &Choices) {
+    fn arrive(&mut self, leg: &PhotonSegment, found: &SurfaceInteraction<'_>, (comb, crossing): (usize, MediumInterface), choices: &PhotonSampler) {
         let optics = found.optics;
         let incoming = self.watts(leg.flux);
         let towards = -leg.ray.direction.normalize();
         if leg.is_beam && optics.takes() {
-            self.caught.push(Caught {
+            self.caught.push(Photon {
                 position: self.world.place(found, &leg.ray),
                 towards,
                 flux: leg.flux,
@@ -311,7 +311,7 @@ impl Flight<'_> {
                 is_again: leg.is_again,
             });
         }
-        let arrival = Arrival { leg, found, crossing, frame: found.frame(), comb, towards, choices };
+        let arrival = PhotonInteraction { leg, found, crossing, frame: found.frame(), comb, towards, choices };
         let beam = (optics.throws() || optics.is_passable()).then(|| self.beam(&arrival)).flatten();
         // What does not go on is absorbed, or caught. What is spread was caught, too, and is sent again.
         let (expected, beam) = beam.unwrap_or((0.0, None));
@@ -328,10 +328,10 @@ impl Flight<'_> {
     }
 
     /// Where narrow lobes send light: the flux that is expected to go on, and one of the ways.
-    fn beam(&self, arrival: &Arrival<'_>) -> Option<(f64, Option<Leg>)> {
-        let Arrival { leg, found, comb, choices, .. } = arrival;
+    fn beam(&self, arrival: &PhotonInteraction<'_>) -> Option<(f64, Option<PhotonSegment>)> {
+        let PhotonInteraction { leg, found, comb, choices, .. } = arrival;
         let optics = found.optics;
-        let [choice, parting] = choices.point(Purpose::Choice, leg.number);
+        let [choice, parting] = choices.point(PhotonDimension::Choice, leg.number);
         // Where wavelengths part, the one that is left is drawn as it is seen.
         let alone = match leg.lane {
             None if found.disperses() => leg.flux.drawn(self.world.appearance.wavelengths.visibility(*comb), parting),
@@ -339,12 +339,12 @@ impl Flight<'_> {
         };
         let lane = leg.lane.or(alone.map(|(lane, _)| lane)).unwrap_or(0);
         let sighting = self.sighting(arrival, lane);
-        let direction = choices.point(Purpose::Direction, leg.number);
-        let drawn = optics.onward(&sighting, choice, direction, Among::Narrow);
+        let direction = choices.point(PhotonDimension::Direction, leg.number);
+        let drawn = optics.onward(&sighting, choice, direction, LobeSelection::Narrow);
         let Some(mut drawn) = drawn.filter(|drawn| drawn.density.is_none() || arrival.is_sound(drawn)) else {
             return Some((0.0, None));
         };
-        arrival.turn(&sighting, Among::Narrow, &mut drawn);
+        arrival.turn(&sighting, LobeSelection::Narrow, &mut drawn);
         let flux = leg.flux * passed(&sighting, &drawn);
         let expected = match drawn.density {
             // Its own weight is all that is known of a spread one.
@@ -359,8 +359,8 @@ impl Flight<'_> {
     }
 
     /// Sends on what broad lobes spread: half of it to what mirrors or refracts, as far as it is known where that is.
-    fn spread(&mut self, arrival: &Arrival<'_>) {
-        let Arrival { leg, found, frame, choices, .. } = arrival;
+    fn spread(&mut self, arrival: &PhotonInteraction<'_>) {
+        let PhotonInteraction { leg, found, frame, choices, .. } = arrival;
         let optics = found.optics;
         let sighting = self.sighting(arrival, leg.lane.unwrap_or(0));
         let from = found.element.position;
@@ -377,16 +377,16 @@ impl Flight<'_> {
         };
         for part in 1..=parts {
             let number = leg.number.wrapping_mul(MOST_PARTS).wrapping_add(part);
-            let [half, which] = choices.point(Purpose::Aimed, number);
-            let point = choices.point(Purpose::Spread, number);
+            let [half, which] = choices.point(PhotonDimension::Aimed, number);
+            let point = choices.point(PhotonDimension::Spread, number);
             let drawn = if all > 0.0 && half < 0.5 {
                 let mut left = which * all;
-                let is_chosen = |(_, angle): &(&Ball, f64)| {
+                let is_chosen = |(_, angle): &(&BoundingSphere, f64)| {
                     left -= angle;
                     left < 0.0
                 };
                 let ball = balls.iter().zip(angles()).find(is_chosen);
-                ball.map(|(ball, _)| Onward {
+                ball.map(|(ball, _)| BsdfSample {
                     light: frame.local(ball.direction(from, point)),
                     weight: Channels::ZERO,
                     density: Some(0.0),
@@ -394,48 +394,48 @@ impl Flight<'_> {
                     is_broad: true,
                 })
             } else {
-                let [choice, _] = choices.point(Purpose::Choice, number);
-                optics.onward(&sighting, choice, point, Among::Broad)
+                let [choice, _] = choices.point(PhotonDimension::Choice, number);
+                optics.onward(&sighting, choice, point, LobeSelection::Broad)
             };
             let Some(mut drawn) = drawn.filter(|drawn| arrival.is_sound(drawn)) else { continue };
             if all > 0.0 {
                 let direction = frame.world(drawn.light);
                 let aimed = balls.iter().zip(angles()).filter(|(b, angle)| *angle > 0.0 && b.is_met(from, direction));
-                let lobes = optics.density_among(Among::Broad, &sighting, drawn.light);
+                let lobes = optics.density_among(LobeSelection::Broad, &sighting, drawn.light);
                 drawn.density = Some(0.5 * (aimed.count() as f64 / all + lobes));
             }
-            arrival.turn(&sighting, Among::Broad, &mut drawn);
+            arrival.turn(&sighting, LobeSelection::Broad, &mut drawn);
             let flux = leg.flux * passed(&sighting, &drawn) * f64::from(parts).recip();
             if flux.max() > 0.0 && flux.is_finite() {
                 self.balance.again += self.watts(flux);
-                let leg = Leg { is_beam: false, is_again: true, ..arrival.leg_on(&drawn, (flux, leg.lane), number) };
+                let leg = PhotonSegment { is_beam: false, is_again: true, ..arrival.leg_on(&drawn, (flux, leg.lane), number) };
                 self.waiting.push(leg);
             }
         }
     }
 
-    fn sighting<'b>(&self, arrival: &Arrival<'b>, lane: usize) -> Sighting<'b> {
-        let Arrival { found, crossing, frame, comb, towards, .. } = arrival;
+    fn sighting<'b>(&self, arrival: &PhotonInteraction<'b>, lane: usize) -> ShadingContext<'b> {
+        let PhotonInteraction { found, crossing, frame, comb, towards, .. } = arrival;
         let side = crossing.side(self.world, *comb);
-        Sighting { view: frame.local(*towards), comb: *comb, side, lane, painted: found.painted() }
+        ShadingContext { view: frame.local(*towards), comb: *comb, side, lane, painted: found.painted() }
     }
 }
 
 /// Light that came to an element.
-struct Arrival<'a> {
-    leg: &'a Leg,
-    found: &'a Found<'a>,
-    crossing: Crossing,
-    frame: Frame,
+struct PhotonInteraction<'a> {
+    leg: &'a PhotonSegment,
+    found: &'a SurfaceInteraction<'a>,
+    crossing: MediumInterface,
+    frame: ShadingFrame,
     comb: usize,
     /// Towards where it came from, unit length.
     towards: DVec3,
-    choices: &'a Choices,
+    choices: &'a PhotonSampler,
 }
 
-impl Arrival<'_> {
+impl PhotonInteraction<'_> {
     /// Whether a direction of a spread lobe is on the same side of the triangle and of its surface: what is not is lost.
-    fn is_sound(&self, drawn: &Onward) -> bool {
+    fn is_sound(&self, drawn: &BsdfSample) -> bool {
         let above = drawn.light.z > 0.0;
         let plane = self.found.element.plane(above);
         (self.frame.world(drawn.light).dot(plane) > 0.0) == above && drawn.weight.is_finite()
@@ -443,19 +443,19 @@ impl Arrival<'_> {
 
     /// Gives a direction of a spread lobe the weight with which light goes from here to there, where that is not the same as
     /// from there to here.
-    fn turn(&self, sighting: &Sighting<'_>, among: Among, drawn: &mut Onward) {
+    fn turn(&self, sighting: &ShadingContext<'_>, among: LobeSelection, drawn: &mut BsdfSample) {
         if let Some(density) = drawn.density.filter(|_| drawn.light.z > 0.0) {
-            let back = Sighting { view: drawn.light, ..*sighting };
+            let back = ShadingContext { view: drawn.light, ..*sighting };
             drawn.weight = self.found.optics.value_among(among, &back, sighting.view) * (drawn.light.z / density);
         }
     }
 
     /// The leg that goes on by a narrow turn.
-    fn leg_on(&self, drawn: &Onward, (flux, lane): (Channels, Option<usize>), number: u32) -> Leg {
-        let Arrival { leg, found, frame, .. } = self;
+    fn leg_on(&self, drawn: &BsdfSample, (flux, lane): (Channels, Option<usize>), number: u32) -> PhotonSegment {
+        let PhotonInteraction { leg, found, frame, .. } = self;
         let legs = leg.legs + 1;
         if drawn.is_straight {
-            return Leg { t_min: found.t, flux, number, legs, ..**leg };
+            return PhotonSegment { t_min: found.t, flux, number, legs, ..**leg };
         }
         let through = drawn.light.z < 0.0;
         let media = if through { self.crossing.media } else { leg.media };
@@ -463,12 +463,12 @@ impl Arrival<'_> {
         let direction = element.righted(frame.world(drawn.light), !through);
         let origin = if through { element.through } else { element.leave };
         let (ray, turns) = (Ray { origin, direction }, leg.turns + 1);
-        Leg { ray, t_min: 0.0, flux, media, lane, number, legs, turns, is_beam: true, is_again: leg.is_again }
+        PhotonSegment { ray, t_min: 0.0, flux, media, lane, number, legs, turns, is_beam: true, is_again: leg.is_again }
     }
 }
 
 /// The part of flux that goes on: radiance grows as it enters what is denser; flux does not.
-fn passed(sighting: &Sighting<'_>, onward: &Onward) -> Channels {
+fn passed(sighting: &ShadingContext<'_>, onward: &BsdfSample) -> Channels {
     if onward.light.z >= 0.0 || onward.is_straight {
         return onward.weight;
     }

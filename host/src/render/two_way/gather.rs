@@ -4,12 +4,12 @@
 //! that chance shows; a large one blurs. Which is right is different from place to place: discs are tried from small to
 //! large as long as what they tell is the same within what chance allows.
 
-use super::flight::Caught;
-use super::surfaces::Surfaces;
-use super::walls::{Flat, InSight, Wall};
+use super::flight::Photon;
+use super::surfaces::SmoothSurfaces;
+use super::walls::{PlanarDisc, VisibleParts, OccluderSegment};
 use crate::color::{Channels, LANES};
 use crate::numeric::ray::Ray;
-use crate::octree::{Points, Sorted};
+use crate::octree::{SortedPoints, TriangleBvh};
 use crate::render::world::World;
 use glam::{DVec3, Vec2};
 use rayon::prelude::*;
@@ -39,8 +39,8 @@ const MANY_WALLS: usize = 64;
 const HEIGHT: f64 = 0.25;
 
 /// Light that was caught on surfaces, by its place.
-pub(super) struct Captured {
-    points: Points,
+pub(super) struct PhotonMap {
+    points: SortedPoints,
     towards: Vec<[f32; 3]>,
     sides: Vec<u32>,
     /// Flux of each lane, those of one after those of the other.
@@ -59,7 +59,7 @@ const AGAIN: u8 = 0x80;
 
 /// A place that asks for the light around it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct GatherPoint {
     pub(super) position: DVec3,
     /// Outer normal of the surface.
     pub(super) outside: DVec3,
@@ -72,7 +72,7 @@ pub(super) struct Place {
 
 /// How much light is looked at around a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Detail {
+pub(super) enum GatherDetail {
     /// For a place that is seen.
     Fine,
     /// A few ways will do, as for one of the many places that send light to what is seen.
@@ -82,21 +82,21 @@ pub(super) enum Detail {
 }
 
 /// What stands around places.
-pub(super) struct Surroundings<'a> {
+pub(super) struct GatherContext<'a> {
     pub(super) world: &'a World<'a>,
-    pub(super) surfaces: &'a Surfaces,
+    pub(super) surfaces: &'a SmoothSurfaces,
     /// Triangles that stand in the way of light.
-    pub(super) opaque: &'a Sorted,
+    pub(super) opaque: &'a TriangleBvh,
     /// The largest disc, scene units.
     pub(super) reach: f64,
-    pub(super) detail: Detail,
+    pub(super) detail: GatherDetail,
     /// What the areas of discs are multiplied with.
     pub(super) shrink: f64,
 }
 
 /// Light that arrives at a place, over an area.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Arriving {
+pub(super) struct PhotonContribution {
     /// Towards where it comes from.
     pub(super) towards: DVec3,
     /// Irradiance, W/m².
@@ -164,13 +164,13 @@ struct Disc {
     error: f64,
 }
 
-impl Captured {
+impl PhotonMap {
     /// Sorts what was caught.
-    pub(super) fn new(caught: &[Caught], lanes: usize) -> Captured {
+    pub(super) fn new(caught: &[Photon], lanes: usize) -> PhotonMap {
         let positions: Vec<DVec3> = caught.iter().map(|c| c.position).collect();
-        let (points, order) = Points::new(&positions);
+        let (points, order) = SortedPoints::new(&positions);
         let sorted = || order.par_iter().map(|number| &caught[*number as usize]);
-        Captured {
+        PhotonMap {
             towards: sorted().map(|c| c.towards.as_vec3().to_array()).collect(),
             sides: sorted().map(|c| c.side).collect(),
             flux: sorted().flat_map_iter(|c| c.flux.0[..lanes].iter().map(|flux| *flux as f32)).collect(),
@@ -196,14 +196,14 @@ impl Captured {
     ///
     /// - Returns the standard error of the irradiance by all of it, over the irradiance: what chance does as ways of light
     ///   arrive or not; 0 without light.
-    pub(super) fn each(&self, place: &Place, surroundings: &Surroundings<'_>, mut visit: impl FnMut(&Arriving)) -> f64 {
+    pub(super) fn each(&self, place: &GatherPoint, surroundings: &GatherContext<'_>, mut visit: impl FnMut(&PhotonContribution)) -> f64 {
         let Some(Gathered { near, square, factor, error }) = self.gathered(place, surroundings) else { return 0.0 };
         for (number, distance) in near {
             let number = number as usize;
             let weight = factor * (1.0 - f64::from(distance) / square);
             let mut irradiance = [0.0; LANES];
             irradiance.iter_mut().zip(self.flux_of(number)).for_each(|(lane, flux)| *lane = f64::from(*flux));
-            visit(&Arriving {
+            visit(&PhotonContribution {
                 towards: DVec3::from_array(self.towards[number].map(f64::from)),
                 irradiance: Channels(irradiance) * weight,
                 comb: usize::from(self.combs[number] & !AGAIN),
@@ -215,7 +215,7 @@ impl Captured {
 
     /// The irradiance around a place, W/m²: by light that took narrow turns only, and by light that took broad ones among
     /// them; and the standard error, as [`Captured::each`] has it. Wherever it comes from and whatever its comb is.
-    pub(super) fn irradiance(&self, place: &Place, surroundings: &Surroundings<'_>) -> ([Channels; 2], f64) {
+    pub(super) fn irradiance(&self, place: &GatherPoint, surroundings: &GatherContext<'_>) -> ([Channels; 2], f64) {
         let mut sums = [[0.0; LANES]; 2];
         let Some(Gathered { near, square, factor, error }) = self.gathered(place, surroundings) else {
             return (sums.map(Channels), 0.0);
@@ -236,11 +236,11 @@ impl Captured {
     }
 
     /// What counts around a place.
-    fn gathered(&self, place: &Place, surroundings: &Surroundings<'_>) -> Option<Gathered> {
+    fn gathered(&self, place: &GatherPoint, surroundings: &GatherContext<'_>) -> Option<Gathered> {
         let most = match surroundings.detail {
-            Detail::Fine => self.most,
-            Detail::Coarse => COARSE,
-            Detail::Smooth => SMOOTH * self.most,
+            GatherDetail::Fine => self.most,
+            GatherDetail::Coarse => COARSE,
+            GatherDetail::Smooth => SMOOTH * self.most,
         };
         let around = self.points.around(place.position, surroundings.reach, most);
         if around.count == 0 {
@@ -275,14 +275,14 @@ impl Captured {
     fn keep_seen(
         &self,
         near: &mut Vec<(u32, f32)>,
-        place: &Place,
+        place: &GatherPoint,
         (reach, axes): (f64, [DVec3; 2]),
-        surroundings: &Surroundings<'_>,
-    ) -> Vec<Wall> {
+        surroundings: &GatherContext<'_>,
+    ) -> Vec<OccluderSegment> {
         let above = (place.leave - place.position).normalize_or(place.outside);
-        let Surroundings { world, surfaces, opaque, .. } = surroundings;
-        let flat = Flat::new(place.leave, above, axes, reach);
-        let mut walls: Vec<Wall> = Vec::new();
+        let GatherContext { world, surfaces, opaque, .. } = surroundings;
+        let flat = PlanarDisc::new(place.leave, above, axes, reach);
+        let mut walls: Vec<OccluderSegment> = Vec::new();
         opaque.touching(flat.bounds(), |triangle| {
             if walls.len() <= MANY_WALLS && surfaces.of(triangle) != place.surface {
                 walls.extend(flat.cut(world.appearance.prepared.corners(triangle)));
@@ -318,10 +318,10 @@ impl Captured {
     fn disc(
         &self,
         near: &[(u32, f32)],
-        walls: &[Wall],
-        place: &Place,
+        walls: &[OccluderSegment],
+        place: &GatherPoint,
         (reach, axes): (f64, [DVec3; 2]),
-        of: &Surroundings<'_>,
+        of: &GatherContext<'_>,
     ) -> Option<Disc> {
         let side = self.points.side();
         let whole = (reach / side) * (reach / side);
@@ -331,7 +331,7 @@ impl Captured {
             rings[ring.min(RINGS - 1)].add(f64::from(self.strength[*number as usize]), f64::from(*square));
         }
         let borders = of.surfaces.around(place.surface, place.position, axes, reach);
-        let in_sight = (!(borders.is_empty() && walls.is_empty())).then(|| InSight::new(walls, &borders));
+        let in_sight = (!(borders.is_empty() && walls.is_empty())).then(|| VisibleParts::new(walls, &borders));
         let part = |square: f64| in_sight.as_ref().map_or(1.0, |seen| seen.part((square / whole).sqrt()));
         let (mut sums, mut next) = (Sums::default(), 0);
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);

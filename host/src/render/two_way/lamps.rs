@@ -1,13 +1,13 @@
 //! Lamps with what their ways of light are aimed at.
 
-use super::aim::Guide;
+use super::aim::ProjectionMap;
 
 /// A lamp with what it is aimed at.
 #[derive(Clone, Debug)]
-pub(super) struct Lamp {
+pub(super) struct PhotonSource {
     /// An index into the sources.
     pub(super) source: usize,
-    pub(super) aims: Vec<Aim>,
+    pub(super) aims: Vec<PhotonTarget>,
     /// What is caught of its flux, W; none before some of it was.
     pub(super) caught: Option<f64>,
     /// The name of its light in a database, less the pass; none without one.
@@ -16,12 +16,12 @@ pub(super) struct Lamp {
 
 /// Ways from a lamp to a ball.
 #[derive(Clone, Debug)]
-pub(super) struct Aim {
+pub(super) struct PhotonTarget {
     pub(super) ball: usize,
     /// How probable it is that a way of the lamp goes there; all together are 1.
     pub(super) part: f64,
     /// How many do.
     pub(super) count: u32,
     /// Where it is best aimed at.
-    pub(super) guide: Guide,
+    pub(super) guide: ProjectionMap,
 }

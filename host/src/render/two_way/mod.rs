@@ -24,32 +24,32 @@ mod shelf;
 mod surfaces;
 mod walls;
 
-pub use flight::Balance;
-pub use shelf::Shelf;
+pub use flight::FluxBalance;
+pub use shelf::PhotonStore;
 
 use crate::color::{Channels, LANES};
-use crate::illumination::light::Start;
-use crate::illumination::optics::Sighting;
+use crate::illumination::light::EmissionSample;
+use crate::illumination::optics::ShadingContext;
 use crate::memory;
 use crate::numeric::ray::Ray;
-use crate::numeric::sequence::Sequence;
-use crate::octree::Sorted;
+use crate::numeric::sequence::SobolSequence;
+use crate::octree::TriangleBvh;
 use crate::render::state::after;
-use crate::render::world::{Found, World, mean_diffuse};
-use crate::render::{Amount, Watch};
+use crate::render::world::{SurfaceInteraction, World, mean_diffuse};
+use crate::render::{Progress, Watch};
 use crate::scene::Prepared;
-use aim::{Aimed, Ball};
-use flight::{Caught, Choices, Flight, LEAST_TURNS, Purpose, Ray0};
-use gather::{Captured, Detail, Place, Surroundings};
+use aim::{DirectionPdf, BoundingSphere};
+use flight::{Photon, PhotonSampler, PhotonTracer, LEAST_TURNS, PhotonDimension, EmittedPhoton};
+use gather::{PhotonMap, GatherDetail, GatherPoint, GatherContext};
 use glam::DVec3;
-use lamps::{Aim, Lamp};
+use lamps::{PhotonTarget, PhotonSource};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
-use surfaces::Surfaces;
+use surfaces::SmoothSurfaces;
 
 /// Ways that one thread follows before it takes others.
 const CHUNK: u32 = 1024;
@@ -64,25 +64,25 @@ const WORTH_KEEPING: Duration = Duration::from_secs(5);
 const MOST_BYTES: u64 = 1 << 30;
 
 /// Follows light from lamps.
-pub(in crate::render) struct TwoWay<'a> {
-    surfaces: Surfaces,
+pub(in crate::render) struct PhotonMapper<'a> {
+    surfaces: SmoothSurfaces,
     /// Triangles that stand in the way of light.
-    opaque: Sorted,
+    opaque: TriangleBvh,
     /// Those around what mirrors or refracts, and then others at which lamps are aimed.
-    balls: Vec<Ball>,
+    balls: Vec<BoundingSphere>,
     bodies: usize,
-    lamps: Vec<Lamp>,
+    lamps: Vec<PhotonSource>,
     turns: u32,
     reach: f64,
     seed: u64,
     /// What was caught, pass by pass, as far as it is kept.
-    kept: Mutex<Vec<Arc<Capture>>>,
-    shelf: Option<&'a Shelf>,
+    kept: Mutex<Vec<Arc<PhotonPass>>>,
+    shelf: Option<&'a PhotonStore>,
 }
 
 /// Ways that are followed together: so many from a lamp to one ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-struct Chunk {
+struct PathBatch {
     lamp: usize,
     aim: usize,
     number: u32,
@@ -90,42 +90,42 @@ struct Chunk {
 
 /// What such ways brought, as if each of them were all of the lamp.
 #[derive(Clone, Debug)]
-struct Block {
-    caught: Vec<Caught>,
-    balance: Balance,
+struct BatchResult {
+    caught: Vec<Photon>,
+    balance: FluxBalance,
 }
 
-impl Block {
-    fn scaled(mut self, factor: f64) -> Block {
+impl BatchResult {
+    fn scaled(mut self, factor: f64) -> BatchResult {
         self.caught.iter_mut().for_each(|caught| caught.flux *= factor);
-        Block { balance: self.balance.scaled(factor), ..self }
+        BatchResult { balance: self.balance.scaled(factor), ..self }
     }
 }
 
 /// What a pass caught.
-struct Capture {
+struct PhotonPass {
     pass: u32,
-    light: Captured,
-    balance: Balance,
+    light: PhotonMap,
+    balance: FluxBalance,
 }
 
 /// Light that was caught, with what is needed to show it.
-pub(in crate::render) struct CaughtLight<'a> {
+pub(in crate::render) struct PhotonEstimator<'a> {
     world: &'a World<'a>,
-    two_way: &'a TwoWay<'a>,
-    capture: Arc<Capture>,
+    two_way: &'a PhotonMapper<'a>,
+    capture: Arc<PhotonPass>,
     shrink: f64,
 }
 
-impl<'s> TwoWay<'s> {
+impl<'s> PhotonMapper<'s> {
     /// Looks where light of lamps goes; none if nothing of it goes through mirrors or glass to where it can be caught.
     ///
     /// - `shelf`: where caught light is kept beyond this, if anywhere.
     pub(in crate::render) fn new(
         world: &World<'_>,
         keeps: impl Fn(usize) -> bool,
-        shelf: Option<&'s Shelf>,
-    ) -> Option<TwoWay<'s>> {
+        shelf: Option<&'s PhotonStore>,
+    ) -> Option<PhotonMapper<'s>> {
         let appearance = &world.appearance;
         let prepared = appearance.prepared;
         let settings = &prepared.settings;
@@ -145,9 +145,9 @@ impl<'s> TwoWay<'s> {
             keeps(object) && materials.into_iter().any(|m| appearance.optics(object as u32, m).takes())
         };
         let opaque = |triangle: u32| of(triangle).0 && world.is_opaque(triangle);
-        let mut two_way = TwoWay {
-            surfaces: Surfaces::new(prepared, takes),
-            opaque: Sorted::new(&prepared.vertices, &prepared.triangles).only(opaque),
+        let mut two_way = PhotonMapper {
+            surfaces: SmoothSurfaces::new(prepared, takes),
+            opaque: TriangleBvh::new(&prepared.vertices, &prepared.triangles).only(opaque),
             lamps: Vec::new(),
             turns: settings.light.reflection_depth.max(LEAST_TURNS),
             reach: settings.photons.radius.unwrap_or_else(|| widest_disc(prepared)),
@@ -162,7 +162,7 @@ impl<'s> TwoWay<'s> {
         if let Some(shelf) = shelf {
             let (photons, lamps) = (settings.photons.count, lamps.len());
             for lamp in &mut two_way.lamps {
-                let pilot = TwoWay::pilot(photons, lamps, lamp.aims.len());
+                let pilot = PhotonMapper::pilot(photons, lamps, lamp.aims.len());
                 lamp.name = Some(shelf.name(world, lamp, &keeps, pilot));
             }
         }
@@ -177,10 +177,10 @@ impl<'s> TwoWay<'s> {
         world: &'a World<'a>,
         pass: u32,
         watch: &Watch<'_>,
-    ) -> Option<CaughtLight<'a>> {
-        let shown = |capture: Arc<Capture>| {
+    ) -> Option<PhotonEstimator<'a>> {
+        let shown = |capture: Arc<PhotonPass>| {
             let shrink = f64::from(pass + 1).powf(-1.0 / 3.0);
-            CaughtLight { world, two_way: self, capture, shrink }
+            PhotonEstimator { world, two_way: self, capture, shrink }
         };
         let kept = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(capture) = kept().iter().find(|capture| capture.pass == pass) {
@@ -197,22 +197,22 @@ impl<'s> TwoWay<'s> {
         Some(shown(capture))
     }
 
-    fn capture(&self, world: &World<'_>, pass: u32, watch: &Watch<'_>) -> Option<Capture> {
+    fn capture(&self, world: &World<'_>, pass: u32, watch: &Watch<'_>) -> Option<PhotonPass> {
         let lanes = world.appearance.wavelengths.lanes();
         let before = self.before(pass, lanes);
-        let mut wanted: Vec<Chunk> = Vec::new();
-        for (lamp, Lamp { aims, .. }) in self.lamps.iter().enumerate() {
-            for (aim, Aim { count, .. }) in aims.iter().enumerate() {
-                wanted.extend((0..count.div_ceil(CHUNK)).map(|number| Chunk { lamp, aim, number }));
+        let mut wanted: Vec<PathBatch> = Vec::new();
+        for (lamp, PhotonSource { aims, .. }) in self.lamps.iter().enumerate() {
+            for (aim, PhotonTarget { count, .. }) in aims.iter().enumerate() {
+                wanted.extend((0..count.div_ceil(CHUNK)).map(|number| PathBatch { lamp, aim, number }));
             }
         }
-        let ways = |chunk: &Chunk| {
+        let ways = |chunk: &PathBatch| {
             let count = self.lamps[chunk.lamp].aims[chunk.aim].count;
             chunk.number * CHUNK..((chunk.number + 1) * CHUNK).min(count)
         };
-        let is_whole = |chunk: &Chunk| ways(chunk).len() == CHUNK as usize;
-        let known = |chunk: &Chunk| before.get(chunk).filter(|_| is_whole(chunk)).cloned();
-        let mut blocks: Vec<Option<Block>> = wanted.iter().map(known).collect();
+        let is_whole = |chunk: &PathBatch| ways(chunk).len() == CHUNK as usize;
+        let known = |chunk: &PathBatch| before.get(chunk).filter(|_| is_whole(chunk)).cloned();
+        let mut blocks: Vec<Option<BatchResult>> = wanted.iter().map(known).collect();
         let all = wanted.len() as u64;
         let mut kept = Instant::now();
         let mut due = self.shelf.map(|shelf| kept + shelf.every);
@@ -222,7 +222,7 @@ impl<'s> TwoWay<'s> {
             blocks.par_iter_mut().zip(&wanted).filter(|(block, _)| block.is_none()).for_each(|(block, chunk)| {
                 if !pauses() {
                     *block = Some(self.follow(world, u64::from(pass), chunk, ways(chunk)));
-                    (watch.progress)(Amount::of(done.fetch_add(1, Ordering::Relaxed) + 1, all, "parts"));
+                    (watch.progress)(Progress::of(done.fetch_add(1, Ordering::Relaxed) + 1, all, "parts"));
                 }
             });
             let is_finished = blocks.iter().all(Option::is_some);
@@ -245,30 +245,30 @@ impl<'s> TwoWay<'s> {
             }
         }
         let blocks = blocks.into_iter().flatten();
-        let scaled = |(chunk, block): (&Chunk, Block)| {
-            let Aim { count, part, .. } = self.lamps[chunk.lamp].aims[chunk.aim];
+        let scaled = |(chunk, block): (&PathBatch, BatchResult)| {
+            let PhotonTarget { count, part, .. } = self.lamps[chunk.lamp].aims[chunk.aim];
             block.scaled(part / f64::from(count))
         };
-        let blocks: Vec<Block> = wanted.iter().zip(blocks).map(scaled).collect();
-        let balance = blocks.iter().fold(Balance::default(), |sum, block| sum + block.balance);
-        let caught: Vec<Caught> = blocks.into_iter().flat_map(|block| block.caught).collect();
-        Some(Capture { pass, light: Captured::new(&caught, lanes), balance })
+        let blocks: Vec<BatchResult> = wanted.iter().zip(blocks).map(scaled).collect();
+        let balance = blocks.iter().fold(FluxBalance::default(), |sum, block| sum + block.balance);
+        let caught: Vec<Photon> = blocks.into_iter().flat_map(|block| block.caught).collect();
+        Some(PhotonPass { pass, light: PhotonMap::new(&caught, lanes), balance })
     }
 
     /// What of the light of a pass was followed in other runs.
-    fn before(&self, pass: u32, lanes: usize) -> HashMap<Chunk, Block> {
+    fn before(&self, pass: u32, lanes: usize) -> HashMap<PathBatch, BatchResult> {
         let Some(shelf) = self.shelf else { return HashMap::new() };
-        let named = self.lamps.iter().enumerate().filter_map(|(lamp, Lamp { name, .. })| Some((lamp, name.as_ref()?)));
+        let named = self.lamps.iter().enumerate().filter_map(|(lamp, PhotonSource { name, .. })| Some((lamp, name.as_ref()?)));
         named.flat_map(|(lamp, name)| shelf.load(&format!("{name}-{pass}"), lamp, lanes)).collect()
     }
 
     /// Keeps light of a pass for other runs, with what was kept before, of each lamp of which something is new.
-    fn keep(&self, world: &World<'_>, pass: u32, now: HashMap<Chunk, &Block>, before: &HashMap<Chunk, Block>) {
+    fn keep(&self, world: &World<'_>, pass: u32, now: HashMap<PathBatch, &BatchResult>, before: &HashMap<PathBatch, BatchResult>) {
         let Some(shelf) = self.shelf else { return };
         for (number, lamp) in self.lamps.iter().enumerate() {
             let Some(name) = &lamp.name else { continue };
             if now.keys().any(|chunk| chunk.lamp == number && !before.contains_key(chunk)) {
-                let mut all: HashMap<Chunk, &Block> = before.iter().map(|(chunk, block)| (*chunk, block)).collect();
+                let mut all: HashMap<PathBatch, &BatchResult> = before.iter().map(|(chunk, block)| (*chunk, block)).collect();
                 all.extend(&now);
                 all.retain(|chunk, _| chunk.lamp == number);
                 let what = format!("light {}, pass {pass}", world.appearance.sources[lamp.source].0 + 1);
@@ -278,9 +278,9 @@ impl<'s> TwoWay<'s> {
     }
 
     /// Follows some ways from a lamp.
-    fn follow(&self, world: &World<'_>, pass: u64, chunk: &Chunk, ways: Range<u32>) -> Block {
+    fn follow(&self, world: &World<'_>, pass: u64, chunk: &PathBatch, ways: Range<u32>) -> BatchResult {
         let lamp = &self.lamps[chunk.lamp];
-        let mut flight = Flight {
+        let mut flight = PhotonTracer {
             world,
             surfaces: &self.surfaces,
             balls: &self.balls[..self.bodies],
@@ -288,11 +288,11 @@ impl<'s> TwoWay<'s> {
             typical: lamp.caught,
             waiting: Vec::new(),
             caught: Vec::new(),
-            balance: Balance::default(),
+            balance: FluxBalance::default(),
         };
         let sequence = self.sequence(world, pass, chunk);
         for index in ways {
-            let choices = Choices::new(sequence, index);
+            let choices = PhotonSampler::new(sequence, index);
             match self.start(world, lamp, &lamp.aims[chunk.aim], &choices) {
                 Some(start) if start.flux.max() > 0.0 && start.flux.is_finite() => flight.follow(&start, &choices),
                 _ => flight.balance.ways += 1,
@@ -300,51 +300,51 @@ impl<'s> TwoWay<'s> {
         }
         // As exactly as it is kept.
         let rounded = |flux: Channels| Channels(flux.0.map(|flux| f64::from(flux as f32)));
-        let caught = flight.caught.into_iter().map(|caught| Caught { flux: rounded(caught.flux), ..caught });
-        Block { caught: caught.collect(), balance: flight.balance }
+        let caught = flight.caught.into_iter().map(|caught| Photon { flux: rounded(caught.flux), ..caught });
+        BatchResult { caught: caught.collect(), balance: flight.balance }
     }
 
     /// The choices of a pass for ways from a lamp.
-    fn sequence(&self, world: &World<'_>, pass: u64, chunk: &Chunk) -> Sequence {
+    fn sequence(&self, world: &World<'_>, pass: u64, chunk: &PathBatch) -> SobolSequence {
         let light = world.appearance.sources[self.lamps[chunk.lamp].source].0;
         let number = (light as u64) << 32 | chunk.aim as u64;
-        Sequence::new(self.seed ^ pass.wrapping_mul(0x9e37_79b9_7f4a_7c15), number)
+        SobolSequence::new(self.seed ^ pass.wrapping_mul(0x9e37_79b9_7f4a_7c15), number)
     }
 
     /// Light as it leaves a lamp, as if this were all of it.
-    fn start(&self, world: &World<'_>, lamp: &Lamp, aim: &Aim, choices: &Choices) -> Option<Ray0> {
+    fn start(&self, world: &World<'_>, lamp: &PhotonSource, aim: &PhotonTarget, choices: &PhotonSampler) -> Option<EmittedPhoton> {
         let appearance = &world.appearance;
         let source = &appearance.sources[lamp.source].1;
-        let [comb, time] = choices.point(Purpose::Wavelengths, 0);
+        let [comb, time] = choices.point(PhotonDimension::Wavelengths, 0);
         let comb = appearance.wavelengths.comb(comb);
         let time = if world.moves() { (time - 0.5) * appearance.prepared.settings.geometry.shutter } else { 0.0 };
-        let place = aim.guide.draw(choices.point(Purpose::Aim, 0));
+        let place = aim.guide.draw(choices.point(PhotonDimension::Aim, 0));
         let ball = &self.balls[aim.ball];
         // However a way might have been drawn.
-        let all = |density: &dyn Fn(&Ball) -> Option<Aimed>| -> f64 {
-            let of = |other: &Aim| {
+        let all = |density: &dyn Fn(&BoundingSphere) -> Option<DirectionPdf>| -> f64 {
+            let of = |other: &PhotonTarget| {
                 let (density, place) = density(&self.balls[other.ball])?;
                 Some(other.part * density * other.guide.density(place))
             };
             lamp.aims.iter().filter_map(of).sum()
         };
-        match source.start(choices.point(Purpose::Start, 0), comb)? {
-            Start::Place { at, normal, area } => {
+        match source.start(choices.point(PhotonDimension::Start, 0), comb)? {
+            EmissionSample::Place { at, normal, area } => {
                 let direction = ball.direction(at, place);
                 let density = all(&|ball| ball.density(at, direction));
                 let flux = source.intensity(normal, direction, comb) * density.recip();
                 // Clear of the lamp itself.
                 let largest = at.abs().max_element() + area.sqrt();
                 let clear = normal.map_or(DVec3::ZERO, |n| n * (1e-12 * largest * n.dot(direction).signum()));
-                Some(Ray0 { ray: Ray { origin: at + clear, direction }, flux, comb, time })
+                Some(EmittedPhoton { ray: Ray { origin: at + clear, direction }, flux, comb, time })
             }
-            Start::Parallel { direction, irradiance } => {
+            EmissionSample::Parallel { direction, irradiance } => {
                 let on = ball.line(direction, place);
                 let density = all(&|ball| ball.line_density(direction, on));
                 let bounds = &appearance.prepared.bounds;
                 let far = 2.0 * bounds.diagonal() + on.distance(bounds.center());
                 let ray = Ray { origin: on - direction * far, direction };
-                Some(Ray0 { ray, flux: irradiance * density.recip(), comb, time })
+                Some(EmittedPhoton { ray, flux: irradiance * density.recip(), comb, time })
             }
         }
     }
@@ -355,9 +355,9 @@ pub fn widest_disc(prepared: &Prepared) -> f64 {
     REACH * prepared.bounds.diagonal()
 }
 
-impl CaughtLight<'_> {
+impl PhotonEstimator<'_> {
     /// What became of all that was sent.
-    pub(in crate::render) fn balance(&self) -> Balance {
+    pub(in crate::render) fn balance(&self) -> FluxBalance {
         self.capture.balance
     }
 
@@ -373,14 +373,14 @@ impl CaughtLight<'_> {
         let Some(normal) = normal.filter(|_| optics.takes()) else { return Channels::ZERO };
         let surface = self.two_way.surfaces.of(triangle);
         let lift = LIFT * (at.abs().max_element() + prepared.bounds.diagonal());
-        let place = Place {
+        let place = GatherPoint {
             position: at,
             outside: normal,
             leave: at + normal * if outside { lift } else { -lift },
             surface,
             side: flight::side_of(surface, outside),
         };
-        let ([narrow, broad], _) = self.capture.light.irradiance(&place, &self.surroundings(Detail::Smooth));
+        let ([narrow, broad], _) = self.capture.light.irradiance(&place, &self.surroundings(GatherDetail::Smooth));
         let irradiance = narrow + broad;
         if irradiance == Channels::ZERO {
             return irradiance;
@@ -391,8 +391,8 @@ impl CaughtLight<'_> {
         mean_diffuse(optics, place.as_ref(), appearance.wavelengths.combs()) * irradiance
     }
 
-    fn surroundings(&self, detail: Detail) -> Surroundings<'_> {
-        Surroundings {
+    fn surroundings(&self, detail: GatherDetail) -> GatherContext<'_> {
+        GatherContext {
             world: self.world,
             surfaces: &self.two_way.surfaces,
             opaque: &self.two_way.opaque,
@@ -411,8 +411,8 @@ impl CaughtLight<'_> {
     ///   over it.
     pub(in crate::render) fn seen(
         &self,
-        found: &Found<'_>,
-        sighting: &Sighting<'_>,
+        found: &SurfaceInteraction<'_>,
+        sighting: &ShadingContext<'_>,
         (passed, is_parted): (Channels, bool),
         coarse: bool,
     ) -> ([(Channels, DVec3); 2], f64) {
@@ -420,7 +420,7 @@ impl CaughtLight<'_> {
         let element = &found.element;
         let surface = two_way.surfaces.of(found.triangle);
         let sign = if element.outside { 1.0 } else { -1.0 };
-        let place = Place {
+        let place = GatherPoint {
             position: element.position,
             outside: element.face * sign,
             leave: element.leave,
@@ -428,7 +428,7 @@ impl CaughtLight<'_> {
             side: flight::side_of(surface, element.outside),
         };
         let appearance = &self.world.appearance;
-        let surroundings = self.surroundings(if coarse { Detail::Coarse } else { Detail::Fine });
+        let surroundings = self.surroundings(if coarse { GatherDetail::Coarse } else { GatherDetail::Fine });
         let frame = found.frame();
         let wavelengths = &appearance.wavelengths;
         let is_one_color = !wavelengths.is_spectral() || is_parted;
@@ -444,7 +444,7 @@ impl CaughtLight<'_> {
                 *sum += found.optics.spread_value(sighting, light) * arriving.irradiance;
             } else {
                 // The light has other wavelengths than the ray.
-                let at = Sighting { comb: arriving.comb, ..*sighting };
+                let at = ShadingContext { comb: arriving.comb, ..*sighting };
                 let passed = between(passed, sighting.comb, arriving.comb, wavelengths.combs());
                 let radiance = found.optics.spread_value(&at, light) * arriving.irradiance * passed;
                 *elsewhere += wavelengths.seen(arriving.comb, radiance);

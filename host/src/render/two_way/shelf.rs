@@ -5,11 +5,11 @@
 //! are kept in whole blocks: where a lamp gets more ways or fewer than before, the blocks that are wanted are taken, and
 //! the others are followed. The picture is the same to the bit as without.
 
-use super::flight::{Balance, Caught};
-use super::lamps::Lamp;
-use super::{Block, CHUNK, Chunk};
+use super::flight::{FluxBalance, Photon};
+use super::lamps::PhotonSource;
+use super::{BatchResult, CHUNK, PathBatch};
 use crate::color::{Channels, Color, LANES, Origin};
-use crate::database::{CaughtBlock, CaughtLight, Content, DatabaseError, Kind, Record, Store};
+use crate::database::{PhotonBlock, StoredPhotons, RecordContent, DatabaseError, RecordKind, Record, Store};
 use crate::encoding::{Integers, encode_into};
 use crate::illumination::optics::Interreflection;
 use crate::render::world::World;
@@ -32,7 +32,7 @@ const AGAIN: u8 = 0x80;
 
 /// Where caught light of a scene is kept.
 #[derive(Clone, Debug)]
-pub struct Shelf {
+pub struct PhotonStore {
     path: PathBuf,
     /// A hash of the scene without lamps.
     scene: u128,
@@ -72,7 +72,7 @@ impl Sum {
     }
 }
 
-impl Shelf {
+impl PhotonStore {
     /// A database for the light of a scene; it is made if there is none.
     ///
     /// - `every`: light of a pass that takes longer is kept after each such time. `lasts`: whether light is kept when its pass
@@ -86,7 +86,7 @@ impl Shelf {
         prepared: &Prepared,
         every: Duration,
         lasts: bool,
-    ) -> Result<Shelf, DatabaseError> {
+    ) -> Result<PhotonStore, DatabaseError> {
         Store::open_to_write(path)?;
         let mut dark = scene.clone();
         dark.camera = None;
@@ -113,13 +113,13 @@ impl Shelf {
         sum.add(&(FORM, &dark));
         sum.0.write(bytemuck::cast_slice(&prepared.triangles));
         sum.0.write(bytemuck::cast_slice(&prepared.vertices));
-        Ok(Shelf { path: path.into(), scene: sum.value(), every, lasts })
+        Ok(PhotonStore { path: path.into(), scene: sum.value(), every, lasts })
     }
 
     /// The name of the light of a lamp, less the pass.
     ///
     /// - `pilot`: how many ways were followed first to each thing that it is aimed at.
-    pub(super) fn name(&self, world: &World<'_>, lamp: &Lamp, keeps: impl Fn(usize) -> bool, pilot: u32) -> String {
+    pub(super) fn name(&self, world: &World<'_>, lamp: &PhotonSource, keeps: impl Fn(usize) -> bool, pilot: u32) -> String {
         let appearance = &world.appearance;
         let prepared = appearance.prepared;
         let number = appearance.sources[lamp.source].0;
@@ -143,10 +143,10 @@ impl Shelf {
     }
 
     /// Light of a lamp that was followed before, block by block; of more, the first blocks.
-    pub(super) fn load(&self, name: &str, lamp: usize, lanes: usize) -> HashMap<Chunk, Block> {
-        let found = Store::open(&self.path).and_then(|store| store.find(Kind::CaughtLight, name));
+    pub(super) fn load(&self, name: &str, lamp: usize, lanes: usize) -> HashMap<PathBatch, BatchResult> {
+        let found = Store::open(&self.path).and_then(|store| store.find(RecordKind::CaughtLight, name));
         let caught = match found {
-            Ok(Some(Record { content: Content::CaughtLight(caught), .. })) => *caught,
+            Ok(Some(Record { content: RecordContent::CaughtLight(caught), .. })) => *caught,
             Ok(_) => return HashMap::new(),
             Err(error) => {
                 tracing::warn!("caught light is not read: {error}");
@@ -155,18 +155,18 @@ impl Shelf {
         };
         let blocks = caught.blocks.into_iter().filter(|_| usize::from(caught.lanes) == lanes);
         blocks
-            .map(|block| (Chunk { lamp, aim: block.aim as usize, number: block.number }, read(&block, lanes)))
+            .map(|block| (PathBatch { lamp, aim: block.aim as usize, number: block.number }, read(&block, lanes)))
             .collect()
     }
 
     /// Keeps light of a lamp instead of what was kept of it; what cannot be kept is told of and else not missed.
     ///
     /// - `what`: the lamp and the pass in words.
-    pub(super) fn save(&self, name: &str, what: String, lanes: usize, blocks: &HashMap<Chunk, &Block>) {
+    pub(super) fn save(&self, name: &str, what: String, lanes: usize, blocks: &HashMap<PathBatch, &BatchResult>) {
         let mut sorted: Vec<_> = blocks.iter().collect();
         sorted.sort_by_key(|(chunk, _)| (chunk.number, chunk.aim));
-        let blocks: Vec<CaughtBlock> = sorted.into_iter().map(|(chunk, block)| written(chunk, block, lanes)).collect();
-        let content = Content::CaughtLight(Box::new(CaughtLight { lanes: lanes as u8, blocks }));
+        let blocks: Vec<PhotonBlock> = sorted.into_iter().map(|(chunk, block)| written(chunk, block, lanes)).collect();
+        let content = RecordContent::CaughtLight(Box::new(StoredPhotons { lanes: lanes as u8, blocks }));
         let origin = Origin { what, source: "two-way ray tracing".into(), terms: String::new() };
         let record = Record { name: name.into(), origin, content };
         if let Err(error) = Store::open_to_write(&self.path).and_then(|store| self.add(&store, record)) {
@@ -175,22 +175,22 @@ impl Shelf {
     }
 
     fn add(&self, store: &Store, record: Record) -> Result<(), DatabaseError> {
-        let entries = store.entries(Some(Kind::CaughtLight))?;
+        let entries = store.entries(Some(RecordKind::CaughtLight))?;
         let mut bytes: u64 = entries.iter().map(|entry| entry.bytes).sum();
         if bytes > MOST_BYTES {
             let others = || entries.iter().filter(|entry| !entry.name.starts_with(&self.prefix()));
             bytes -= others().map(|entry| entry.bytes).sum::<u64>();
-            store.remove(&others().map(|entry| (Kind::CaughtLight, &*entry.name)).collect::<Vec<_>>())?;
+            store.remove(&others().map(|entry| (RecordKind::CaughtLight, &*entry.name)).collect::<Vec<_>>())?;
         }
         if bytes > MOST_BYTES { Ok(()) } else { store.add(&[record], true) }
     }
 }
 
-fn written(chunk: &Chunk, block: &Block, lanes: usize) -> CaughtBlock {
-    let Balance { ways: _, before: _, sent, again, gained, straight, caught, absorbed, escaped, stopped } =
+fn written(chunk: &PathBatch, block: &BatchResult, lanes: usize) -> PhotonBlock {
+    let FluxBalance { ways: _, before: _, sent, again, gained, straight, caught, absorbed, escaped, stopped } =
         block.balance;
     let all = || block.caught.iter();
-    CaughtBlock {
+    PhotonBlock {
         aim: chunk.aim as u32,
         number: chunk.number,
         ways: u64::from(CHUNK),
@@ -203,11 +203,11 @@ fn written(chunk: &Chunk, block: &Block, lanes: usize) -> CaughtBlock {
     }
 }
 
-fn read(block: &CaughtBlock, lanes: usize) -> Block {
+fn read(block: &PhotonBlock, lanes: usize) -> BatchResult {
     let caught = |k: usize| {
         let mut flux = [0.0; LANES];
         flux.iter_mut().zip(&block.flux[k * lanes..(k + 1) * lanes]).for_each(|(lane, flux)| *lane = f64::from(*flux));
-        Caught {
+        Photon {
             position: DVec3::from_array(block.positions[k]),
             towards: DVec3::from_array(block.towards[k].map(f64::from)),
             flux: Channels(flux),
@@ -218,6 +218,6 @@ fn read(block: &CaughtBlock, lanes: usize) -> Block {
     };
     let [sent, again, gained, straight, all, absorbed, escaped, stopped] = block.balance;
     let (ways, before) = (block.ways, block.ways);
-    let balance = Balance { ways, before, sent, again, gained, straight, caught: all, absorbed, escaped, stopped };
-    Block { caught: (0..block.positions.len()).map(caught).collect(), balance }
+    let balance = FluxBalance { ways, before, sent, again, gained, straight, caught: all, absorbed, escaped, stopped };
+    BatchResult { caught: (0..block.positions.len()).map(caught).collect(), balance }
 }

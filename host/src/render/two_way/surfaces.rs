@@ -7,7 +7,7 @@
 use crate::mesh::Mesh;
 use crate::mesh::edges::EdgeTable;
 use crate::numeric::bounds::Bounds;
-use crate::octree::Sorted;
+use crate::octree::TriangleBvh;
 use crate::scene::Prepared;
 use glam::{DVec2, DVec3};
 
@@ -17,12 +17,12 @@ const CREASE: f64 = 30.0;
 pub(super) const LEAST_PART: f64 = 1e-3;
 
 /// The smooth surfaces of a scene.
-pub(super) struct Surfaces {
+pub(super) struct SmoothSurfaces {
     /// For each triangle which surface it belongs to.
     of: Vec<u32>,
     /// The edges where surfaces end, the surface on their left as it is seen from outside.
     borders: Vec<Border>,
-    near: Sorted,
+    near: TriangleBvh,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -31,9 +31,9 @@ struct Border {
     ends: [DVec3; 2],
 }
 
-impl Surfaces {
+impl SmoothSurfaces {
     /// Finds those of the objects that are asked for; what is left is one surface without an end.
-    pub(super) fn new(prepared: &Prepared, is_asked_for: impl Fn(usize) -> bool) -> Surfaces {
+    pub(super) fn new(prepared: &Prepared, is_asked_for: impl Fn(usize) -> bool) -> SmoothSurfaces {
         let mut of = vec![0; prepared.triangles.len()];
         let mut borders = Vec::new();
         let mut next = 1;
@@ -72,7 +72,7 @@ impl Surfaces {
         }
         let vertices: Vec<DVec3> = borders.iter().flat_map(|border| border.ends).collect();
         let segments: Vec<[u32; 3]> = (0..borders.len() as u32).map(|i| [2 * i, 2 * i + 1, 2 * i + 1]).collect();
-        Surfaces { of, near: Sorted::new(&vertices, &segments), borders }
+        SmoothSurfaces { of, near: TriangleBvh::new(&vertices, &segments), borders }
     }
 
     /// The surface that a triangle belongs to.

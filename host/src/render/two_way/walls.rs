@@ -13,7 +13,7 @@ const OVERLAP: f64 = 1e-6;
 
 /// A disc on a plane.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Flat {
+pub(super) struct PlanarDisc {
     middle: DVec3,
     above: DVec3,
     /// Of the plane, unit length.
@@ -23,15 +23,15 @@ pub(super) struct Flat {
 
 /// A segment that hides what is behind it from the middle of the disc, which has radius 1 here.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Wall {
+pub(super) struct OccluderSegment {
     /// The middle is on the left of the way from one to the other.
     ends: [Vec2; 2],
 }
 
-impl Flat {
+impl PlanarDisc {
     /// - `above`: the normal of its side, unit length. `axes`: of the plane. `radius`: scene units.
-    pub(super) fn new(middle: DVec3, above: DVec3, axes: [DVec3; 2], radius: f64) -> Flat {
-        Flat { middle, above, axes, radius }
+    pub(super) fn new(middle: DVec3, above: DVec3, axes: [DVec3; 2], radius: f64) -> PlanarDisc {
+        PlanarDisc { middle, above, axes, radius }
     }
 
     /// What the disc reaches to.
@@ -42,7 +42,7 @@ impl Flat {
     }
 
     /// Where a triangle cuts the disc; none if it does not, or only touches it from below.
-    pub(super) fn cut(&self, corners: [DVec3; 3]) -> Option<Wall> {
+    pub(super) fn cut(&self, corners: [DVec3; 3]) -> Option<OccluderSegment> {
         let offsets = corners.map(|corner| corner - self.middle);
         let heights = offsets.map(|offset| offset.dot(self.above));
         let is_above = heights.map(|height| height > 0.0);
@@ -69,11 +69,11 @@ impl Flat {
         }
         let over = way.normalize_or_zero() * OVERLAP;
         let ends = [a - over, b + over].map(|end| end.as_vec2());
-        Some(Wall { ends: if a.perp_dot(b) < 0.0 { [ends[1], ends[0]] } else { ends } })
+        Some(OccluderSegment { ends: if a.perp_dot(b) < 0.0 { [ends[1], ends[0]] } else { ends } })
     }
 }
 
-impl Wall {
+impl OccluderSegment {
     /// Whether it stands between the middle and a place.
     #[inline]
     pub(super) fn hides(&self, place: Vec2) -> bool {
@@ -83,7 +83,7 @@ impl Wall {
 }
 
 /// What of discs around a place is on its surface and in sight of it, disc by disc.
-pub(super) struct InSight {
+pub(super) struct VisibleParts {
     parts: Vec<Part>,
     /// Of each part what is of borders before its wall; without walls all of them.
     borders: Vec<[DVec2; 2]>,
@@ -97,15 +97,15 @@ struct Part {
     end: usize,
 }
 
-impl InSight {
+impl VisibleParts {
     /// - `borders`: of the surface, which is on their left; the unit is that of walls.
     ///
     /// # Source
     /// Ours: as [`part_of_disc`], from angle to angle between the ends of all segments. Behind the first wall nothing
     /// counts, and a border gives or takes only what is before the wall.
-    pub(super) fn new(walls: &[Wall], borders: &[[DVec2; 2]]) -> InSight {
+    pub(super) fn new(walls: &[OccluderSegment], borders: &[[DVec2; 2]]) -> VisibleParts {
         if walls.is_empty() {
-            return InSight { parts: Vec::new(), borders: borders.to_vec() };
+            return VisibleParts { parts: Vec::new(), borders: borders.to_vec() };
         }
         let walls: Vec<[DVec2; 2]> = walls.iter().map(|wall| wall.ends.map(|end| end.as_dvec2())).collect();
         let mut angles: Vec<f64> = walls.iter().chain(borders).flatten().map(|end| end.to_angle()).collect();
@@ -117,7 +117,7 @@ impl InSight {
         angles.sort_by(f64::total_cmp);
         let first = angles[0] + TAU;
         angles.push(first);
-        let mut seen = InSight { parts: Vec::with_capacity(angles.len()), borders: Vec::new() };
+        let mut seen = VisibleParts { parts: Vec::with_capacity(angles.len()), borders: Vec::new() };
         for pair in angles.windows(2).filter(|pair| pair[0] < pair[1]) {
             let [from, to] = [pair[0], pair[1]].map(DVec2::from_angle);
             let middle = DVec2::from_angle(0.5 * (pair[0] + pair[1]));
@@ -181,18 +181,18 @@ fn along_line([a, b]: [DVec2; 2], way: DVec2) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::sampling::Stream;
+    use crate::numeric::sampling::RandomStream;
 
     #[test]
     fn what_a_wall_hides_is_what_rays_along_the_plane_do_not_reach() {
-        let mut stream = Stream::new(9, 1);
+        let mut stream = RandomStream::new(9, 1);
         let mut coordinate = move || 2.0 * stream.uniform() - 1.0;
         let mut hidden = 0;
         for _ in 0..20_000 {
             let mut vector = || DVec3::new(coordinate(), coordinate(), coordinate());
             let (middle, normal, corners) = (vector(), vector().normalize(), [vector(), vector(), vector()]);
             let (x, y) = normal.any_orthonormal_pair();
-            let flat = Flat::new(middle, normal, [x, y], 0.8);
+            let flat = PlanarDisc::new(middle, normal, [x, y], 0.8);
             let wall = flat.cut(corners);
             let at = DVec2::new(coordinate(), coordinate()) * 0.7;
             let end = middle + (flat.axes[0] * at.x + flat.axes[1] * at.y) * 0.8;
@@ -216,7 +216,7 @@ mod tests {
         let segment = |a: [f64; 2], b: [f64; 2]| [DVec2::from_array(a), DVec2::from_array(b)];
         let wall = |a, b| {
             let [a, b] = segment(a, b);
-            Wall { ends: if a.perp_dot(b) < 0.0 { [b, a] } else { [a, b] }.map(|end| end.as_vec2()) }
+            OccluderSegment { ends: if a.perp_dot(b) < 0.0 { [b, a] } else { [a, b] }.map(|end| end.as_vec2()) }
         };
         let corner = [wall([-3.0, 0.3], [3.0, 0.3]), wall([-0.2, -2.0], [-0.2, 2.0])];
         let behind = [wall([0.2, -0.3], [0.25, 0.4]), wall([0.5, -0.2], [0.45, 0.1])];
@@ -242,7 +242,7 @@ mod tests {
                             part += if is_seen && is_on(p, has_line, has_hole) { weight } else { 0.0 };
                         }
                     }
-                    let found = InSight::new(walls, &borders).part(radius);
+                    let found = VisibleParts::new(walls, &borders).part(radius);
                     assert!(
                         (found - part / all).abs() < 4e-3,
                         "{radius} {has_line} {has_hole}: {found} {}",
@@ -255,14 +255,14 @@ mod tests {
 
     #[test]
     fn nothing_is_seen_between_two_walls_that_meet() {
-        let flat = Flat::new(DVec3::new(3.0, -7.0, 1e-9), DVec3::Z, [DVec3::X, DVec3::Y], 2.0);
+        let flat = PlanarDisc::new(DVec3::new(3.0, -7.0, 1e-9), DVec3::Z, [DVec3::X, DVec3::Y], 2.0);
         let corner = |x: f64, z: f64| DVec3::new(3.0 + x, -6.0, z);
         // One face of a box, its diagonal from below to above.
         let walls = [
             [corner(-1.0, 0.0), corner(1.0, 0.0), corner(1.0, 2.0)],
             [corner(-1.0, 0.0), corner(1.0, 2.0), corner(-1.0, 2.0)],
         ];
-        let walls: Vec<Wall> = walls.into_iter().filter_map(|corners| flat.cut(corners)).collect();
+        let walls: Vec<OccluderSegment> = walls.into_iter().filter_map(|corners| flat.cut(corners)).collect();
         assert_eq!(walls.len(), 2);
         for i in 0..10_000 {
             let x = (i as f32 / 5000.0 - 1.0) * 0.999;
@@ -272,7 +272,7 @@ mod tests {
 
     #[test]
     fn what_touches_the_plane_from_below_or_is_far_is_no_wall() {
-        let flat = Flat::new(DVec3::ZERO, DVec3::Z, [DVec3::X, DVec3::Y], 1.0);
+        let flat = PlanarDisc::new(DVec3::ZERO, DVec3::Z, [DVec3::X, DVec3::Y], 1.0);
         let at = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
         assert!(flat.cut([at(-1.0, 0.5, 0.0), at(1.0, 0.5, 0.0), at(0.0, 0.5, -1.0)]).is_none());
         assert!(flat.cut([at(-1.0, 0.5, 0.0), at(1.0, 0.5, 0.0), at(0.0, 0.5, 1.0)]).is_some());

@@ -1,9 +1,9 @@
 //! Materials and lights of a scene made ready for rendering, as the plan keeps them.
 
-use crate::color::{Channels, Curve, Wavelengths};
+use crate::color::{Channels, SpectralTable, WavelengthSets};
 use crate::illumination::Material;
-use crate::illumination::light::{Glow, Source};
-use crate::illumination::optics::{Interior, Interreflection, Library, Optics};
+use crate::illumination::light::{LightHit, LightSource};
+use crate::illumination::optics::{InteriorMedium, Interreflection, BsdfBuilder, Bsdf};
 use crate::numeric::print_of;
 use crate::numeric::ray::Ray;
 use crate::plan::{Plan, Stage};
@@ -15,19 +15,19 @@ use rustc_hash::FxHashMap;
 /// A prepared scene with its materials and lights made ready.
 pub(in crate::render) struct Appearance<'a> {
     pub(in crate::render) prepared: &'a Prepared,
-    pub(in crate::render) wavelengths: Wavelengths,
+    pub(in crate::render) wavelengths: WavelengthSets,
     /// All materials, each once.
-    optics: Vec<Optics>,
+    optics: Vec<Bsdf>,
     /// For each object, which of them its materials are.
     optics_of: Vec<Vec<u32>>,
     /// All lights, objects that emit among them, with their numbers: those of the scene come first.
-    pub(in crate::render) sources: Vec<(usize, Source)>,
+    pub(in crate::render) sources: Vec<(usize, LightSource)>,
     /// For each object and material of it that emits, which of the lights it is.
     emitters: Vec<((u32, u32), usize)>,
     /// Radiance where there is nothing and no sky.
-    background: Curve,
+    background: SpectralTable,
     /// Ambient radiance.
-    pub(in crate::render) ambient: Option<Curve>,
+    pub(in crate::render) ambient: Option<SpectralTable>,
     /// Whether normals are interpolated.
     pub(in crate::render) curved: bool,
     /// Whether rays are led on to exact surfaces.
@@ -48,7 +48,7 @@ impl<'a> Appearance<'a> {
     /// # Errors
     /// [`RenderError::Material`].
     pub(in crate::render) fn new(prepared: &'a Prepared, plan: &Plan) -> Result<Appearance<'a>, RenderError> {
-        let wavelengths = if plan.needs(Stage::Spectra) { Wavelengths::spectral() } else { Wavelengths::bands() };
+        let wavelengths = if plan.needs(Stage::Spectra) { WavelengthSets::spectral() } else { WavelengthSets::bands() };
         let mut appearance = Appearance {
             prepared,
             optics: Vec::new(),
@@ -69,12 +69,12 @@ impl<'a> Appearance<'a> {
         for (number, light) in prepared.lights.iter().enumerate().filter(|(number, _)| plan.keeps_light(*number)) {
             appearance
                 .sources
-                .push((number, Source::new(light, &appearance.wavelengths).with_portals(&prepared.portals)));
+                .push((number, LightSource::new(light, &appearance.wavelengths).with_portals(&prepared.portals)));
         }
         appearance.add_emitters(plan);
-        appearance.passing = appearance.optics.iter().any(Optics::is_passable);
+        appearance.passing = appearance.optics.iter().any(Bsdf::is_passable);
         let is_followed = plan.needs(Stage::CaughtLight) || prepared.settings.light.caustics == Caustics::PathTraced;
-        appearance.clears = !is_followed && appearance.optics.iter().any(Optics::is_clear);
+        appearance.clears = !is_followed && appearance.optics.iter().any(Bsdf::is_clear);
         let is_transparent =
             |numbers: &&Vec<u32>| numbers.iter().any(|number| appearance.optics[*number as usize].interior.is_some());
         appearance.has_nested = appearance.optics_of.iter().filter(is_transparent).nth(1).is_some();
@@ -86,7 +86,7 @@ impl<'a> Appearance<'a> {
 
     fn add_materials(&mut self, plan: &Plan) -> Result<(), RenderError> {
         let wavelengths = self.wavelengths.clone();
-        let mut library = Library::new(&wavelengths, plan.forced);
+        let mut library = BsdfBuilder::new(&wavelengths, plan.forced);
         let mut known: FxHashMap<u64, Vec<(&Material, u32)>> = FxHashMap::default();
         for object in &self.prepared.objects {
             let mut numbers = Vec::with_capacity(object.materials.len());
@@ -127,7 +127,7 @@ impl<'a> Appearance<'a> {
                 let of = |triangle: &u32| prepared.material_number(*triangle) == number as u32;
                 let triangles = (object.first..object.first + object.count).filter(of);
                 let corners = triangles.map(|triangle| prepared.corners(triangle)).collect();
-                if let Some(source) = Source::of_triangles(corners, emission.clone()) {
+                if let Some(source) = LightSource::of_triangles(corners, emission.clone()) {
                     self.emitters.push(((index as u32, number as u32), self.sources.len()));
                     self.sources.push((prepared.lights.len() + self.emitters.len() - 1, source));
                 }
@@ -136,12 +136,12 @@ impl<'a> Appearance<'a> {
     }
 
     /// The material of a number of an object.
-    pub(in crate::render) fn optics(&self, object: u32, material: u32) -> &Optics {
+    pub(in crate::render) fn optics(&self, object: u32, material: u32) -> &Bsdf {
         &self.optics[self.optics_of[object as usize][material as usize] as usize]
     }
 
     /// What is inside a material of an object, if it is transparent.
-    pub(in crate::render) fn interior(&self, object: u32, material: u32) -> Option<&Interior> {
+    pub(in crate::render) fn interior(&self, object: u32, material: u32) -> Option<&InteriorMedium> {
         self.optics(object, material).interior.as_ref()
     }
 
@@ -162,7 +162,7 @@ impl<'a> Appearance<'a> {
         ray: &Ray,
         normal: Option<DVec3>,
         comb: usize,
-        part: impl Fn(&Source, f64) -> f64,
+        part: impl Fn(&LightSource, f64) -> f64,
     ) -> Channels {
         let skies = self.sources.iter().filter_map(|(_, sky)| Some((sky, sky.sky(ray, normal, comb)?)));
         let sum = skies.map(|(sky, glow)| glow.radiance * part(sky, glow.density)).reduce(|a, b| a + b);
@@ -170,8 +170,8 @@ impl<'a> Appearance<'a> {
     }
 
     /// The nearest surface that emits and is no object, and which of the lights it is.
-    pub(in crate::render) fn glow(&self, ray: &Ray, t_min: f64, t_max: f64, comb: usize) -> Option<(usize, Glow)> {
-        let mut nearest: Option<(usize, Glow)> = None;
+    pub(in crate::render) fn glow(&self, ray: &Ray, t_min: f64, t_max: f64, comb: usize) -> Option<(usize, LightHit)> {
+        let mut nearest: Option<(usize, LightHit)> = None;
         for (index, (_, source)) in self.sources.iter().enumerate().filter(|(_, (_, source))| source.is_surface()) {
             let limit = nearest.map_or(t_max, |(_, glow)| glow.t);
             nearest = source.glow(ray, t_min, limit, comb).map(|glow| (index, glow)).or(nearest);

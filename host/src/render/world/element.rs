@@ -1,7 +1,7 @@
 //! The surface element at a hit: position, normals, and where rays may leave from.
 
 use crate::numeric::ray::{Hit, Ray};
-use crate::scene::{Moved, OnSurface, Prepared};
+use crate::scene::{Displacement, SurfacePoint, Prepared};
 use glam::DVec3;
 
 /// Rounding errors in units of the last place of the triangle's largest coordinate that a leaving ray keeps clear of.
@@ -13,7 +13,7 @@ const CLEARANCE_ULPS: f64 = 32.0;
 
 /// What is known where a ray hits.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::render) struct Element {
+pub(in crate::render) struct SurfaceElement {
     /// On the triangle, with the rounding errors of its coordinates, or on the exact surface behind it.
     pub(in crate::render) position: DVec3,
     /// Unit normal of the triangle, on the side of the viewer.
@@ -34,7 +34,7 @@ pub(in crate::render) struct Element {
     pub(in crate::render) clearance: f64,
 }
 
-impl Element {
+impl SurfaceElement {
     /// The element at `hit`; `curved` asks for interpolated normals. None for a triangle without area.
     pub(in crate::render) fn new(
         prepared: &Prepared,
@@ -42,7 +42,7 @@ impl Element {
         ray: &Ray,
         hit: &Hit,
         curved: bool,
-    ) -> Option<Element> {
+    ) -> Option<SurfaceElement> {
         let corners = prepared.corners(triangle);
         let [a, b, c] = corners;
         let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
@@ -54,7 +54,7 @@ impl Element {
         let clearance = face * distance;
         let leave = position + clearance;
         let through = position - clearance;
-        let flat = Element {
+        let flat = SurfaceElement {
             position,
             face,
             normal: face,
@@ -74,7 +74,7 @@ impl Element {
         let sum = normals[0] * weights[0] + normals[1] * weights[1] + normals[2] * weights[2];
         let Some(normal) = sum.try_normalize() else { return Some(flat) };
         let normal = towards_viewer(normal, -ray.direction);
-        Some(Element { normal, leave_curved: bulge(position, corners, normals, weights) + clearance, ..flat })
+        Some(SurfaceElement { normal, leave_curved: bulge(position, corners, normals, weights) + clearance, ..flat })
     }
 
     /// Moves it along the ray to the exact surface. Whether it did: not to where the ray is not yet, which begins `before`
@@ -85,7 +85,7 @@ impl Element {
     /// from there they go on from the triangle.
     ///
     /// - `before`: in lengths of the direction.
-    pub(in crate::render) fn settle(&mut self, direction: DVec3, before: f64, on: &OnSurface) -> bool {
+    pub(in crate::render) fn settle(&mut self, direction: DVec3, before: f64, on: &SurfacePoint) -> bool {
         if on.beyond <= -before {
             return false;
         }
@@ -101,7 +101,7 @@ impl Element {
     }
 
     /// Takes it along with what moves.
-    pub(in crate::render) fn carry(&mut self, moved: &Moved) {
+    pub(in crate::render) fn carry(&mut self, moved: &Displacement) {
         for point in [&mut self.position, &mut self.leave, &mut self.through, &mut self.leave_curved] {
             *point = moved.point(*point);
         }
@@ -195,7 +195,7 @@ mod tests {
         for tilt in [-0.6f64, -0.2, 0.0, 0.2, 0.6] {
             let normal = DVec3::new(tilt.sin(), tilt.cos(), 0.0);
             let zero = DVec3::ZERO;
-            let element = Element {
+            let element = SurfaceElement {
                 position: zero,
                 face,
                 normal,

@@ -14,12 +14,12 @@ const ON_SURFACE_ULPS: f64 = 32.0;
 
 /// A ray with the part of it in which something can be seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::render) struct Sight {
+pub(in crate::render) struct BoundedRay {
     pub(in crate::render) ray: Ray,
     pub(in crate::render) t_min: f64,
     pub(in crate::render) t_max: f64,
     /// What of the scene the ray stands for.
-    pub(in crate::render) cone: Cone,
+    pub(in crate::render) cone: RayCone,
 }
 
 /// How wide what a ray stands for is, scene units.
@@ -27,14 +27,14 @@ pub(in crate::render) struct Sight {
 /// # Source
 /// Amanatides 1984, ray tracing with cones; as Akenine-Möller and others 2021 use it to filter textures.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(in crate::render) struct Cone {
+pub(in crate::render) struct RayCone {
     /// Where the ray begins.
     pub(in crate::render) width: f64,
     /// How much wider it becomes in each unit of length.
     pub(in crate::render) growth: f64,
 }
 
-impl Cone {
+impl RayCone {
     /// At a distance.
     pub(in crate::render) fn at(&self, distance: f64) -> f64 {
         self.width + self.growth * distance
@@ -42,7 +42,7 @@ impl Cone {
 }
 
 /// Makes the rays of a view.
-pub(in crate::render) struct Eye {
+pub(in crate::render) struct CameraRays {
     /// Clip coordinates of the left upper corner of the picture.
     corner: [f64; 2],
     /// Clip coordinates a pixel to the right and a pixel down.
@@ -59,9 +59,9 @@ enum Kind {
     Matrix { rows: [DVec4; 4], base: DVec3, radius: f64, depth_clipping: bool },
 }
 
-impl Eye {
+impl CameraRays {
     /// The rays of `view` for a picture of `width` by `height`; none if the view is degenerate.
-    pub(in crate::render) fn new(view: &View, width: u32, height: u32, bounds: &Bounds) -> Option<Eye> {
+    pub(in crate::render) fn new(view: &View, width: u32, height: u32, bounds: &Bounds) -> Option<CameraRays> {
         let [x_min, x_max, y_min, y_max] = View::window(width, height);
         let kind = match view {
             View::Camera(camera) if camera.parallel.is_some() => {
@@ -72,7 +72,7 @@ impl Eye {
             View::Projection(projection) => Kind::of_matrix(projection, bounds)?,
         };
         let step = [(x_max - x_min) / f64::from(width), (y_min - y_max) / f64::from(height)];
-        Some(Eye { corner: [x_min, y_max], step, kind, part: 0.0 })
+        Some(CameraRays { corner: [x_min, y_max], step, kind, part: 0.0 })
     }
 
     /// Where a camera is; none for views along parallel lines and by matrices.
@@ -84,15 +84,15 @@ impl Eye {
     }
 
     /// Gives rays cones that are a part of a pixel wide.
-    pub(in crate::render) fn with_cones(self, part: f64) -> Eye {
-        Eye { part, ..self }
+    pub(in crate::render) fn with_cones(self, part: f64) -> CameraRays {
+        CameraRays { part, ..self }
     }
 
     /// The ray through a point of the picture in pixels from the left upper corner; none if nothing is seen there.
     ///
     /// - `through`: a point of the unit square, which chooses the point of the lens.
     #[inline]
-    pub(in crate::render) fn ray(&self, at: [f64; 2], through: [f64; 2]) -> Option<Sight> {
+    pub(in crate::render) fn ray(&self, at: [f64; 2], through: [f64; 2]) -> Option<BoundedRay> {
         let sight = self.line(at, through)?;
         if self.part == 0.0 {
             return Some(sight);
@@ -102,12 +102,12 @@ impl Eye {
         let apart = two.origin - one.origin;
         let width = (apart - one.direction * apart.dot(one.direction)).length() * self.part;
         let growth = (two.direction - one.direction).length() * self.part;
-        Some(Sight { cone: Cone { width, growth }, ..sight })
+        Some(BoundedRay { cone: RayCone { width, growth }, ..sight })
     }
 
     /// The ray without its cone.
     #[inline]
-    fn line(&self, at: [f64; 2], through: [f64; 2]) -> Option<Sight> {
+    fn line(&self, at: [f64; 2], through: [f64; 2]) -> Option<BoundedRay> {
         let [x, y] = [0, 1].map(|i| self.corner[i] + at[i] * self.step[i]);
         match &self.kind {
             Kind::Camera { from, right, up, forward, near, far, lens } => {
@@ -121,7 +121,7 @@ impl Eye {
                         Ray { origin: *from + aside, direction: direction - aside / *focus }
                     }
                 };
-                Some(Sight { ray, t_min: *near, t_max: *far, cone: Cone::default() })
+                Some(BoundedRay { ray, t_min: *near, t_max: *far, cone: RayCone::default() })
             }
             Kind::Matrix { rows, base, radius, depth_clipping } => {
                 let mut sight = line(rows, x, y, *radius, *depth_clipping)?;
@@ -164,7 +164,7 @@ impl Kind {
 ///
 /// The planes `row_x - x row_w = 0` and `row_y - y row_w = 0` meet in it. Along it, depth and w are linear, so that
 /// its visible part `0 <= depth <= w`, `w > 0` is an interval.
-fn line(rows: &[DVec4; 4], x: f64, y: f64, radius: f64, depth_clipping: bool) -> Option<Sight> {
+fn line(rows: &[DVec4; 4], x: f64, y: f64, radius: f64, depth_clipping: bool) -> Option<BoundedRay> {
     let [row_x, row_y, row_z, row_w] = rows;
     let (a, b) = (*row_x - *row_w * x, *row_y - *row_w * y);
     let direction = a.truncate().cross(b.truncate()).try_normalize()?;
@@ -187,11 +187,11 @@ fn line(rows: &[DVec4; 4], x: f64, y: f64, radius: f64, depth_clipping: bool) ->
         clip(&mut range, depth);
         clip(&mut range, [w[0] - depth[0], w[1] - depth[1]]);
     }
-    (range[0] < range[1] && origin.is_finite()).then_some(Sight {
+    (range[0] < range[1] && origin.is_finite()).then_some(BoundedRay {
         ray: Ray { origin, direction },
         t_min: range[0],
         t_max: range[1],
-        cone: Cone::default(),
+        cone: RayCone::default(),
     })
 }
 
@@ -231,9 +231,9 @@ mod tests {
     fn a_camera_and_its_matrix_see_the_same_rays() {
         let camera = camera();
         let bounds = Bounds { min: DVec3::splat(-2.0), max: DVec3::splat(3.0) };
-        let by_camera = Eye::new(&View::Camera(camera), 64, 48, &bounds).expect("sees");
+        let by_camera = CameraRays::new(&View::Camera(camera), 64, 48, &bounds).expect("sees");
         let projection = camera.projection().expect("sees");
-        let by_matrix = Eye::new(&View::Projection(projection), 64, 48, &bounds).expect("sees");
+        let by_matrix = CameraRays::new(&View::Projection(projection), 64, 48, &bounds).expect("sees");
         for at in [[0.0, 0.0], [31.3, 17.0], [64.0, 48.0], [10.0, 40.0]] {
             let (a, b) = (by_camera.ray(at, [0.5; 2]).expect("ray"), by_matrix.ray(at, [0.5; 2]).expect("ray"));
             for (t_a, t_b) in [(a.t_min, b.t_min), (a.t_max, b.t_max)] {
@@ -250,7 +250,7 @@ mod tests {
         let bounds = Bounds { min: DVec3::splat(-1.0), max: DVec3::splat(1.0) };
         for depth_clipping in [true, false] {
             let view = View::Projection(Projection::from_workstation(&matrix, depth_clipping));
-            let sight = Eye::new(&view, 2, 2, &bounds).expect("sees").ray([0.5, 0.5], [0.5; 2]).expect("ray");
+            let sight = CameraRays::new(&view, 2, 2, &bounds).expect("sees").ray([0.5, 0.5], [0.5; 2]).expect("ray");
             assert_eq!(sight.ray.direction, DVec3::NEG_Z);
             let front = sight.ray.at(sight.t_min);
             assert_eq!((front.x, front.y), (-0.5, 0.5));
@@ -270,7 +270,7 @@ mod tests {
         };
         let bounds = Bounds { min: DVec3::splat(-1.0), max: DVec3::splat(1.0) };
         let view = View::Projection(Projection::from_workstation(&matrix(1e-15, 1e15), true));
-        let sight = Eye::new(&view, 10, 10, &bounds).expect("sees").ray([2.5, 2.5], [0.5; 2]).expect("ray");
+        let sight = CameraRays::new(&view, 10, 10, &bounds).expect("sees").ray([2.5, 2.5], [0.5; 2]).expect("ray");
         assert!((sight.ray.at(sight.t_min) - DVec3::new(-0.5, 0.5, 0.0)).length() < 1e-12);
         assert!(sight.t_max > 9e14);
     }
@@ -281,11 +281,11 @@ mod tests {
         let parallel =
             Camera { parallel: Some(crate::scene::Parallel { height: 6.0, oblique: glam::DVec2::ZERO }), ..camera() };
         for camera in [camera(), parallel] {
-            let eye = Eye::new(&View::Camera(camera), 400, 300, &bounds).expect("sees").with_cones(1.0);
+            let eye = CameraRays::new(&View::Camera(camera), 400, 300, &bounds).expect("sees").with_cones(1.0);
             for at in [[200.0, 150.0], [30.0, 270.0]] {
                 let [one, two] = [at, [at[0] + 0.5, at[1] + 0.5]].map(|at| eye.ray(at, [0.5; 2]).expect("ray"));
                 for distance in [1.0, 10.0, 1000.0] {
-                    let point = |sight: &Sight| sight.ray.at(distance / sight.ray.direction.length());
+                    let point = |sight: &BoundedRay| sight.ray.at(distance / sight.ray.direction.length());
                     // Half a diagonal of a pixel.
                     let apart = point(&one).distance(point(&two)) * 2.0_f64.sqrt();
                     let part = one.cone.at(distance) / apart;
@@ -299,10 +299,10 @@ mod tests {
     fn degenerate_views_are_refused() {
         let bounds = Bounds { min: DVec3::ZERO, max: DVec3::ONE };
         let flat = Projection { to_clip: glam::DMat4::ZERO, depth_clipping: false };
-        assert!(Eye::new(&View::Projection(flat), 4, 4, &bounds).is_none());
+        assert!(CameraRays::new(&View::Projection(flat), 4, 4, &bounds).is_none());
         let infinite = Projection { to_clip: glam::DMat4::from_scale(DVec3::INFINITY), depth_clipping: false };
-        assert!(Eye::new(&View::Projection(infinite), 4, 4, &bounds).is_none());
+        assert!(CameraRays::new(&View::Projection(infinite), 4, 4, &bounds).is_none());
         let blind = Camera { at: camera().from, ..camera() };
-        assert!(Eye::new(&View::Camera(blind), 4, 4, &bounds).is_none());
+        assert!(CameraRays::new(&View::Camera(blind), 4, 4, &bounds).is_none());
     }
 }

@@ -1,26 +1,26 @@
 //! What a ray meets first: an element of an object, a surface that emits, or nothing.
 
-use super::element::Element;
+use super::element::SurfaceElement;
 use crate::color::Channels;
-use crate::illumination::distribution::Frame;
-use crate::illumination::light::Glow;
-use crate::illumination::optics::{Optics, Painting};
+use crate::illumination::distribution::ShadingFrame;
+use crate::illumination::light::LightHit;
+use crate::illumination::optics::{Bsdf, TextureValues};
 use glam::DVec3;
 
 /// What a ray meets first.
-pub(in crate::render) enum Met<'a> {
+pub(in crate::render) enum RayHit<'a> {
     /// An element of an object.
-    Element(Found<'a>),
+    Element(SurfaceInteraction<'a>),
     /// A surface that emits, and which of the lights it is.
-    Glow(usize, Glow),
+    Glow(usize, LightHit),
     /// Nothing.
     Nothing,
 }
 
 /// An element of an object.
-pub(in crate::render) struct Found<'a> {
-    pub(in crate::render) element: Element,
-    pub(in crate::render) optics: &'a Optics,
+pub(in crate::render) struct SurfaceInteraction<'a> {
+    pub(in crate::render) element: SurfaceElement,
+    pub(in crate::render) optics: &'a Bsdf,
     pub(in crate::render) triangle: u32,
     pub(in crate::render) object: u32,
     /// Number of the material among those of the object.
@@ -32,16 +32,16 @@ pub(in crate::render) struct Found<'a> {
     /// From where the ray began to the exact surface, in lengths of the ray's direction.
     pub(in crate::render) t: f64,
     /// What the patterns of the material give; nothing for a material that has none.
-    pub(super) painting: Painting,
+    pub(super) painting: TextureValues,
     /// The direction in which its material is brushed.
     pub(in crate::render) along: Option<DVec3>,
 }
 
-impl Found<'_> {
+impl SurfaceInteraction<'_> {
     /// The frame in which its optics has directions.
-    pub(in crate::render) fn frame(&self) -> Frame {
+    pub(in crate::render) fn frame(&self) -> ShadingFrame {
         let normal = self.element.normal;
-        self.along.map_or_else(|| Frame::about(normal), |along| Frame::brushed(normal, along))
+        self.along.map_or_else(|| ShadingFrame::about(normal), |along| ShadingFrame::brushed(normal, along))
     }
 
     /// Whether wavelengths part that go through it.

@@ -1,19 +1,19 @@
 //! The geometry of a scene as rays meet it: triangles, in octrees of what stands still and of what moves.
 
 use super::appearance::Appearance;
-use super::element::{Element, clearance};
-use super::eye::Sight;
-use super::found::{Found, Met};
-use super::light_buffer::{LightBuffer, Way};
+use super::element::{SurfaceElement, clearance};
+use super::eye::BoundedRay;
+use super::found::{SurfaceInteraction, RayHit};
+use super::light_buffer::{LightBuffer, Occluders};
 use crate::color::Channels;
-use crate::illumination::light::{Origin, Source};
-use crate::illumination::optics::{Interior, Painting};
+use crate::illumination::light::{LightOrigin, LightSource};
+use crate::illumination::optics::{InteriorMedium, TextureValues};
 use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::{Hit, Ray};
 use crate::octree::{Octree, Shaft, SurfacePoints};
 use crate::plan::{Plan, Stage};
 use crate::render::RenderError;
-use crate::scene::{Acceleration, Kept, Moved, Prepared, SceneOctree, footprint};
+use crate::scene::{Acceleration, AccelerationKey, Displacement, Prepared, SceneOctree, footprint};
 use glam::DVec3;
 use std::sync::Arc;
 use std::time::Duration;
@@ -39,7 +39,7 @@ impl<'a> World<'a> {
     pub fn new(prepared: &'a Prepared, plan: &Plan) -> Result<World<'a>, RenderError> {
         let keeps = |object: usize| plan.needs(Stage::Octree) && plan.keeps_object(object);
         let objects = (0..prepared.objects.len()).map(keeps).collect();
-        let acceleration = prepared.acceleration(Kept { objects, motions: plan.needs(Stage::Motion) })?;
+        let acceleration = prepared.acceleration(AccelerationKey { objects, motions: plan.needs(Stage::Motion) })?;
         let appearance = Appearance::new(prepared, plan)?;
         let light_buffer = acceleration.still.as_ref().filter(|_| plan.needs(Stage::LightBuffer)).map(|still| {
             let is_opaque = |t: u32| {
@@ -92,7 +92,7 @@ impl<'a> World<'a> {
     }
 
     /// What stands still between a point and a light, if the light buffer knows.
-    pub(in crate::render) fn way(&self, from: DVec3, light: usize) -> Option<&Way> {
+    pub(in crate::render) fn way(&self, from: DVec3, light: usize) -> Option<&Occluders> {
         self.light_buffer.as_ref()?.way(self.octree()?, from, light)
     }
 
@@ -102,7 +102,7 @@ impl<'a> World<'a> {
     }
 
     /// The first triangle in sight at a time, and where what it belongs to has moved to.
-    fn first(&self, ray: &Ray, [t_min, t_max]: [f64; 2], time: f64) -> Option<(Hit, u32, Option<Moved>)> {
+    fn first(&self, ray: &Ray, [t_min, t_max]: [f64; 2], time: f64) -> Option<(Hit, u32, Option<Displacement>)> {
         let hit = match &self.points {
             Some(points) => points.closest(ray, t_min, t_max),
             None => self.octree().and_then(|octree| octree.closest(ray, t_min, t_max)),
@@ -125,13 +125,13 @@ impl<'a> World<'a> {
     }
 
     /// What is first in sight at a time.
-    pub(in crate::render) fn meet(&self, sight: &Sight, comb: usize, time: f64) -> Met<'_> {
+    pub(in crate::render) fn meet(&self, sight: &BoundedRay, comb: usize, time: f64) -> RayHit<'_> {
         let first = self.first(&sight.ray, [sight.t_min, sight.t_max], time);
         let t_max = first.map_or(sight.t_max, |(hit, ..)| hit.t);
         if let Some((index, glow)) = self.appearance.glow(&sight.ray, sight.t_min, t_max, comb) {
-            return Met::Glow(index, glow);
+            return RayHit::Glow(index, glow);
         }
-        let Some((hit, triangle, moved)) = first else { return Met::Nothing };
+        let Some((hit, triangle, moved)) = first else { return RayHit::Nothing };
         let prepared = self.appearance.prepared;
         let contact =
             if moved.is_none() && self.points.is_none() { self.contact(&sight.ray, triangle, &hit) } else { None };
@@ -142,8 +142,8 @@ impl<'a> World<'a> {
             (None, Some(_)) => through(&sight.ray, &hit, prepared.corners(triangle)),
             (None, None) => sight.ray,
         };
-        let Some(mut element) = Element::new(prepared, triangle, &ray, &hit, self.appearance.curved) else {
-            return Met::Nothing;
+        let Some(mut element) = SurfaceElement::new(prepared, triangle, &ray, &hit, self.appearance.curved) else {
+            return RayHit::Nothing;
         };
         let object = prepared.object_of[triangle as usize];
         let material = prepared.material_number(triangle);
@@ -167,18 +167,18 @@ impl<'a> World<'a> {
             element.tilt(-towards, |normal| optics.tilted(&place, normal));
             optics.paint(&place, comb)
         } else {
-            Painting::new()
+            TextureValues::new()
         };
         let mut along = optics.along;
         if let Some(moved) = moved {
             element.carry(&moved);
             along = along.map(|along| moved.vector(along));
         }
-        Met::Element(Found { element, optics, triangle, object, material, distance, depth, t: hit.t, painting, along })
+        RayHit::Element(SurfaceInteraction { element, optics, triangle, object, material, distance, depth, t: hit.t, painting, along })
     }
 
     /// Where a ray met an element: where a point stands for the surface, not all rays come to one place.
-    pub(in crate::render) fn place(&self, found: &Found<'_>, ray: &Ray) -> DVec3 {
+    pub(in crate::render) fn place(&self, found: &SurfaceInteraction<'_>, ray: &Ray) -> DVec3 {
         self.points.as_ref().map_or(found.element.position, |_| ray.at(found.t))
     }
 
@@ -187,10 +187,10 @@ impl<'a> World<'a> {
     /// - `part`: how much a source counts that would have drawn the direction with a density.
     pub(in crate::render) fn emitted(
         &self,
-        found: &Found<'_>,
+        found: &SurfaceInteraction<'_>,
         towards: DVec3,
         comb: usize,
-        part: impl Fn(&Source, f64) -> f64,
+        part: impl Fn(&LightSource, f64) -> f64,
     ) -> Option<(Channels, f64)> {
         let (emission, index) = self.appearance.emission(found.object, found.material, comb)?;
         let cosine = towards.dot(found.element.face);
@@ -232,7 +232,7 @@ impl<'a> World<'a> {
     pub(in crate::render) fn coincident(
         &self,
         ray: &Ray,
-        found: &Found<'_>,
+        found: &SurfaceInteraction<'_>,
         mut give: impl FnMut(f64, u32, u32, bool),
     ) {
         let Some(still) = self.still().filter(|_| self.appearance.has_nested) else { return };
@@ -279,8 +279,8 @@ impl<'a> World<'a> {
             |still: &SceneOctree| still.octree.is_clear(from, to, |triangle| counts(still.triangle(triangle)));
         let lamps = self.appearance.sources.iter().filter(|(_, source)| source.is_surface());
         let mut lamps = lamps.filter_map(|(_, source)| match source.origin() {
-            Origin::Within(bounds) => Some(bounds),
-            Origin::Towards(_) | Origin::Everywhere => None,
+            LightOrigin::Within(bounds) => Some(bounds),
+            LightOrigin::Towards(_) | LightOrigin::Everywhere => None,
         });
         !self.moves()
             && !lamps.any(|lamp| Octree::may_stand_between(from, to, lamp))
@@ -296,18 +296,18 @@ impl<'a> World<'a> {
         &self,
         ray: &Ray,
         t_max: f64,
-        (index, way): (usize, Option<&Way>),
+        (index, way): (usize, Option<&Occluders>),
         (comb, time): (usize, f64),
     ) -> (Channels, bool) {
-        let blocks = |(other, (_, source)): (usize, &(usize, Source))| {
+        let blocks = |(other, (_, source)): (usize, &(usize, LightSource))| {
             other != index && source.is_surface() && source.glow(ray, 0.0, t_max, comb).is_some()
         };
         if self.appearance.sources.iter().enumerate().any(blocks) {
             return (Channels::ZERO, false);
         }
         let shaft = match way {
-            Some(Way::Dark) => return (Channels::ZERO, false),
-            Some(Way::Few(shaft)) => Some(&**shaft),
+            Some(Occluders::Dark) => return (Channels::ZERO, false),
+            Some(Occluders::Few(shaft)) => Some(&**shaft),
             _ => None,
         };
         let still = self.still();
@@ -366,9 +366,9 @@ impl<'a> World<'a> {
         hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
         hits.dedup_by(|next, hit| next.t == hit.t && object(next) == object(hit));
         // Where the ray is in which body, since when.
-        let mut inside: Vec<(u32, f64, &Interior)> = Vec::new();
+        let mut inside: Vec<(u32, f64, &InteriorMedium)> = Vec::new();
         let left =
-            |interior: &Interior, way: f64| interior.absorption.of(comb).map(|absorption| (-absorption * way).exp());
+            |interior: &InteriorMedium, way: f64| interior.absorption.of(comb).map(|absorption| (-absorption * way).exp());
         let length = ray.direction.length();
         let mut is_cleared = false;
         let part = hits.iter().fold(Channels::ONE, |part, hit| {

@@ -10,9 +10,9 @@
 //! Haines and Greenberg 1986, the light buffer: a shadow-testing accelerator, with voxels in the place of directions, so that
 //! lights may have a size.
 
-use crate::illumination::light::{Origin, Source};
+use crate::illumination::light::{LightOrigin, LightSource};
 use crate::numeric::bounds::Bounds;
-use crate::octree::{Between, Octree, Shaft};
+use crate::octree::{ShaftContents, Octree, Shaft};
 use glam::DVec3;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU8, AtomicUsize, Ordering};
@@ -29,7 +29,7 @@ const MOST_BYTES: usize = 256 << 20;
 
 /// What stands between a voxel and a light.
 #[derive(Debug)]
-pub(in crate::render) enum Way {
+pub(in crate::render) enum Occluders {
     /// Something opaque, before all of the light.
     Dark,
     /// These triangles, if any.
@@ -42,11 +42,11 @@ pub(in crate::render) enum Way {
 #[derive(Default)]
 struct Entry {
     asked: AtomicU8,
-    way: OnceLock<Way>,
+    way: OnceLock<Occluders>,
 }
 
 /// A light, and which of a voxel's entries is its own.
-struct Place {
+struct BufferedLight {
     /// A box, or the direction to it.
     at: Result<Bounds, DVec3>,
     entry: usize,
@@ -59,7 +59,7 @@ pub(in crate::render) struct LightBuffer {
     side: f64,
     along: [usize; 3],
     /// For each light, unless it is large.
-    lights: Vec<Option<Place>>,
+    lights: Vec<Option<BufferedLight>>,
     /// Entries of each voxel.
     entries: usize,
     bricks: Vec<OnceLock<Box<[Entry]>>>,
@@ -73,7 +73,7 @@ impl LightBuffer {
     ///   everywhere.
     pub(in crate::render) fn new(
         bounds: &Bounds,
-        sources: &[(usize, Source)],
+        sources: &[(usize, LightSource)],
         opaque: Option<Vec<bool>>,
     ) -> LightBuffer {
         // A little beyond: rays begin beside triangles.
@@ -82,15 +82,15 @@ impl LightBuffer {
         let side = size.max_element() / VOXELS as f64;
         let along = size.to_array().map(|size| ((size / side).ceil() as usize).clamp(1, VOXELS).div_ceil(BRICK));
         let mut entries = 0;
-        let place = |(_, source): &(usize, Source)| {
+        let place = |(_, source): &(usize, LightSource)| {
             let at = match source.origin() {
-                Origin::Within(bounds) if bounds.size().max_element() > 2.0 * side => return None,
-                Origin::Within(bounds) => Ok(bounds),
-                Origin::Towards(towards) => Err(towards),
-                Origin::Everywhere => return None,
+                LightOrigin::Within(bounds) if bounds.size().max_element() > 2.0 * side => return None,
+                LightOrigin::Within(bounds) => Ok(bounds),
+                LightOrigin::Towards(towards) => Err(towards),
+                LightOrigin::Everywhere => return None,
             };
             entries += 1;
-            Some(Place { at, entry: entries - 1 })
+            Some(BufferedLight { at, entry: entries - 1 })
         };
         let lights = sources.iter().map(place).collect();
         // A scene without extent has no voxels.
@@ -100,7 +100,7 @@ impl LightBuffer {
     }
 
     /// What stands between a point and a light, if that is known.
-    pub(in crate::render) fn way(&self, octree: &Octree, from: DVec3, light: usize) -> Option<&Way> {
+    pub(in crate::render) fn way(&self, octree: &Octree, from: DVec3, light: usize) -> Option<&Occluders> {
         let place = self.lights[light].as_ref()?;
         let at = (from - self.origin) / self.side;
         let end = DVec3::from_array(self.along.map(|bricks| (bricks * BRICK) as f64));
@@ -135,7 +135,7 @@ impl LightBuffer {
     }
 
     /// Finds what stands between a voxel and a light.
-    fn find(&self, octree: &Octree, voxel: [usize; 3], place: &Place) -> Way {
+    fn find(&self, octree: &Octree, voxel: [usize; 3], place: &BufferedLight) -> Occluders {
         let low = self.origin + DVec3::from_array(voxel.map(|i| i as f64)) * self.side;
         let from = Bounds { min: low, max: low + DVec3::splat(self.side) };
         let to = place.at.unwrap_or_else(|direction| {
@@ -145,12 +145,12 @@ impl LightBuffer {
         });
         let covers = |triangle: u32| self.opaque.as_ref().is_none_or(|opaque| opaque[triangle as usize]);
         match octree.between(from, to, covers, FEW) {
-            Between::Covered => Way::Dark,
-            Between::Some(shaft) if self.bytes.load(Ordering::Relaxed) < MOST_BYTES => {
+            ShaftContents::Covered => Occluders::Dark,
+            ShaftContents::Some(shaft) if self.bytes.load(Ordering::Relaxed) < MOST_BYTES => {
                 self.bytes.fetch_add(shaft.bytes(), Ordering::Relaxed);
-                Way::Few(Box::new(shaft))
+                Occluders::Few(Box::new(shaft))
             }
-            _ => Way::Many,
+            _ => Occluders::Many,
         }
     }
 }

@@ -1,10 +1,10 @@
 //! What a ray goes through: transparent bodies, some of them in one place.
 
-use super::eye::{Cone, Sight};
-use super::found::{Found, Met};
+use super::eye::{RayCone, BoundedRay};
+use super::found::{SurfaceInteraction, RayHit};
 use super::geometry::World;
 use crate::color::Channels;
-use crate::illumination::optics::{Interior, Side};
+use crate::illumination::optics::{InteriorMedium, InterfaceIndices};
 use crate::numeric::ray::Ray;
 use glam::DVec3;
 
@@ -13,17 +13,17 @@ const MOST: usize = 8;
 
 /// A transparent body: its object, and which of its materials.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(in crate::render) struct Body {
+pub(in crate::render) struct MediumId {
     object: u32,
     material: u32,
 }
 
-impl Body {
-    fn of(found: &Found<'_>) -> Body {
-        Body { object: found.object, material: found.material }
+impl MediumId {
+    fn of(found: &SurfaceInteraction<'_>) -> MediumId {
+        MediumId { object: found.object, material: found.material }
     }
 
-    fn interior<'a>(self, world: &'a World<'_>) -> Option<&'a Interior> {
+    fn interior<'a>(self, world: &'a World<'_>) -> Option<&'a InteriorMedium> {
         world.appearance.interior(self.object, self.material)
     }
 }
@@ -37,17 +37,17 @@ impl Body {
 /// Schmidt and Budge 2002, simple nested dielectrics in ray traced images.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::render) struct Media {
-    bodies: [Body; MOST],
+    bodies: [MediumId; MOST],
     count: usize,
 }
 
 /// What becomes of what a ray is in at an element.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::render) struct Crossing {
+pub(in crate::render) struct MediumInterface {
     /// The body before it.
-    before: Option<Body>,
+    before: Option<MediumId>,
     /// The body behind it.
-    behind: Option<Body>,
+    behind: Option<MediumId>,
     /// What a ray is in that goes through.
     pub(in crate::render) media: Media,
     /// The last of the surfaces that lie in the same place, in lengths of the ray's direction.
@@ -76,14 +76,14 @@ impl Media {
 
     /// The bodies that a ray leaves without having come into them.
     fn left(world: &World<'_>, ray: Ray) -> Media {
-        let mut sight = Sight { ray, t_min: 0.0, t_max: f64::INFINITY, cone: Cone::default() };
+        let mut sight = BoundedRay { ray, t_min: 0.0, t_max: f64::INFINITY, cone: RayCone::default() };
         let (mut left, mut entered) = (Media::default(), Media::default());
         loop {
             let met = world.meet(&sight, 0, 0.0);
             let (t, found) = match met {
-                Met::Nothing => return left,
-                Met::Glow(_, glow) => (glow.t, None),
-                Met::Element(found) => (found.t, Some(found)),
+                RayHit::Nothing => return left,
+                RayHit::Glow(_, glow) => (glow.t, None),
+                RayHit::Element(found) => (found.t, Some(found)),
             };
             sight.t_min = t.next_up();
             if let Some(found) = found {
@@ -96,7 +96,7 @@ impl Media {
         }
     }
 
-    fn bodies(&self) -> &[Body] {
+    fn bodies(&self) -> &[MediumId] {
         &self.bodies[..self.count]
     }
 
@@ -105,8 +105,8 @@ impl Media {
     }
 
     /// The body that is there.
-    fn present(&self, world: &World<'_>) -> Option<Body> {
-        let rank = |body: &&Body| world.appearance.rank(body.object, body.material);
+    fn present(&self, world: &World<'_>) -> Option<MediumId> {
+        let rank = |body: &&MediumId| world.appearance.rank(body.object, body.material);
         self.bodies().iter().max_by_key(rank).copied()
     }
 
@@ -123,11 +123,11 @@ impl Media {
     /// What becomes of it at an element, and at the other surfaces of bodies that lie in the same place.
     ///
     /// - `ray`: that met the element.
-    pub(in crate::render) fn crossing(&self, world: &World<'_>, found: &Found<'_>, ray: &Ray) -> Crossing {
+    pub(in crate::render) fn crossing(&self, world: &World<'_>, found: &SurfaceInteraction<'_>, ray: &Ray) -> MediumInterface {
         let mut inside = *self;
         if found.optics.interior.is_none() {
             let present = inside.present(world);
-            return Crossing {
+            return MediumInterface {
                 before: present,
                 behind: present,
                 media: inside,
@@ -142,32 +142,32 @@ impl Media {
         behind.pass(found);
         let mut last = found.t;
         world.coincident(ray, found, |t, object, material, outside| {
-            let body = Body { object, material };
+            let body = MediumId { object, material };
             last = last.max(t);
             if outside { behind.enter(body) } else { behind.leave(object) }
         });
         let [from, to] = [inside, behind].map(|media| media.present(world));
         let is_inside = !found.element.outside;
-        Crossing { before: from, behind: to, media: behind, last, inside: is_inside, is_interface: from != to }
+        MediumInterface { before: from, behind: to, media: behind, last, inside: is_inside, is_interface: from != to }
     }
 
     /// Goes through an element, into its body or out of it.
-    fn pass(&mut self, found: &Found<'_>) {
+    fn pass(&mut self, found: &SurfaceInteraction<'_>) {
         if found.optics.interior.is_none() {
             return;
         }
-        if found.element.outside { self.enter(Body::of(found)) } else { self.leave(found.object) }
+        if found.element.outside { self.enter(MediumId::of(found)) } else { self.leave(found.object) }
     }
 
     /// Takes note of the body of an element that is met from inside, if light began there.
-    pub(in crate::render) fn notice(&mut self, found: &Found<'_>) {
+    pub(in crate::render) fn notice(&mut self, found: &SurfaceInteraction<'_>) {
         let is_inner = found.optics.interior.is_some() && !found.element.outside;
         if is_inner && !self.holds(found.object) {
-            self.enter(Body::of(found));
+            self.enter(MediumId::of(found));
         }
     }
 
-    fn enter(&mut self, body: Body) {
+    fn enter(&mut self, body: MediumId) {
         if self.count < MOST {
             self.bodies[self.count] = body;
             self.count += 1;
@@ -182,13 +182,13 @@ impl Media {
     }
 }
 
-impl Crossing {
+impl MediumInterface {
     /// The refractive indices before and behind the element; 1 where there is no body.
-    pub(in crate::render) fn side(&self, world: &World<'_>, comb: usize) -> Side {
+    pub(in crate::render) fn side(&self, world: &World<'_>, comb: usize) -> InterfaceIndices {
         let [before, behind] = [self.before, self.behind].map(|body| {
             let interior = body.and_then(|body| body.interior(world));
             interior.map_or(Channels::ONE, |interior| interior.index.of(comb))
         });
-        Side { before, behind, inside: self.inside }
+        InterfaceIndices { before, behind, inside: self.inside }
     }
 }

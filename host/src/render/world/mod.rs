@@ -11,10 +11,10 @@ mod media;
 mod reflectance;
 
 pub(in crate::render) use appearance::Appearance;
-pub(in crate::render) use element::Element;
-pub(in crate::render) use eye::{AHEAD, Cone, Eye, Sight, meet};
-pub(in crate::render) use found::{Found, Met};
+pub(in crate::render) use element::SurfaceElement;
+pub(in crate::render) use eye::{AHEAD, RayCone, CameraRays, BoundedRay, meet};
+pub(in crate::render) use found::{SurfaceInteraction, RayHit};
 pub use geometry::World;
-pub(in crate::render) use light_buffer::Way;
-pub(in crate::render) use media::{Crossing, Media};
+pub(in crate::render) use light_buffer::Occluders;
+pub(in crate::render) use media::{MediumInterface, Media};
 pub(in crate::render) use reflectance::{diffuse, mean_diffuse};

@@ -1,12 +1,12 @@
 //! How much of light materials reflect diffusely.
 
 use crate::color::Channels;
-use crate::illumination::optics::{Optics, Side, Sighting};
-use crate::illumination::texture::Place;
+use crate::illumination::optics::{Bsdf, InterfaceIndices, ShadingContext};
+use crate::illumination::texture::TextureFootprint;
 use glam::DVec3;
 
 /// The part of light that a material reflects diffusely at a place, in the mean over all combs of wavelengths.
-pub(in crate::render) fn mean_diffuse(optics: &Optics, place: Option<&Place>, combs: usize) -> Channels {
+pub(in crate::render) fn mean_diffuse(optics: &Bsdf, place: Option<&TextureFootprint>, combs: usize) -> Channels {
     let mixture = place.map(|place| optics.mix(place));
     let sum = (0..combs).fold(Channels::ZERO, |sum, comb| {
         let painting = mixture.as_ref().map(|mixture| mixture.at(comb));
@@ -16,6 +16,6 @@ pub(in crate::render) fn mean_diffuse(optics: &Optics, place: Option<&Place>, co
 }
 
 /// The part of light that a material reflects diffusely.
-pub(in crate::render) fn diffuse(optics: &Optics, comb: usize, painted: &[Channels]) -> Channels {
-    optics.diffuse(&Sighting { view: DVec3::Z, comb, side: Side::AIR, lane: 0, painted })
+pub(in crate::render) fn diffuse(optics: &Bsdf, comb: usize, painted: &[Channels]) -> Channels {
+    optics.diffuse(&ShadingContext { view: DVec3::Z, comb, side: InterfaceIndices::AIR, lane: 0, painted })
 }

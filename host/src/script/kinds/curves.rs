@@ -1,9 +1,9 @@
 //! Kinds of curves, and of what lies along surfaces.
 
-use super::lists::{Points, each};
+use super::lists::{PointsKind, each};
 use crate::curve::SplineCurve;
 use crate::script::handle::Handle;
-use crate::script::parameter::Kind;
+use crate::script::parameter::ParameterKind;
 use crate::script::spline::{ControlMeaning, side};
 use crate::solid::primitive::path;
 use crate::surface::SurfaceSide;
@@ -16,7 +16,7 @@ pub(in crate::script) struct Spline;
 
 /// A curve, or the control points of a path.
 #[derive(Clone, Copy)]
-pub(in crate::script) struct Curve;
+pub(in crate::script) struct CurveKind;
 
 /// A closed loop of curves, or several.
 #[derive(Clone, Copy)]
@@ -24,7 +24,7 @@ pub(in crate::script) struct Loops;
 
 /// A list of objects, each with the name of a side.
 #[derive(Clone, Copy)]
-pub(in crate::script) struct Sides;
+pub(in crate::script) struct SidesKind;
 
 /// What a curve or a list of points becomes.
 pub(in crate::script) enum CurveValue {
@@ -44,7 +44,7 @@ impl CurveValue {
     }
 }
 
-impl Kind for Spline {
+impl ParameterKind for Spline {
     type Value = ControlMeaning;
 
     fn words(&self) -> String {
@@ -56,7 +56,7 @@ impl Kind for Spline {
     }
 }
 
-impl Kind for Curve {
+impl ParameterKind for CurveKind {
     type Value = CurveValue;
 
     fn words(&self) -> String {
@@ -64,11 +64,11 @@ impl Kind for Curve {
     }
 
     fn read(&self, value: &Dynamic) -> Option<CurveValue> {
-        curve(value).map(CurveValue::Curve).or_else(|| Points.read(value).map(CurveValue::Points))
+        curve(value).map(CurveValue::Curve).or_else(|| PointsKind.read(value).map(CurveValue::Points))
     }
 }
 
-impl Kind for Loops {
+impl ParameterKind for Loops {
     type Value = Vec<Vec<SplineCurve>>;
 
     fn words(&self) -> String {
@@ -82,7 +82,7 @@ impl Kind for Loops {
     }
 }
 
-impl Kind for Sides {
+impl ParameterKind for SidesKind {
     type Value = Vec<(Handle, SurfaceSide)>;
 
     fn words(&self) -> String {
@@ -107,7 +107,7 @@ fn curve(value: &Dynamic) -> Option<SplineCurve> {
 /// A closed loop: a curve, curves that follow one another, or the corners of a polygon.
 fn ring(value: &Dynamic) -> Option<Vec<SplineCurve>> {
     let polygon = |value: &Dynamic| {
-        let mut corners = Points.read(value).filter(|corners| corners.len() > 2)?;
+        let mut corners = PointsKind.read(value).filter(|corners| corners.len() > 2)?;
         corners.push(corners[0]);
         let straight = ControlMeaning::BSpline { degree: 1, is_closed: false, is_clamped: true, knots: Vec::new() };
         Some(vec![straight.curve(&corners, &[]).ok()?])

@@ -2,15 +2,15 @@
 
 use super::numbers::{number, shown};
 use super::vectors::vector;
-use super::words::AnObject;
+use super::words::ObjectKind;
 use crate::script::handle::Handle;
-use crate::script::parameter::{HasDefault, Kind};
+use crate::script::parameter::{HasDefault, ParameterKind};
 use glam::DVec3;
 use rhai::{Array, Dynamic};
 
 /// A list of points `[x, y]` or `[x, y, z]`; a third coordinate that is not given is 0.
 #[derive(Clone, Copy)]
-pub(in crate::script) struct Points;
+pub(in crate::script) struct PointsKind;
 
 /// A list of points, or of several such lists.
 #[derive(Clone, Copy)]
@@ -32,7 +32,7 @@ pub(in crate::script) struct Indices;
 #[derive(Clone, Copy)]
 pub(in crate::script) struct Objects;
 
-impl Kind for Points {
+impl ParameterKind for PointsKind {
     type Value = Vec<DVec3>;
 
     fn words(&self) -> String {
@@ -50,7 +50,7 @@ impl Kind for Points {
     }
 }
 
-impl Kind for Contours {
+impl ParameterKind for Contours {
     type Value = Vec<Vec<DVec3>>;
 
     fn words(&self) -> String {
@@ -58,12 +58,12 @@ impl Kind for Contours {
     }
 
     fn read(&self, value: &Dynamic) -> Option<Vec<Vec<DVec3>>> {
-        let one = Points.read(value).map(|one| vec![one]);
-        one.or_else(|| each(value, |contour| Points.read(contour)))
+        let one = PointsKind.read(value).map(|one| vec![one]);
+        one.or_else(|| each(value, |contour| PointsKind.read(contour)))
     }
 }
 
-impl Kind for RowsOfNumbers {
+impl ParameterKind for RowsOfNumbers {
     type Value = Vec<Vec<f64>>;
 
     fn words(&self) -> String {
@@ -77,7 +77,7 @@ impl Kind for RowsOfNumbers {
     }
 }
 
-impl Kind for Numbers {
+impl ParameterKind for Numbers {
     type Value = Vec<f64>;
 
     fn words(&self) -> String {
@@ -89,7 +89,7 @@ impl Kind for Numbers {
     }
 }
 
-impl Kind for Indices {
+impl ParameterKind for Indices {
     type Value = Vec<Vec<u32>>;
 
     fn words(&self) -> String {
@@ -103,7 +103,7 @@ impl Kind for Indices {
     }
 }
 
-impl Kind for Objects {
+impl ParameterKind for Objects {
     type Value = Vec<Handle>;
 
     fn words(&self) -> String {
@@ -111,8 +111,8 @@ impl Kind for Objects {
     }
 
     fn read(&self, value: &Dynamic) -> Option<Vec<Handle>> {
-        let one = AnObject.read(value).map(|one| vec![one]);
-        one.or_else(|| each(value, |object| AnObject.read(object)))
+        let one = ObjectKind.read(value).map(|one| vec![one]);
+        one.or_else(|| each(value, |object| ObjectKind.read(object)))
     }
 }
 

@@ -1,14 +1,14 @@
 //! Kinds of what surfaces reflect, and how.
 
-use super::numbers::{Number, number, shown};
+use super::numbers::{NumberKind, number, shown};
 use super::vectors::vector_or_number;
-use super::words::Text;
+use super::words::TextKind;
 use crate::color::Color;
 use crate::database::Library;
 use crate::illumination::Paint;
 use crate::illumination::distribution::FacetTable;
-use crate::illumination::texture::{Band, Number as TextureNumber, Varying};
-use crate::script::parameter::{HasDefault, Kind};
+use crate::illumination::texture::{Band, NumberTexture as TextureNumber, Varying};
+use crate::script::parameter::{HasDefault, ParameterKind};
 use rhai::Dynamic;
 
 /// What is reflected: fractions, the name of a spectrum, or a pattern.
@@ -17,7 +17,7 @@ pub(in crate::script) struct Reflectance;
 
 /// A number within limits, the least and the greatest, or a pattern of such numbers.
 #[derive(Clone, Copy)]
-pub(in crate::script) struct Amount(pub(in crate::script) f64, pub(in crate::script) f64);
+pub(in crate::script) struct AmountKind(pub(in crate::script) f64, pub(in crate::script) f64);
 
 /// A function of one number, an angle: it is a table when a value is read, see the engine.
 #[derive(Clone, Copy)]
@@ -25,7 +25,7 @@ pub(in crate::script) struct FunctionOfAngle;
 
 /// The name of a distribution, or one of the user's.
 #[derive(Clone, Copy)]
-pub(in crate::script) struct Distribution;
+pub(in crate::script) struct DistributionKind;
 
 /// What a distribution becomes.
 pub(in crate::script) enum DistributionValue {
@@ -35,7 +35,7 @@ pub(in crate::script) enum DistributionValue {
     Table(FacetTable),
 }
 
-impl Kind for Reflectance {
+impl ParameterKind for Reflectance {
     type Value = Paint;
 
     fn words(&self) -> String {
@@ -55,11 +55,11 @@ impl Kind for Reflectance {
     }
 }
 
-impl Kind for Amount {
+impl ParameterKind for AmountKind {
     type Value = TextureNumber;
 
     fn words(&self) -> String {
-        format!("{} or a pattern of such numbers", Number(self.0, self.1).words())
+        format!("{} or a pattern of such numbers", NumberKind(self.0, self.1).words())
     }
 
     fn read(&self, value: &Dynamic) -> Option<TextureNumber> {
@@ -70,7 +70,7 @@ impl Kind for Amount {
     }
 }
 
-impl Kind for FunctionOfAngle {
+impl ParameterKind for FunctionOfAngle {
     type Value = FacetTable;
     const IS_FUNCTION: bool = true;
 
@@ -83,7 +83,7 @@ impl Kind for FunctionOfAngle {
     }
 }
 
-impl Kind for Distribution {
+impl ParameterKind for DistributionKind {
     type Value = DistributionValue;
 
     fn words(&self) -> String {
@@ -92,7 +92,7 @@ impl Kind for Distribution {
 
     fn read(&self, value: &Dynamic) -> Option<DistributionValue> {
         let table = FunctionOfAngle.read(value).map(DistributionValue::Table);
-        table.or_else(|| Text.read(value).map(DistributionValue::Name))
+        table.or_else(|| TextKind.read(value).map(DistributionValue::Name))
     }
 }
 
@@ -108,7 +108,7 @@ impl HasDefault for Reflectance {
     }
 }
 
-impl HasDefault for Amount {
+impl HasDefault for AmountKind {
     type Default = f64;
 
     fn of_default(&self, default: f64) -> TextureNumber {

@@ -7,9 +7,9 @@ mod lists;
 mod curves;
 mod materials;
 
-pub(super) use curves::{Curve, Loops, Sides, Spline};
-pub(super) use lists::{Contours, Indices, Numbers, Objects, Points, RowsOfNumbers};
-pub(super) use materials::{Amount, Distribution, DistributionValue, FunctionOfAngle, Reflectance};
-pub(super) use numbers::{ANY_NUMBER, Integer, Length, Number, NumberOrText, NumberOrTextValue, number};
-pub(super) use vectors::{Axis, Factors, Lengths, NamedAxis, Powers, Vector};
-pub(super) use words::{AnObject, Flag, Scalar, Text, Word};
+pub(super) use curves::{CurveKind, Loops, SidesKind, Spline};
+pub(super) use lists::{Contours, Indices, Numbers, Objects, PointsKind, RowsOfNumbers};
+pub(super) use materials::{AmountKind, DistributionKind, DistributionValue, FunctionOfAngle, Reflectance};
+pub(super) use numbers::{ANY_NUMBER, Integer, Length, NumberKind, NumberOrText, NumberOrTextValue, number};
+pub(super) use vectors::{AxisKind, Factors, Lengths, NamedAxis, Powers, Vector};
+pub(super) use words::{ObjectKind, Flag, ScalarKind, TextKind, Word};

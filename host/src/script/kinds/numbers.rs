@@ -1,13 +1,13 @@
 //! Kinds of numbers.
 
-use super::words::Text;
-use crate::script::parameter::{HasDefault, Kind};
+use super::words::TextKind;
+use crate::script::parameter::{HasDefault, ParameterKind};
 use rhai::Dynamic;
 use std::fmt::Display;
 
 /// A number within limits, the least and the greatest; infinite ones are none.
 #[derive(Clone, Copy)]
-pub(in crate::script) struct Number(pub(in crate::script) f64, pub(in crate::script) f64);
+pub(in crate::script) struct NumberKind(pub(in crate::script) f64, pub(in crate::script) f64);
 
 /// A length above 0.
 #[derive(Clone, Copy)]
@@ -28,16 +28,16 @@ pub(in crate::script) enum NumberOrTextValue {
 }
 
 /// Any finite number.
-pub(in crate::script) const ANY_NUMBER: Number = Number(f64::NEG_INFINITY, f64::INFINITY);
+pub(in crate::script) const ANY_NUMBER: NumberKind = NumberKind(f64::NEG_INFINITY, f64::INFINITY);
 
-impl Kind for Number {
+impl ParameterKind for NumberKind {
     type Value = f64;
 
     fn words(&self) -> String {
         match *self {
-            Number(min, max) if max.is_infinite() && min.is_infinite() => "a number".into(),
-            Number(min, max) if max.is_infinite() => format!("a number not below {min}"),
-            Number(min, max) => format!("a number from {min} to {max}"),
+            NumberKind(min, max) if max.is_infinite() && min.is_infinite() => "a number".into(),
+            NumberKind(min, max) if max.is_infinite() => format!("a number not below {min}"),
+            NumberKind(min, max) => format!("a number from {min} to {max}"),
         }
     }
 
@@ -46,7 +46,7 @@ impl Kind for Number {
     }
 }
 
-impl Kind for Length {
+impl ParameterKind for Length {
     type Value = f64;
 
     fn words(&self) -> String {
@@ -58,7 +58,7 @@ impl Kind for Length {
     }
 }
 
-impl<T: TryFrom<i64> + PartialOrd + Copy + Display> Kind for Integer<T> {
+impl<T: TryFrom<i64> + PartialOrd + Copy + Display> ParameterKind for Integer<T> {
     type Value = T;
 
     fn words(&self) -> String {
@@ -71,20 +71,20 @@ impl<T: TryFrom<i64> + PartialOrd + Copy + Display> Kind for Integer<T> {
     }
 }
 
-impl Kind for NumberOrText {
+impl ParameterKind for NumberOrText {
     type Value = NumberOrTextValue;
 
     fn words(&self) -> String {
-        format!("{} or a string", Number(self.0, self.1).words())
+        format!("{} or a string", NumberKind(self.0, self.1).words())
     }
 
     fn read(&self, value: &Dynamic) -> Option<NumberOrTextValue> {
-        let number = Number(self.0, self.1).read(value).map(NumberOrTextValue::Number);
-        number.or_else(|| Text.read(value).map(NumberOrTextValue::Text))
+        let number = NumberKind(self.0, self.1).read(value).map(NumberOrTextValue::Number);
+        number.or_else(|| TextKind.read(value).map(NumberOrTextValue::Text))
     }
 }
 
-impl HasDefault for Number {
+impl HasDefault for NumberKind {
     type Default = f64;
 
     fn of_default(&self, default: f64) -> f64 {

@@ -1,7 +1,7 @@
 //! Kinds of three numbers.
 
 use super::numbers::{number, shown};
-use crate::script::parameter::{HasDefault, Kind};
+use crate::script::parameter::{HasDefault, ParameterKind};
 use glam::DVec3;
 use rhai::{Array, Dynamic, ImmutableString};
 
@@ -23,7 +23,7 @@ pub(in crate::script) struct Powers;
 
 /// "x", "y", "z" or a vector `[x, y, z]`; becomes a unit vector.
 #[derive(Clone, Copy)]
-pub(in crate::script) struct Axis;
+pub(in crate::script) struct AxisKind;
 
 /// An axis of the coordinates.
 #[derive(Clone, Copy)]
@@ -33,7 +33,7 @@ pub(in crate::script) enum NamedAxis {
     Z,
 }
 
-impl Kind for Vector {
+impl ParameterKind for Vector {
     type Value = DVec3;
     const TAKES_THREE: bool = true;
 
@@ -46,7 +46,7 @@ impl Kind for Vector {
     }
 }
 
-impl Kind for Factors {
+impl ParameterKind for Factors {
     type Value = DVec3;
     const TAKES_THREE: bool = true;
 
@@ -59,7 +59,7 @@ impl Kind for Factors {
     }
 }
 
-impl Kind for Lengths {
+impl ParameterKind for Lengths {
     type Value = DVec3;
     const TAKES_THREE: bool = true;
 
@@ -72,7 +72,7 @@ impl Kind for Lengths {
     }
 }
 
-impl Kind for Powers {
+impl ParameterKind for Powers {
     type Value = DVec3;
     const TAKES_THREE: bool = true;
 
@@ -85,7 +85,7 @@ impl Kind for Powers {
     }
 }
 
-impl Kind for Axis {
+impl ParameterKind for AxisKind {
     type Value = DVec3;
 
     fn words(&self) -> String {
@@ -136,7 +136,7 @@ impl HasDefault for Powers {
     }
 }
 
-impl HasDefault for Axis {
+impl HasDefault for AxisKind {
     type Default = NamedAxis;
 
     fn of_default(&self, default: NamedAxis) -> DVec3 {

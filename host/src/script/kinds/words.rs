@@ -2,16 +2,16 @@
 
 use super::numbers::number;
 use crate::script::handle::Handle;
-use crate::script::parameter::{HasDefault, Kind};
+use crate::script::parameter::{HasDefault, ParameterKind};
 use rhai::{Dynamic, ImmutableString};
 
 /// An object that another function returned; before the dot in `object.function(...)`.
 #[derive(Clone, Copy)]
-pub(in crate::script) struct AnObject;
+pub(in crate::script) struct ObjectKind;
 
 /// A string.
 #[derive(Clone, Copy)]
-pub(in crate::script) struct Text;
+pub(in crate::script) struct TextKind;
 
 /// true or false.
 #[derive(Clone, Copy)]
@@ -19,13 +19,13 @@ pub(in crate::script) struct Flag;
 
 /// A number, a whole number, true or false, or a string.
 #[derive(Clone, Copy)]
-pub(in crate::script) struct Scalar;
+pub(in crate::script) struct ScalarKind;
 
 /// One of some words, each with what it stands for.
 #[derive(Clone, Copy)]
 pub(in crate::script) struct Word<T: 'static>(pub(in crate::script) &'static [(&'static str, T)]);
 
-impl Kind for AnObject {
+impl ParameterKind for ObjectKind {
     type Value = Handle;
     const IS_OBJECT: bool = true;
 
@@ -38,7 +38,7 @@ impl Kind for AnObject {
     }
 }
 
-impl Kind for Text {
+impl ParameterKind for TextKind {
     type Value = String;
 
     fn words(&self) -> String {
@@ -50,7 +50,7 @@ impl Kind for Text {
     }
 }
 
-impl Kind for Flag {
+impl ParameterKind for Flag {
     type Value = bool;
 
     fn words(&self) -> String {
@@ -62,7 +62,7 @@ impl Kind for Flag {
     }
 }
 
-impl Kind for Scalar {
+impl ParameterKind for ScalarKind {
     type Value = Dynamic;
 
     fn words(&self) -> String {
@@ -75,7 +75,7 @@ impl Kind for Scalar {
     }
 }
 
-impl<T: Copy> Kind for Word<T> {
+impl<T: Copy> ParameterKind for Word<T> {
     type Value = T;
 
     fn words(&self) -> String {
@@ -88,7 +88,7 @@ impl<T: Copy> Kind for Word<T> {
     }
 }
 
-impl HasDefault for Text {
+impl HasDefault for TextKind {
     type Default = &'static str;
 
     fn of_default(&self, default: &'static str) -> String {

@@ -3,14 +3,14 @@
 //! A carrier is an edge of the input, or the line in which two faces cross. Whatever lies on it is kept once, in order,
 //! for all faces that share it; so no two faces ever disagree about their border.
 
-use super::burial::Burial;
-use super::contact::{Common, Contact, Edge, Face, Feature, Key, crossing};
+use super::burial::BuriedTriangles;
+use super::contact::{CommonPoint, Contact, EdgeKey, ConvexFace, Feature, PointKey, crossing};
 use super::expression::Expression;
-use super::faces::{Faces, contacts, touching};
+use super::faces::{CandidateFaces, contacts, touching};
 use super::operand::Operands;
 use super::relevance::relevant;
-use super::standing::Standing;
-use crate::numeric::implicit::{Definition, Point, coincide, compare, turn};
+use super::standing::PartialEvaluation;
+use crate::numeric::implicit::{PointDefinition, ImplicitPoint, coincide, compare, turn};
 use crate::solid::union_find::UnionFind;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -21,7 +21,7 @@ use std::collections::hash_map::Entry;
 /// A line that carries points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Line {
-    Edge(Edge),
+    Edge(EdgeKey),
     /// Where two faces cross, the lower first.
     Faces([u32; 2]),
 }
@@ -42,7 +42,7 @@ pub struct Segment {
 
 /// What lies in a face that something touches.
 #[derive(Clone, Debug, Default)]
-pub struct Content {
+pub struct FaceArrangement {
     /// Points inside it.
     pub inner: Vec<u32>,
     /// Lines across it.
@@ -81,13 +81,13 @@ pub struct Counts {
 /// The points, carriers and contents of the faces near other operands.
 pub struct Arrangement {
     /// Faces that may touch others. Their names are their places here.
-    pub faces: Vec<Face>,
+    pub faces: Vec<ConvexFace>,
     /// The lower triangle, counted over all operands, of each face.
     pub triangles: Vec<u32>,
     /// Contents of each face.
-    pub contents: Vec<Content>,
+    pub contents: Vec<FaceArrangement>,
     /// The points; several may be one, see [`Arrangement::point`].
-    pub points: Vec<Point>,
+    pub points: Vec<ImplicitPoint>,
     /// Vertices by point, where the point is one.
     pub vertices: Vec<Option<u32>>,
     /// Whether something of another operand passes through the point.
@@ -99,16 +99,16 @@ pub struct Arrangement {
     /// Work done.
     pub counts: Counts,
     same: UnionFind,
-    of_key: FxHashMap<Key, u32>,
+    of_key: FxHashMap<PointKey, u32>,
     carriers: Vec<Carrier>,
-    of_edge: FxHashMap<Edge, u32>,
+    of_edge: FxHashMap<EdgeKey, u32>,
     of_faces: FxHashMap<[u32; 2], u32>,
     place: FxHashMap<u32, DVec3>,
     ambiguous: FxHashSet<u32>,
 }
 
 /// Order along any line: lexicographic.
-fn along(a: &Point, b: &Point) -> Ordering {
+fn along(a: &ImplicitPoint, b: &ImplicitPoint) -> Ordering {
     compare(0, a, b).then_with(|| compare(1, a, b)).then_with(|| compare(2, a, b))
 }
 
@@ -117,14 +117,14 @@ impl Arrangement {
     ///
     /// Those that cannot matter to an expression are left out.
     pub fn new(operands: &Operands, expression: &Expression) -> Arrangement {
-        let standing = Standing::outside(expression, operands.meshes().len());
-        let burial = Burial::of(operands, &standing);
+        let standing = PartialEvaluation::outside(expression, operands.meshes().len());
+        let burial = BuriedTriangles::of(operands, &standing);
         let mut pairs = operands.pairs(|operand| burial.visible(operands, operand));
         let count = pairs.len() as u64;
         if !operands.are_simple {
             (0..operands.meshes().len() as u32).for_each(|operand| pairs.extend(operands.overlaps(operand)));
         }
-        let mut faces = Faces::default();
+        let mut faces = CandidateFaces::default();
         faces.add(operands, pairs.as_flattened());
         let mut contacts = contacts(&faces, &pairs);
         let is_relevant = relevant(operands, &standing, &burial, &touching(operands, &faces, &contacts));
@@ -146,7 +146,7 @@ impl Arrangement {
         // Mostly each contact has an end of its own, and each face a corner.
         let room = contacts.len() + divided;
         let mut arrangement = Arrangement {
-            contents: vec![Content::default(); all],
+            contents: vec![FaceArrangement::default(); all],
             points: Vec::with_capacity(room),
             vertices: Vec::with_capacity(room),
             on_other: Vec::with_capacity(room),
@@ -190,7 +190,7 @@ impl Arrangement {
         let edge = face.edge(k);
         let Some(&carrier) = self.of_edge.get(&edge) else { return Vec::new() };
         let mut points = self.distinct(carrier);
-        let [first, last] = [0, 1].map(|i| self.of_key.get(&Key::Vertex(edge[i])).map(|&p| self.point(p)));
+        let [first, last] = [0, 1].map(|i| self.of_key.get(&PointKey::Vertex(edge[i])).map(|&p| self.point(p)));
         points.retain(|&p| Some(p) != first && Some(p) != last);
         let [from, to] = face.ends(k.into()).map(|end| end.to_array());
         if from > to {
@@ -220,31 +220,31 @@ impl Arrangement {
         points
     }
 
-    fn id(&mut self, key: Key) -> u32 {
+    fn id(&mut self, key: PointKey) -> u32 {
         if let Some(&id) = self.of_key.get(&key) {
             return id;
         }
         let definition = self.definition(key);
         let id = self.points.len() as u32;
-        self.points.push(Point::new(definition));
-        self.vertices.push(if let Key::Vertex(vertex) = key { Some(vertex) } else { None });
-        self.on_other.push(matches!(key, Key::Vertex(vertex) if self.ambiguous.contains(&vertex)));
+        self.points.push(ImplicitPoint::new(definition));
+        self.vertices.push(if let PointKey::Vertex(vertex) = key { Some(vertex) } else { None });
+        self.on_other.push(matches!(key, PointKey::Vertex(vertex) if self.ambiguous.contains(&vertex)));
         self.same.grow();
         self.of_key.insert(key, id);
         id
     }
 
-    fn ends(&self, edge: Edge) -> [DVec3; 2] {
+    fn ends(&self, edge: EdgeKey) -> [DVec3; 2] {
         edge.map(|vertex| self.place[&vertex])
     }
 
-    fn definition(&self, key: Key) -> Definition {
+    fn definition(&self, key: PointKey) -> PointDefinition {
         let plane = |face: u32| self.faces[face as usize].plane();
         match key {
-            Key::Vertex(vertex) => Definition::Given(self.place[&vertex]),
-            Key::Pierced(edge, face) => Definition::LineAndPlane(self.ends(edge), plane(face)),
-            Key::Faces(faces) => Definition::Planes(faces.map(plane)),
-            Key::Edges(one, two) => Definition::crossing(self.ends(one), self.ends(two)),
+            PointKey::Vertex(vertex) => PointDefinition::Given(self.place[&vertex]),
+            PointKey::Pierced(edge, face) => PointDefinition::LineAndPlane(self.ends(edge), plane(face)),
+            PointKey::Faces(faces) => PointDefinition::Planes(faces.map(plane)),
+            PointKey::Edges(one, two) => PointDefinition::crossing(self.ends(one), self.ends(two)),
         }
     }
 
@@ -319,7 +319,7 @@ impl Arrangement {
     }
 
     /// The line in which two faces cross: an edge of one of them, if it runs along one.
-    fn segment(&mut self, faces: [u32; 2], points: [&Common; 2], ends: [u32; 2]) {
+    fn segment(&mut self, faces: [u32; 2], points: [&CommonPoint; 2], ends: [u32; 2]) {
         let edge = |which: usize| {
             let face = &self.faces[faces[which] as usize];
             face.numbers().find(|&k| points.iter().all(|p| face.is_on(p.features[which], k)))
@@ -469,16 +469,16 @@ impl Arrangement {
         let key = match lines {
             [Line::Edge(one), Line::Edge(two)] => crossing(one, two),
             [Line::Edge(edge), Line::Faces(faces)] | [Line::Faces(faces), Line::Edge(edge)] => {
-                Key::Pierced(edge, beyond(faces))
+                PointKey::Pierced(edge, beyond(faces))
             }
             [Line::Faces(one), Line::Faces(two)] => {
                 let mut faces = [face, beyond(one), beyond(two)];
                 faces.sort_unstable();
-                Key::Faces(faces)
+                PointKey::Faces(faces)
             }
         };
         let mut carriers = carriers.to_vec();
-        if let Key::Faces([a, b, c]) = key {
+        if let PointKey::Faces([a, b, c]) = key {
             carriers.extend([[a, b], [b, c], [a, c]].iter().filter_map(|faces| self.of_faces.get(faces)));
         }
         let point = self.id(key);
@@ -497,7 +497,7 @@ impl Arrangement {
             |carrier: &Carrier| carrier.points.windows(2).map(|pair| [pair[0], pair[1]]).collect::<Vec<_>>();
         let pairs: Vec<[u32; 2]> = self.carriers.iter().flat_map(neighbours).collect();
         pairs.into_iter().for_each(|pair| self.unite(pair));
-        let several = |content: &&Content| content.partner == Some(SEVERAL);
+        let several = |content: &&FaceArrangement| content.partner == Some(SEVERAL);
         let pairs: Vec<Vec<[u32; 2]>> = self.contents.par_iter().filter(several).map(|c| self.near_pairs(c)).collect();
         pairs.into_iter().flatten().for_each(|pair| self.unite(pair));
     }
@@ -522,7 +522,7 @@ impl Arrangement {
     }
 
     /// Points in a face that may be one: those of edges that run along each other are on no carrier in common.
-    fn near_pairs(&self, content: &Content) -> Vec<[u32; 2]> {
+    fn near_pairs(&self, content: &FaceArrangement) -> Vec<[u32; 2]> {
         let ends = content.segments.iter().flat_map(|s| s.ends);
         let mut points: Vec<u32> = content.inner.iter().copied().chain(ends).collect();
         points.sort_unstable();
@@ -542,7 +542,7 @@ impl Arrangement {
             if self.contents[face].is_touched {
                 let shape = self.faces[face];
                 for (k, &vertex) in shape.vertices().iter().enumerate() {
-                    let corner = self.id(Key::Vertex(vertex));
+                    let corner = self.id(PointKey::Vertex(vertex));
                     self.contents[face].corners[k] = self.point(corner);
                 }
             }

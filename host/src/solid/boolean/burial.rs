@@ -4,39 +4,39 @@
 //! is known to lie in these; where the expression then no longer depends on its own operand, it is buried. What would
 //! cross it draws no line that matters: on both sides of that the result is the same.
 
-use super::core::Core;
+use super::core::InteriorGrid;
 use super::operand::Operands;
-use super::standing::Standing;
+use super::standing::PartialEvaluation;
 use crate::numeric::bounds::Bounds;
-use crate::octree::Sorted;
+use crate::octree::TriangleBvh;
 use rayon::prelude::*;
 
 /// The triangles that lie deep inside other operands.
 #[derive(Default)]
-pub struct Burial {
+pub struct BuriedTriangles {
     /// For each triangle, counted over all operands; empty if none is.
     is_buried: Vec<bool>,
     /// Of each operand with buried triangles, the others by place; empty if there is none.
-    visible: Vec<Option<Sorted>>,
+    visible: Vec<Option<TriangleBvh>>,
     /// Of each operand, its cells, those marked that its buried triangles touch.
-    cores: Vec<Option<Core>>,
+    cores: Vec<Option<InteriorGrid>>,
 }
 
-impl Burial {
+impl BuriedTriangles {
     /// Finds buried triangles. With two operands there are none.
     ///
     /// - `standing`: of a point outside all operands.
-    pub fn of(operands: &Operands, standing: &Standing) -> Burial {
+    pub fn of(operands: &Operands, standing: &PartialEvaluation) -> BuriedTriangles {
         let count = operands.meshes().len() as u32;
         if count < 3 {
-            return Burial::default();
+            return BuriedTriangles::default();
         }
         // What lies deep inside the only neighbour touches nothing anyway.
         let has_two: Vec<bool> = (0..count).map(|operand| operands.near(operand).nth(1).is_some()).collect();
         let is_asked =
             |operand: u32| has_two[operand as usize] || operands.near(operand).any(|other| has_two[other as usize]);
-        let core = |operand: u32| is_asked(operand).then(|| Core::of(operands, operand)).flatten();
-        let mut cores: Vec<Option<Core>> = (0..count).into_par_iter().map(core).collect();
+        let core = |operand: u32| is_asked(operand).then(|| InteriorGrid::of(operands, operand)).flatten();
+        let mut cores: Vec<Option<InteriorGrid>> = (0..count).into_par_iter().map(core).collect();
         let of_operand = |operand: u32| match has_two[operand as usize] {
             true => buried_of(operands, &cores, standing.clone(), operand),
             false => Vec::new(),
@@ -57,7 +57,7 @@ impl Burial {
             core.iter_mut()
                 .for_each(|core| found.iter().for_each(|&t| core.mark(Bounds::of(mesh.corners(t as usize)))));
         });
-        Burial { is_buried, visible, cores }
+        BuriedTriangles { is_buried, visible, cores }
     }
 
     /// Whether a triangle, counted over all operands, is buried.
@@ -66,7 +66,7 @@ impl Burial {
     }
 
     /// The triangles of an operand that are not buried, by place.
-    pub fn visible<'a>(&'a self, operands: &'a Operands, operand: u32) -> &'a Sorted {
+    pub fn visible<'a>(&'a self, operands: &'a Operands, operand: u32) -> &'a TriangleBvh {
         let visible = self.visible.get(operand as usize).and_then(|visible| visible.as_ref());
         visible.unwrap_or_else(|| operands.sorted(operand))
     }
@@ -79,7 +79,7 @@ impl Burial {
 }
 
 /// The buried triangles of an operand. Two that make one face are both buried, or neither.
-fn buried_of(operands: &Operands, cores: &[Option<Core>], mut standing: Standing, operand: u32) -> Vec<u32> {
+fn buried_of(operands: &Operands, cores: &[Option<InteriorGrid>], mut standing: PartialEvaluation, operand: u32) -> Vec<u32> {
     // Without cells of its own it could not be told who is beside them.
     if cores[operand as usize].is_none() {
         return Vec::new();

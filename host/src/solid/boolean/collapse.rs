@@ -13,14 +13,14 @@
 //! n log n in the triangles that were made by the operation, of which most only show that they are needed; and what the
 //! search for pairs of triangles near each other costs for those that are changed, in each of a few rounds.
 
-use super::fan::{Collapse, Judge};
+use super::fan::{Collapse, CollapseCriteria};
 use super::operand::Operands;
-use super::overlap::{PlaneTile, Tile, nearly_overlap};
+use super::overlap::{PlaneTriangle, NamedTriangle, nearly_overlap};
 use super::result::Outcome;
-use super::rounding::Made;
+use super::rounding::NewTriangles;
 use crate::numeric::bounds::Bounds;
 use crate::numeric::implicit::side;
-use crate::octree::Sorted;
+use crate::octree::TriangleBvh;
 use crate::solid::cleaning::retain;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -33,7 +33,7 @@ const ROUNDS: usize = 64;
 const FEW: usize = 32;
 
 /// What was made of a result of which no more is known than of which triangles its triangles are part.
-pub fn all_made(operands: &Operands, outcome: &Outcome) -> Made {
+pub fn all_made(operands: &Operands, outcome: &Outcome) -> NewTriangles {
     let mesh = &outcome.mesh;
     let mut is_free = vec![true; mesh.vertices.len()];
     for (triangle, [operand, source]) in outcome.sources.iter().enumerate() {
@@ -42,11 +42,11 @@ pub fn all_made(operands: &Operands, outcome: &Outcome) -> Made {
             mesh.triangles[triangle].into_iter().for_each(|vertex| is_free[vertex as usize] = false);
         }
     }
-    Made { first: 0, first_vertex: 0, is_free, kept: None }
+    NewTriangles { first: 0, first_vertex: 0, is_free, kept: None }
 }
 
 /// Leaves out points of triangles that were made by the operation which no face needs.
-pub fn collapse(operands: &Operands, outcome: &mut Outcome, made: &Made) {
+pub fn collapse(operands: &Operands, outcome: &mut Outcome, made: &NewTriangles) {
     let mut work = Collapsing::new(operands, outcome, made);
     let mut open: Vec<u32> = work.candidates();
     for _ in 0..ROUNDS {
@@ -90,11 +90,11 @@ enum State {
 struct Collapsing<'a> {
     operands: &'a Operands<'a>,
     outcome: &'a mut Outcome,
-    made: &'a Made,
+    made: &'a NewTriangles,
     /// The largest coordinate of the operands.
     largest: f64,
     /// Triangles from the first that was made on; those that were changed before are not where it says.
-    sorted: OnceLock<Sorted>,
+    sorted: OnceLock<TriangleBvh>,
     /// What became of each of them.
     states: Vec<State>,
     /// Those that were changed, in turn.
@@ -110,7 +110,7 @@ struct Collapsing<'a> {
 }
 
 impl<'a> Collapsing<'a> {
-    fn new(operands: &'a Operands<'a>, outcome: &'a mut Outcome, made: &'a Made) -> Collapsing<'a> {
+    fn new(operands: &'a Operands<'a>, outcome: &'a mut Outcome, made: &'a NewTriangles) -> Collapsing<'a> {
         let new = &outcome.mesh.triangles[made.first..];
         let mut firsts = vec![0_u32; made.is_free.len() + 2];
         let numbered = |(vertex, corner): (&u32, u32)| Some((made.number(*vertex)?, corner));
@@ -156,7 +156,7 @@ impl<'a> Collapsing<'a> {
 
     /// What may be done with some vertices, as far as the places of their neighbours tell.
     fn proposed(&self, vertices: &[u32]) -> Vec<Collapse> {
-        let judge = Judge { operands: self.operands, outcome: self.outcome, largest: self.largest };
+        let judge = CollapseCriteria { operands: self.operands, outcome: self.outcome, largest: self.largest };
         let propose = |&vertex: &u32| {
             let around = self.around(vertex);
             let fan = judge.may_collapse(vertex, around).then(|| judge.fan(vertex, around))??;
@@ -182,8 +182,8 @@ impl<'a> Collapsing<'a> {
         (chosen, left)
     }
 
-    fn tile(&self, names: [u32; 3]) -> Tile {
-        Tile { names, corners: names.map(|vertex| self.outcome.mesh.vertices[vertex as usize]) }
+    fn tile(&self, names: [u32; 3]) -> NamedTriangle {
+        NamedTriangle { names, corners: names.map(|vertex| self.outcome.mesh.vertices[vertex as usize]) }
     }
 
     /// Whether each collapse leaves the surface simple, others of them done or not.
@@ -235,14 +235,14 @@ impl<'a> Collapsing<'a> {
                 let name = |vertex: u32| kept.of_vertex[(first_vertex + vertex) as usize];
                 let corners = mesh.corners(b as usize);
                 kept.is_kept(first + b)
-                    && new[a as usize].meets(&Tile { names: mesh.triangles[b as usize].map(name), corners })
+                    && new[a as usize].meets(&NamedTriangle { names: mesh.triangles[b as usize].map(name), corners })
             }));
         }
         verdicts
     }
 
     /// Pairs of some boxes and triangles that were made and are still as they were, near each other, that `keep` accepts.
-    fn near_still(&self, boxes: &Sorted, keep: impl Fn(u32, u32) -> bool + Sync) -> Vec<[u32; 2]> {
+    fn near_still(&self, boxes: &TriangleBvh, keep: impl Fn(u32, u32) -> bool + Sync) -> Vec<[u32; 2]> {
         let first = self.made.first as u32;
         let mesh = &self.outcome.mesh;
         let is_still = |number: u32| self.states[number as usize] == State::Still;
@@ -315,11 +315,11 @@ impl<'a> Collapsing<'a> {
 }
 
 /// Triangles sorted, by their corners, or boxes by two.
-fn sorted_boxes<const N: usize>(corners: impl Iterator<Item = [DVec3; N]>) -> Sorted {
+fn sorted_boxes<const N: usize>(corners: impl Iterator<Item = [DVec3; N]>) -> TriangleBvh {
     let vertices: Vec<DVec3> = corners.flatten().collect();
     let names = |first: u32| [first, first + 1, first + N as u32 - 1];
     let triangles: Vec<[u32; 3]> = (0..vertices.len() as u32).step_by(N).map(names).collect();
-    Sorted::new(&vertices, &triangles)
+    TriangleBvh::new(&vertices, &triangles)
 }
 
 /// Leaves out vertices that no triangle has; the others stay in order.
@@ -352,7 +352,7 @@ enum Verdict {
 
 /// A triangle as it is after a collapse.
 struct New {
-    tile: PlaneTile,
+    tile: PlaneTriangle,
     /// The vertex that is moved to its first corner, and where that is before.
     vertex: u32,
     from: DVec3,
@@ -368,14 +368,14 @@ impl New {
 
     /// Whether it has more in common with another triangle than corners and edges, lies on it, or has swept over a corner of
     /// it.
-    fn meets(&self, other: &Tile) -> bool {
+    fn meets(&self, other: &NamedTriangle) -> bool {
         nearly_overlap(&self.tile, other, || other.with_plane())
             || (0..3).any(|k| self.sweeps_over(other.names[k], other.corners[k]))
     }
 
     /// Whether a point is in the tetrahedron between the triangle and its former first corner.
     fn sweeps_over(&self, name: u32, p: DVec3) -> bool {
-        let Tile { names, corners: [a, b, c] } = *self.tile.tile();
+        let NamedTriangle { names, corners: [a, b, c] } = *self.tile.tile();
         let v = self.from;
         if name == self.vertex || names.contains(&name) || [a, b, c, v].contains(&p) {
             return false;
@@ -394,7 +394,7 @@ impl New {
 #[cfg(test)]
 mod tests {
     use super::super::operand::{Operand, Operands};
-    use super::super::work::{Work, work};
+    use super::super::work::{Evaluation, work};
     use super::super::{Expression, Outcome, mates};
     use super::*;
     use crate::mesh::Mesh;
@@ -485,7 +485,7 @@ mod tests {
             };
             let operands = Operands::new((0..count).map(operand).collect(), true);
             for expression in expressions(count) {
-                let Work { outcome: old, made, must_settle, .. } = work(&operands, &expression);
+                let Evaluation { outcome: old, made, must_settle, .. } = work(&operands, &expression);
                 if must_settle {
                     continue;
                 }

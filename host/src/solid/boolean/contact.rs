@@ -12,11 +12,11 @@ use robust::{Coord, orient2d};
 use rustc_hash::FxHashMap;
 
 /// Names an edge by its vertices, the lower first.
-pub type Edge = [u32; 2];
+pub type EdgeKey = [u32; 2];
 
 /// A face of any operand, with names that are the same for all operands.
 #[derive(Clone, Copy, Debug)]
-pub struct Face {
+pub struct ConvexFace {
     /// Its name.
     pub id: u32,
     /// Number of its corners, 3 or 4.
@@ -33,19 +33,19 @@ pub struct Face {
     plane: Plane,
 }
 
-impl Face {
+impl ConvexFace {
     /// A triangle; `None` if its corners are on one line.
-    pub fn new(id: u32, vertices: [u32; 3], corners: [DVec3; 3]) -> Option<Face> {
+    pub fn new(id: u32, vertices: [u32; 3], corners: [DVec3; 3]) -> Option<ConvexFace> {
         let (axis, turn) = projection(corners)?;
         let ([u, v, w], [a, b, c]) = (vertices, corners);
         let plane = Plane::through(corners);
-        Some(Face { id, sides: 3, vertices: [u, v, w, u], corners: [a, b, c, a], axis, turn, plane })
+        Some(ConvexFace { id, sides: 3, vertices: [u, v, w, u], corners: [a, b, c, a], axis, turn, plane })
     }
 
     /// The face with a corner more, between the last and the first: in its plane, and so that it stays convex.
-    pub fn with(self, vertex: u32, corner: DVec3) -> Face {
+    pub fn with(self, vertex: u32, corner: DVec3) -> ConvexFace {
         let ([u, v, w, _], [a, b, c, _]) = (self.vertices, self.corners);
-        Face { sides: 4, vertices: [u, v, w, vertex], corners: [a, b, c, corner], ..self }
+        ConvexFace { sides: 4, vertices: [u, v, w, vertex], corners: [a, b, c, corner], ..self }
     }
 
     /// Whether a corner more, between the last and the first, is in its plane and leaves it convex, no three corners on
@@ -95,7 +95,7 @@ impl Face {
     }
 
     /// The edge from corner `k` to the next.
-    pub fn edge(&self, k: u8) -> Edge {
+    pub fn edge(&self, k: u8) -> EdgeKey {
         let (a, b) = (self.vertices[k as usize], self.vertices[self.after(k as usize)]);
         if a < b { [a, b] } else { [b, a] }
     }
@@ -129,7 +129,7 @@ impl Face {
     }
 
     /// On which sides of it the corners of another face lie; as many as that one has, and the first once more.
-    fn sides_of(&self, other: &Face) -> [f64; 4] {
+    fn sides_of(&self, other: &ConvexFace) -> [f64; 4] {
         let mut sides = [0.0; 4];
         (0..other.sides).for_each(|k| sides[k] = self.plane.side(other.corners[k]));
         if other.sides == 3 {
@@ -141,13 +141,13 @@ impl Face {
 
 /// The name of a point that two faces have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Key {
+pub enum PointKey {
     /// A vertex of the input.
     Vertex(u32),
     /// Where two edges cross, the lower one first.
-    Edges(Edge, Edge),
+    Edges(EdgeKey, EdgeKey),
     /// Where an edge pierces a face.
-    Pierced(Edge, u32),
+    Pierced(EdgeKey, u32),
     /// Where three faces cross, in ascending order.
     Faces([u32; 3]),
 }
@@ -165,9 +165,9 @@ pub enum Feature {
 
 /// A point that two faces have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Common {
+pub struct CommonPoint {
     /// Its name.
-    pub key: Key,
+    pub key: PointKey,
     /// Where it is in the first face and in the second.
     pub features: [Feature; 2],
 }
@@ -176,14 +176,14 @@ pub struct Common {
 #[derive(Clone, Debug, Default)]
 pub struct Contact {
     /// At most two if the faces are in different planes, at most eight otherwise.
-    pub points: Vec<Common>,
+    pub points: Vec<CommonPoint>,
     /// Whether they lie in one plane.
     pub coplanar: bool,
 }
 
 impl Contact {
     /// Finds what two faces have in common.
-    pub fn of(one: &Face, two: &Face) -> Contact {
+    pub fn of(one: &ConvexFace, two: &ConvexFace) -> Contact {
         let mut contact = Contact::default();
         let apart = |sides: &[f64; 4]| sides.iter().all(|s| *s > 0.0) || sides.iter().all(|s| *s < 0.0);
         let of_two = one.sides_of(two);
@@ -208,46 +208,46 @@ impl Contact {
         contact
     }
 
-    fn push(&mut self, key: Key, of_first: Feature, of_second: Feature, swapped: bool) {
+    fn push(&mut self, key: PointKey, of_first: Feature, of_second: Feature, swapped: bool) {
         if self.points.iter().all(|point| point.key != key) {
             let features = if swapped { [of_second, of_first] } else { [of_first, of_second] };
-            self.points.push(Common { key, features });
+            self.points.push(CommonPoint { key, features });
         }
     }
 
     /// Gives vertices other names, by their old ones. Points that are then one stay once.
     pub fn rename(&mut self, names: &FxHashMap<u32, u32>) {
         let name = |vertex: u32| names.get(&vertex).copied().unwrap_or(vertex);
-        let edge = |[a, b]: Edge| {
+        let edge = |[a, b]: EdgeKey| {
             let (a, b) = (name(a), name(b));
             if a < b { [a, b] } else { [b, a] }
         };
         for point in std::mem::take(&mut self.points) {
             let key = match point.key {
-                Key::Vertex(vertex) => Key::Vertex(name(vertex)),
-                Key::Edges(one, two) => crossing(edge(one), edge(two)),
-                Key::Pierced(one, face) => Key::Pierced(edge(one), face),
-                Key::Faces(faces) => Key::Faces(faces),
+                PointKey::Vertex(vertex) => PointKey::Vertex(name(vertex)),
+                PointKey::Edges(one, two) => crossing(edge(one), edge(two)),
+                PointKey::Pierced(one, face) => PointKey::Pierced(edge(one), face),
+                PointKey::Faces(faces) => PointKey::Faces(faces),
             };
             if self.points.iter().all(|point| point.key != key) {
-                self.points.push(Common { key, ..point });
+                self.points.push(CommonPoint { key, ..point });
             }
         }
     }
 
     /// Corners of one face that lie in the plane of another, and there in the face.
-    fn corners_inside(&mut self, one: &Face, two: &Face, swapped: bool, sides: [f64; 4]) {
+    fn corners_inside(&mut self, one: &ConvexFace, two: &ConvexFace, swapped: bool, sides: [f64; 4]) {
         for k in one.numbers() {
             if sides[k as usize] == 0.0
                 && let Some(feature) = locate(two, one.corners[k as usize])
             {
-                self.push(Key::Vertex(one.vertices[k as usize]), Feature::Corner(k), feature, swapped);
+                self.push(PointKey::Vertex(one.vertices[k as usize]), Feature::Corner(k), feature, swapped);
             }
         }
     }
 
     /// Points where edges of one face pass through the plane of another, inside that face.
-    fn piercings(&mut self, one: &Face, two: &Face, sides: [f64; 4], swapped: bool) {
+    fn piercings(&mut self, one: &ConvexFace, two: &ConvexFace, sides: [f64; 4], swapped: bool) {
         for k in 0..one.sides {
             if sides[k] * sides[one.after(k)] >= 0.0 {
                 continue;
@@ -266,16 +266,16 @@ impl Contact {
             let edge = one.edge(k as u8);
             let feature = two.feature(&passes);
             let key = match feature {
-                Feature::Corner(j) => Key::Vertex(two.vertices[j as usize]),
+                Feature::Corner(j) => PointKey::Vertex(two.vertices[j as usize]),
                 Feature::Edge(j) => crossing(edge, two.edge(j)),
-                Feature::Inside => Key::Pierced(edge, two.id),
+                Feature::Inside => PointKey::Pierced(edge, two.id),
             };
             self.push(key, Feature::Edge(k as u8), feature, swapped);
         }
     }
 
     /// Proper crossings of the edges of two faces in one plane.
-    fn crossings_in_plane(&mut self, one: &Face, two: &Face) {
+    fn crossings_in_plane(&mut self, one: &ConvexFace, two: &ConvexFace) {
         let turn = |a: DVec3, b: DVec3, c: DVec3| flat_turn(one.axis, a, b, c);
         for k in one.numbers() {
             let [p, q] = one.ends(k.into());
@@ -290,8 +290,8 @@ impl Contact {
 }
 
 /// The name of the point where two edges cross.
-pub fn crossing(one: Edge, two: Edge) -> Key {
-    if one < two { Key::Edges(one, two) } else { Key::Edges(two, one) }
+pub fn crossing(one: EdgeKey, two: EdgeKey) -> PointKey {
+    if one < two { PointKey::Edges(one, two) } else { PointKey::Edges(two, one) }
 }
 
 /// Which way three given points turn, seen along an axis.
@@ -309,7 +309,7 @@ pub fn flat_turn(axis: usize, a: DVec3, b: DVec3, c: DVec3) -> f64 {
 }
 
 /// Where in a face a point of its plane lies; `None` outside.
-fn locate(face: &Face, point: DVec3) -> Option<Feature> {
+fn locate(face: &ConvexFace, point: DVec3) -> Option<Feature> {
     let mut turns = [0.0; 4];
     for (k, turn) in turns[..face.sides].iter_mut().enumerate() {
         let [a, b] = face.ends(k);

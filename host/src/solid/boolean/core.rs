@@ -7,7 +7,7 @@
 use super::operand::Operands;
 use super::winding::winding;
 use crate::numeric::bounds::Bounds;
-use crate::numeric::implicit::{Definition, Point};
+use crate::numeric::implicit::{PointDefinition, ImplicitPoint};
 use glam::DVec3;
 
 /// Most cells along an axis: the bits of a row.
@@ -114,7 +114,7 @@ fn along(bits: u64, free: u64) -> u64 {
 
 /// A grid over an operand.
 #[derive(Clone, Debug)]
-pub struct Core {
+pub struct InteriorGrid {
     min: DVec3,
     /// Cells per unit of length.
     density: f64,
@@ -126,9 +126,9 @@ pub struct Core {
     marked: Rows,
 }
 
-impl Core {
+impl InteriorGrid {
     /// Lays a grid over an operand, finer for more triangles; `None` where numbers overflow.
-    pub fn of(operands: &Operands, operand: u32) -> Option<Core> {
+    pub fn of(operands: &Operands, operand: u32) -> Option<InteriorGrid> {
         let mesh = operands.meshes()[operand as usize];
         let all = operands.bounds(operand);
         let cells = (mesh.triangles.len() as f64).sqrt().min((MOST - 1) as f64).floor();
@@ -139,7 +139,7 @@ impl Core {
         let size = (all.size() * density).to_array().map(|cells| (cells as usize + 1).min(MOST));
         let mut surface = Rows::none(size);
         let none = Rows::none(size);
-        let mut core = Core { min: all.min, density, inside: none.clone(), bounds: Bounds::EMPTY, marked: none };
+        let mut core = InteriorGrid { min: all.min, density, inside: none.clone(), bounds: Bounds::EMPTY, marked: none };
         for triangle in 0..mesh.triangles.len() {
             surface.set(core.range(Bounds::of(mesh.corners(triangle)))?);
         }
@@ -164,7 +164,7 @@ impl Core {
             let middle = all.min + DVec3::from(seed.map(|cell| cell as f64 + 0.5)) / density;
             // A middle that was rounded out of its cell tells nothing.
             let is_there = core.range(Bounds { min: middle, max: middle }) == Some(seed.map(|cell| [cell; 2]));
-            let point = Point::new(Definition::Given(middle));
+            let point = ImplicitPoint::new(PointDefinition::Given(middle));
             if is_there && winding(operands, operand, &point, &mut 0) > 0 {
                 core.inside.rows.iter_mut().zip(&part.rows).for_each(|(inside, part)| *inside |= part);
             }
@@ -237,13 +237,13 @@ mod tests {
     use super::super::operand::Operand;
     use super::*;
     use crate::mesh::Mesh;
-    use crate::octree::Sorted;
+    use crate::octree::TriangleBvh;
     use crate::surface::{Sphere, Tolerance, tessellate};
     use rand::{RngExt, SeedableRng};
 
-    fn core_of(mesh: &Mesh) -> Option<Core> {
-        let sorted = Sorted::new(&mesh.vertices, &mesh.triangles);
-        Core::of(&Operands::new(vec![Operand { mesh, sorted: &sorted, mates: &[], overlaps: &[] }], true), 0)
+    fn core_of(mesh: &Mesh) -> Option<InteriorGrid> {
+        let sorted = TriangleBvh::new(&mesh.vertices, &mesh.triangles);
+        InteriorGrid::of(&Operands::new(vec![Operand { mesh, sorted: &sorted, mates: &[], overlaps: &[] }], true), 0)
     }
 
     /// A ball of radius 1 with a hollow of radius 0.4, stretched and moved.

@@ -6,11 +6,11 @@ use super::lattice::Lattice;
 use super::operand::{Operand, Operands};
 use super::overlaps::overlapping;
 use super::quads::mates;
-use super::result::{Outcome, Tables};
+use super::result::{Outcome, CornerTables};
 use super::simple::{Resolution, resolve, settled};
-use super::work::{Work, work};
+use super::work::{Evaluation, work};
 use crate::mesh::Mesh;
-use crate::octree::Sorted;
+use crate::octree::TriangleBvh;
 use crate::solid::SolidError;
 use rayon::prelude::*;
 
@@ -28,7 +28,7 @@ pub fn evaluate(solids: Vec<Operand<'_>>, expression: &Expression) -> Result<Out
 /// Evaluates an expression over meshes with coordinates that predicates can be exact with.
 fn evaluate_on_lattice(solids: Vec<Operand<'_>>, expression: &Expression) -> Result<Outcome, SolidError> {
     let operands = Operands::new(solids, true);
-    let Work { outcome, made, must_settle, .. } = work(&operands, expression);
+    let Evaluation { outcome, made, must_settle, .. } = work(&operands, expression);
     let (mut outcome, made) = if must_settle {
         let outcome = settled(outcome)?;
         let made = all_made(&operands, &outcome);
@@ -64,15 +64,15 @@ impl Lattice {
         let back = |error: SolidError| error.brought_back(self);
         let laid = solids.par_iter().map(|solid| self.laid(solid.mesh).map_err(back));
         let laid: Vec<(Mesh, Vec<u32>)> = laid.collect::<Result<_, _>>()?;
-        let filed = laid.par_iter().map(|(mesh, _)| (Sorted::new(&mesh.vertices, &mesh.triangles), mates(mesh)));
-        let filed: Vec<(Sorted, Vec<u32>)> = filed.collect();
+        let filed = laid.par_iter().map(|(mesh, _)| (TriangleBvh::new(&mesh.vertices, &mesh.triangles), mates(mesh)));
+        let filed: Vec<(TriangleBvh, Vec<u32>)> = filed.collect();
         let operands =
             laid.iter().zip(&filed).map(|((mesh, _), (sorted, mates))| Operand { mesh, sorted, mates, overlaps: &[] });
         let mut outcome = evaluate_on_lattice(operands.collect(), expression).map_err(back)?;
         let source = |[operand, triangle]: [u32; 2]| [operand, laid[operand as usize].1[triangle as usize]];
         outcome.sources.iter_mut().for_each(|of| *of = source(*of));
         let meshes: Vec<&Mesh> = solids.iter().map(|solid| solid.mesh).collect();
-        Tables::of(&meshes).name_surfaces(&mut outcome, &meshes);
+        CornerTables::of(&meshes).name_surfaces(&mut outcome, &meshes);
         self.bring_back(&mut outcome.mesh);
         Ok(outcome)
     }

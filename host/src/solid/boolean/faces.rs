@@ -1,6 +1,6 @@
 //! The faces of all operands that may touch others, and what they have in common.
 
-use super::contact::{Common, Contact, Face, Key};
+use super::contact::{CommonPoint, Contact, ConvexFace, PointKey};
 use super::operand::Operands;
 use super::quads::NONE;
 use glam::DVec3;
@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Faces that have a point in common, and what; triangles without an area have none.
-pub fn contacts(faces: &Faces, pairs: &[[u32; 2]]) -> Vec<([u32; 2], Contact)> {
+pub fn contacts(faces: &CandidateFaces, pairs: &[[u32; 2]]) -> Vec<([u32; 2], Contact)> {
     let contact = |pair: &[u32; 2]| {
         let pair = pair.map(|triangle| faces.of_triangle[triangle as usize]);
         if pair.contains(&NONE) {
@@ -21,7 +21,7 @@ pub fn contacts(faces: &Faces, pairs: &[[u32; 2]]) -> Vec<([u32; 2], Contact)> {
 }
 
 /// Pairs of triangles whose faces have a point in common.
-pub fn touching(operands: &Operands, faces: &Faces, contacts: &[([u32; 2], Contact)]) -> Vec<[u32; 2]> {
+pub fn touching(operands: &Operands, faces: &CandidateFaces, contacts: &[([u32; 2], Contact)]) -> Vec<[u32; 2]> {
     let mut touching = Vec::with_capacity(contacts.len());
     for (pair, _) in contacts {
         let [one, two] = pair.map(|face| faces.triangles[face as usize]);
@@ -32,9 +32,9 @@ pub fn touching(operands: &Operands, faces: &Faces, contacts: &[([u32; 2], Conta
 
 /// Faces with names.
 #[derive(Default)]
-pub struct Faces {
+pub struct CandidateFaces {
     /// By name.
-    pub faces: Vec<Face>,
+    pub faces: Vec<ConvexFace>,
     /// The lower triangle of each.
     pub triangles: Vec<u32>,
     /// Face by its lower triangle, or [`NONE`].
@@ -47,7 +47,7 @@ pub struct Faces {
     pub ambiguous: FxHashSet<u32>,
 }
 
-impl Faces {
+impl CandidateFaces {
     /// Adds the faces with these lower triangles; their vertices have the names that the operands give them.
     pub fn add(&mut self, operands: &Operands, triangles: &[u32]) {
         self.of_triangle.resize(operands.triangle_count(), NONE);
@@ -95,8 +95,8 @@ impl Faces {
     }
 
     /// All triangles around the vertices among some points.
-    pub fn around<'a>(&self, operands: &Operands, points: impl Iterator<Item = &'a Common>) -> Vec<u32> {
-        let place = |point: &Common| if let Key::Vertex(name) = point.key { self.place.get(&name) } else { None };
+    pub fn around<'a>(&self, operands: &Operands, points: impl Iterator<Item = &'a CommonPoint>) -> Vec<u32> {
+        let place = |point: &CommonPoint| if let PointKey::Vertex(name) = point.key { self.place.get(&name) } else { None };
         let places: FxHashSet<[u64; 3]> = points.filter_map(place).map(|place| crate::mesh::bits(*place)).collect();
         let is_at =
             |triangle: &u32| operands.corners(*triangle).1.iter().any(|c| places.contains(&crate::mesh::bits(*c)));

@@ -1,8 +1,8 @@
 //! Touched faces, divided along all that lies in them.
 
 use super::arrangement::Arrangement;
-use super::triangulation::{NONE, ROOM, Triangulation};
-use crate::numeric::implicit::{Definition, Point, others};
+use super::triangulation::{NONE, ROOM, IncrementalTriangulation};
+use crate::numeric::implicit::{PointDefinition, ImplicitPoint, others};
 use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -75,16 +75,16 @@ fn spread(count: usize) -> impl Iterator<Item = usize> {
 }
 
 /// A triangulation with the numbers that points have outside of it.
-struct Sheet<'a> {
+struct NumberedTriangulation<'a> {
     arrangement: &'a Arrangement,
-    triangulation: Triangulation<'a>,
+    triangulation: IncrementalTriangulation<'a>,
     /// Number inside by point.
     inside: FxHashMap<u32, u32>,
     /// Point by number inside; [`NONE`] for helping points.
     outside: Vec<u32>,
 }
 
-impl<'a> Sheet<'a> {
+impl<'a> NumberedTriangulation<'a> {
     /// Inserts points; those of each line should follow each other.
     fn insert(&mut self, points: &[u32]) {
         spread(points.len()).for_each(|place| self.insert_one(points[place]));
@@ -132,9 +132,9 @@ fn divide_face(arrangement: &Arrangement, face: u32) -> Vec<Facet> {
         corners[1..shape.sides].reverse();
     }
     let places = corners.map(|p| &arrangement.points[p as usize]);
-    let mut sheet = Sheet {
+    let mut sheet = NumberedTriangulation {
         arrangement,
-        triangulation: Triangulation::new(shape.axis, &places[..shape.sides]),
+        triangulation: IncrementalTriangulation::new(shape.axis, &places[..shape.sides]),
         inside: FxHashMap::with_capacity_and_hasher(ROOM, Default::default()),
         outside: corners[..shape.sides].to_vec(),
     };
@@ -158,9 +158,9 @@ fn divide_face(arrangement: &Arrangement, face: u32) -> Vec<Facet> {
 fn divide_sheet(arrangement: &Arrangement, faces: &[u32]) -> Vec<Facet> {
     let first = &arrangement.faces[faces[0] as usize];
     let helpers = around(first.axis, faces.iter().flat_map(|&f| arrangement.faces[f as usize].corners().to_vec()));
-    let mut sheet = Sheet {
+    let mut sheet = NumberedTriangulation {
         arrangement,
-        triangulation: Triangulation::new(first.axis, &helpers.each_ref()),
+        triangulation: IncrementalTriangulation::new(first.axis, &helpers.each_ref()),
         inside: FxHashMap::default(),
         outside: vec![NONE; 3],
     };
@@ -190,7 +190,7 @@ fn divide_sheet(arrangement: &Arrangement, faces: &[u32]) -> Vec<Facet> {
 }
 
 /// A part of the plane of a face.
-pub struct Region<'a> {
+pub struct PlanarRegion<'a> {
     /// The face.
     pub face: u32,
     /// All points in it and on its borders.
@@ -199,15 +199,15 @@ pub struct Region<'a> {
     pub borders: &'a [[u32; 2]],
 }
 
-impl Region<'_> {
+impl PlanarRegion<'_> {
     /// Triangles that cover it, turned as the face.
     pub fn triangles(&self, arrangement: &Arrangement) -> Vec<[u32; 3]> {
         let face = &arrangement.faces[self.face as usize];
         let places = self.points.iter().map(|&p| arrangement.points[p as usize].near());
         let helpers = around(face.axis, places);
-        let mut sheet = Sheet {
+        let mut sheet = NumberedTriangulation {
             arrangement,
-            triangulation: Triangulation::new(face.axis, &helpers.each_ref()),
+            triangulation: IncrementalTriangulation::new(face.axis, &helpers.each_ref()),
             inside: FxHashMap::default(),
             outside: vec![NONE; 3],
         };
@@ -219,18 +219,18 @@ impl Region<'_> {
 }
 
 /// A triangle far around some points, seen along an axis.
-pub fn around(axis: usize, points: impl Iterator<Item = DVec3>) -> [Point; 3] {
+pub fn around(axis: usize, points: impl Iterator<Item = DVec3>) -> [ImplicitPoint; 3] {
     let [x, y] = others(axis);
     let reach = points.fold(0.0_f64, |reach, p| reach.max(p.abs().max_element())).max(f64::MIN_POSITIVE);
     [(-8.0, -4.0), (8.0, -4.0), (0.0, 8.0)].map(|(right, up)| {
         let mut at = DVec3::ZERO;
         (at[x], at[y]) = (right * reach, up * reach);
-        Point::new(Definition::Given(at))
+        ImplicitPoint::new(PointDefinition::Given(at))
     })
 }
 
 /// The triangles inside borders that turn one way or the other.
-fn inside_of(sheet: &Sheet, turn: f64, borders: impl Iterator<Item = [u32; 2]>) -> Vec<u32> {
+fn inside_of(sheet: &NumberedTriangulation, turn: f64, borders: impl Iterator<Item = [u32; 2]>) -> Vec<u32> {
     let numbers = borders.map(|border| border.map(|p| sheet.inside[&p]));
     let sides: Vec<(u32, u32)> = numbers.map(|[a, b]| if turn > 0.0 { (a, b) } else { (b, a) }).collect();
     let triangulation = &sheet.triangulation;

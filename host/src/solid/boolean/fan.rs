@@ -1,7 +1,7 @@
 //! The triangles around a vertex, and the neighbours onto which it may be moved without moving the surface.
 
 use super::operand::Operands;
-use super::overlap::Tile;
+use super::overlap::NamedTriangle;
 use super::result::Outcome;
 use crate::mesh::Mesh;
 use glam::DVec3;
@@ -22,7 +22,7 @@ const QUICK: usize = 16;
 
 /// A triangle at a vertex.
 #[derive(Clone, Copy, Debug)]
-struct Leaf {
+struct FanTriangle {
     /// Its number.
     triangle: u32,
     /// Its second corner, if the vertex is the first.
@@ -37,11 +37,11 @@ struct Leaf {
 pub struct Fan {
     vertex: u32,
     /// Several where surfaces touch each other.
-    disks: Vec<Vec<Leaf>>,
+    disks: Vec<Vec<FanTriangle>>,
 }
 
 impl Fan {
-    fn leaves(&self) -> impl Iterator<Item = &Leaf> {
+    fn leaves(&self) -> impl Iterator<Item = &FanTriangle> {
         self.disks.iter().flatten()
     }
 }
@@ -63,7 +63,7 @@ pub struct Collapse {
 
 /// What fans are judged by.
 #[derive(Clone, Copy)]
-pub struct Judge<'a> {
+pub struct CollapseCriteria<'a> {
     /// The operands.
     pub operands: &'a Operands<'a>,
     /// The result.
@@ -72,7 +72,7 @@ pub struct Judge<'a> {
     pub largest: f64,
 }
 
-impl Judge<'_> {
+impl CollapseCriteria<'_> {
     fn mesh(&self) -> &Mesh {
         &self.outcome.mesh
     }
@@ -147,7 +147,7 @@ impl Judge<'_> {
         left.sort_unstable();
         let mut disks = Vec::new();
         while let Some(&start) = left.first() {
-            let mut disk: Vec<Leaf> = Vec::with_capacity(left.len());
+            let mut disk: Vec<FanTriangle> = Vec::with_capacity(left.len());
             let mut next = start.0;
             while disk.is_empty() || next != start.0 {
                 let from = left.partition_point(|(second, ..)| *second < next);
@@ -164,7 +164,7 @@ impl Judge<'_> {
                     return None;
                 }
                 let (second, triangle, third) = left.remove(place);
-                disk.push(Leaf { triangle, second, is_border: false });
+                disk.push(FanTriangle { triangle, second, is_border: false });
                 next = third;
             }
             disks.push(disk);
@@ -200,7 +200,7 @@ impl Judge<'_> {
         let of_plane = |plane: &[DVec3; 3]| if is_level(plane) { 0.0 } else { reach };
         let reaches: Vec<f64> = planes.iter().map(of_plane).collect();
         let is_near = |onto: &u32| {
-            let is_in = |disk: &Vec<Leaf>| disk.iter().any(|leaf| leaf.second == *onto);
+            let is_in = |disk: &Vec<FanTriangle>| disk.iter().any(|leaf| leaf.second == *onto);
             fan.disks[1..].iter().all(is_in)
                 && planes.iter().zip(&reaches).all(|(plane, reach)| is_on_plane(*plane, self.at(*onto), *reach))
         };
@@ -256,7 +256,7 @@ impl Judge<'_> {
     }
 
     /// Whether the borders in a disk stay where they are if the vertex is moved onto neighbour `k`.
-    fn keeps_borders(&self, vertex: u32, disk: &[Leaf], k: usize, reach: f64) -> bool {
+    fn keeps_borders(&self, vertex: u32, disk: &[FanTriangle], k: usize, reach: f64) -> bool {
         let [from, to] = [vertex, disk[k].second].map(|vertex| self.at(vertex));
         let borders: Vec<usize> = (0..disk.len()).filter(|&j| disk[j].is_border).collect();
         match borders[..] {
@@ -302,7 +302,7 @@ impl Judge<'_> {
             let all = (1..count).filter(|&step| leaf(step).is_border).count();
             let mut borders = 0;
             for step in 1..count - 1 {
-                let Leaf { triangle, second, is_border } = leaf(step);
+                let FanTriangle { triangle, second, is_border } = leaf(step);
                 borders += usize::from(is_border);
                 let corners = [onto, second, leaf(step + 1).second];
                 worst = worst.min(self.shape(fan, triangle, corners, is_short)?);
@@ -323,7 +323,7 @@ impl Judge<'_> {
     ///
     /// - `is_short`: whether the vertex is moved by roundings only, for which what is thin may stay so.
     fn shape(&self, fan: &Fan, triangle: u32, corners: [u32; 3], is_short: bool) -> Option<f64> {
-        let tile = |names: [u32; 3]| Tile { names, corners: names.map(|vertex| self.at(vertex)) }.with_plane();
+        let tile = |names: [u32; 3]| NamedTriangle { names, corners: names.map(|vertex| self.at(vertex)) }.with_plane();
         let new = tile(corners);
         if new.is_thin() {
             // Which way such a one faces is a matter of roundings.

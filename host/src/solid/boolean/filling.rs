@@ -2,8 +2,8 @@
 
 use super::contact::flat_turn;
 use super::facets::around;
-use super::triangulation::{NONE, Triangulation};
-use crate::numeric::implicit::{Definition, Point, others};
+use super::triangulation::{NONE, IncrementalTriangulation};
+use crate::numeric::implicit::{PointDefinition, ImplicitPoint, others};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
@@ -22,8 +22,8 @@ pub fn filled(axis: usize, places: &[DVec3], loops: &[&[u32]]) -> Option<Vec<[u3
     }
     let used: Vec<u32> = loops.iter().flat_map(|points| points.iter().copied()).collect();
     let helpers = around(axis, used.iter().map(|&point| places[point as usize]));
-    let points: Vec<Point> = used.iter().map(|&point| Point::new(Definition::Given(places[point as usize]))).collect();
-    let mut triangulation = Triangulation::new(axis, &helpers.each_ref());
+    let points: Vec<ImplicitPoint> = used.iter().map(|&point| ImplicitPoint::new(PointDefinition::Given(places[point as usize]))).collect();
+    let mut triangulation = IncrementalTriangulation::new(axis, &helpers.each_ref());
     // Number inside by point, and point by number inside.
     let mut inside: FxHashMap<u32, u32> = FxHashMap::default();
     let mut outside = vec![NONE; 3];
@@ -113,7 +113,7 @@ fn meet(axis: usize, places: &[DVec3], one: [u32; 2], two: [u32; 2]) -> bool {
 }
 
 /// How often loops wind around each triangle; `None` if they are not closed.
-fn windings(triangulation: &Triangulation, runs: &FxHashMap<(u32, u32), i32>) -> Option<Vec<i32>> {
+fn windings(triangulation: &IncrementalTriangulation, runs: &FxHashMap<(u32, u32), i32>) -> Option<Vec<i32>> {
     let mut windings: Vec<Option<i32>> = vec![None; triangulation.triangles.len()];
     // Nothing winds around a triangle with a corner that helps.
     let first = triangulation.triangles.iter().position(|corners| corners.contains(&0))?;

@@ -5,10 +5,10 @@
 //! around it lies inside that. Neither is needed. All neighbours see the same points, so all leave out the same.
 
 use super::arrangement::Arrangement;
-use super::facets::{Facet, Region};
+use super::facets::{Facet, PlanarRegion};
 use super::operand::Operands;
-use super::parts::{Fate, Parts};
-use super::sides::{Sides, of_triangles};
+use super::parts::{FaceClassification, Parts};
+use super::sides::{HalfEdges, of_triangles};
 use crate::numeric::implicit::side;
 use crate::solid::union_find::UnionFind;
 use rayon::prelude::*;
@@ -16,7 +16,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 /// A triangle of the result that was made by the operation.
 #[derive(Clone, Copy, Debug)]
-pub struct Piece {
+pub struct ResultTriangle {
     /// Points, as the face turns.
     pub corners: [u32; 3],
     /// The face whose surface it has.
@@ -24,14 +24,14 @@ pub struct Piece {
     /// A face of that surface that each corner lies in.
     pub at: [u32; 3],
     /// [`Fate::Kept`] or [`Fate::Turned`], seen from that face.
-    pub fate: Fate,
+    pub fate: FaceClassification,
 }
 
 /// The facets that stay, in as few pieces as their points and borders allow.
-pub fn pieces(operands: &Operands, arrangement: &Arrangement, facets: &[Facet], parts: &Parts) -> Vec<Piece> {
-    let kept: Vec<Piece> =
+pub fn pieces(operands: &Operands, arrangement: &Arrangement, facets: &[Facet], parts: &Parts) -> Vec<ResultTriangle> {
+    let kept: Vec<ResultTriangle> =
         facets.iter().enumerate().filter_map(|(index, facet)| piece(facet, parts.of_facet(index))).collect();
-    let plan = Plan::new(operands, arrangement, &kept);
+    let plan = MergePlan::new(operands, arrangement, &kept);
     let mut members: Vec<(u32, u32)> = (0..kept.len() as u32).map(|index| (plan.regions.root(index), index)).collect();
     members.par_sort_unstable();
     let regions: Vec<&[(u32, u32)]> = members.chunk_by(|a, b| a.0 == b.0).collect();
@@ -39,38 +39,38 @@ pub fn pieces(operands: &Operands, arrangement: &Arrangement, facets: &[Facet], 
         plan.merge(arrangement, &kept, members, &mut merged);
         merged
     });
-    let merged: Vec<Vec<Piece>> = merged.collect();
+    let merged: Vec<Vec<ResultTriangle>> = merged.collect();
     merged.concat()
 }
 
-fn piece(facet: &Facet, fate: Fate) -> Option<Piece> {
+fn piece(facet: &Facet, fate: FaceClassification) -> Option<ResultTriangle> {
     // Of faces that coincide the first that looks the right way gives its surface.
     let wanted = match fate {
-        Fate::Dropped => return None,
-        Fate::Kept => true,
-        Fate::Turned => false,
+        FaceClassification::Dropped => return None,
+        FaceClassification::Kept => true,
+        FaceClassification::Turned => false,
     };
     let cover = facet.cover().find(|c| c.is_along == wanted);
     let [a, b, c] = facet.corners;
     let (corners, face, fate) = match cover {
-        Some(cover) if !cover.is_along => ([a, c, b], cover.face, Fate::Kept),
+        Some(cover) if !cover.is_along => ([a, c, b], cover.face, FaceClassification::Kept),
         Some(cover) => ([a, b, c], cover.face, fate),
         None => ([a, b, c], facet.face, fate),
     };
-    Some(Piece { corners, face, at: [face; 3], fate })
+    Some(ResultTriangle { corners, face, at: [face; 3], fate })
 }
 
 /// The pieces that belong together, and the points that are not needed.
-struct Plan {
+struct MergePlan {
     /// Pieces of one region.
     regions: UnionFind,
     needless: FxHashSet<u32>,
 }
 
-impl Plan {
-    fn new(operands: &Operands, arrangement: &Arrangement, kept: &[Piece]) -> Plan {
+impl MergePlan {
+    fn new(operands: &Operands, arrangement: &Arrangement, kept: &[ResultTriangle]) -> MergePlan {
         let corners = kept.iter().map(|piece| piece.corners);
-        let sides = Sides::new(arrangement.points.len(), of_triangles(corners, 0));
+        let sides = HalfEdges::new(arrangement.points.len(), of_triangles(corners, 0));
         let mut regions = UnionFind::new(kept.len());
         for (_, beside) in sides.edges() {
             if let [one, two] = beside
@@ -111,26 +111,26 @@ impl Plan {
             _ => false,
         };
         let needless = around.into_iter().filter(|(_, at)| is_needless(*at)).map(|(point, _)| point).collect();
-        Plan { regions, needless }
+        MergePlan { regions, needless }
     }
 
     /// Adds the pieces of a region, made anew if a point is not needed.
     ///
     /// - `members`: the old pieces, each after the number of the region.
-    fn merge(&self, arrangement: &Arrangement, kept: &[Piece], members: &[(u32, u32)], merged: &mut Vec<Piece>) {
+    fn merge(&self, arrangement: &Arrangement, kept: &[ResultTriangle], members: &[(u32, u32)], merged: &mut Vec<ResultTriangle>) {
         let old = members.iter().map(|&(_, member)| kept[member as usize]);
         let is_needed = |point: u32| !self.needless.contains(&point);
         if self.needless.is_empty() || old.clone().flat_map(|piece| piece.corners).all(is_needed) {
             merged.extend(old);
             return;
         }
-        let old: Vec<Piece> = old.collect();
+        let old: Vec<ResultTriangle> = old.collect();
         merged.extend(self.straightened(arrangement, &old).unwrap_or(old));
     }
 
     /// The pieces of a region without the points that are not needed, if its borders allow.
-    fn straightened(&self, arrangement: &Arrangement, old: &[Piece]) -> Option<Vec<Piece>> {
-        let sides = |piece: &Piece| [0, 1, 2].map(|k| [piece.corners[k], piece.corners[(k + 1) % 3]]);
+    fn straightened(&self, arrangement: &Arrangement, old: &[ResultTriangle]) -> Option<Vec<ResultTriangle>> {
+        let sides = |piece: &ResultTriangle| [0, 1, 2].map(|k| [piece.corners[k], piece.corners[(k + 1) % 3]]);
         let all: FxHashSet<[u32; 2]> = old.iter().flat_map(sides).collect();
         let borders: Vec<[u32; 2]> = old.iter().flat_map(sides).filter(|[a, b]| !all.contains(&[*b, *a])).collect();
         let onward: FxHashMap<u32, u32> = borders.iter().map(|&[a, b]| (a, b)).collect();
@@ -150,13 +150,13 @@ impl Plan {
         let points: Vec<u32> = at.iter().map(|(point, _)| *point).collect();
         let face_at = |point: u32| at[at.partition_point(|(other, _)| *other < point)].1;
         let first = old[0];
-        let triangles = Region { face: first.face, points: &points, borders: &straight }.triangles(arrangement);
-        Some(triangles.into_iter().map(|corners| Piece { corners, at: corners.map(face_at), ..first }).collect())
+        let triangles = PlanarRegion { face: first.face, points: &points, borders: &straight }.triangles(arrangement);
+        Some(triangles.into_iter().map(|corners| ResultTriangle { corners, at: corners.map(face_at), ..first }).collect())
     }
 }
 
 /// Whether two pieces beside each other are of one surface and in one plane.
-fn are_one(operands: &Operands, arrangement: &Arrangement, one: &Piece, two: &Piece) -> bool {
+fn are_one(operands: &Operands, arrangement: &Arrangement, one: &ResultTriangle, two: &ResultTriangle) -> bool {
     if one.face == two.face {
         return one.fate == two.fate;
     }
@@ -166,7 +166,7 @@ fn are_one(operands: &Operands, arrangement: &Arrangement, one: &Piece, two: &Pi
         let mesh = operands.meshes()[operand as usize];
         mesh.surfaces.get((triangle - operands.first_triangle(operand)) as usize)
     };
-    let plane = |piece: &Piece| arrangement.faces[piece.face as usize].plane();
+    let plane = |piece: &ResultTriangle| arrangement.faces[piece.face as usize].plane();
     one.fate == two.fate
         && operands.of_triangle(b) == operand
         && surface(a) == surface(b)

@@ -55,13 +55,13 @@ mod lattice;
 mod evaluation;
 
 pub use arrangement::Counts;
-pub(crate) use contact::{Contact, Face, Key};
+pub(crate) use contact::{Contact, ConvexFace, PointKey};
 pub(super) use evaluation::evaluate;
 pub use expression::Expression;
 pub(super) use filling::filled;
 pub(super) use lattice::Lattice;
 pub(super) use operand::Operand;
-pub(super) use overlap::{Tile, overlap};
+pub(super) use overlap::{NamedTriangle, overlap};
 pub(super) use overlaps::overlapping_up_to;
 pub(super) use quads::mates;
 pub use result::Outcome;

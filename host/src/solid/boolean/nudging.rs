@@ -8,10 +8,10 @@
 //! # Source
 //! The sequence of places: Roberts 2018, the additive recurrence of the generalised golden ratio in three dimensions.
 
-use super::overlap::{Tile, overlap};
+use super::overlap::{NamedTriangle, overlap};
 use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
-use crate::octree::Sorted;
+use crate::octree::TriangleBvh;
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
@@ -46,7 +46,7 @@ pub fn nudge(mesh: &mut Mesh, pairs: &[[u32; 2]], most: f64) {
 struct Search<'a> {
     mesh: &'a mut Mesh,
     /// The triangles by the places that they had first.
-    sorted: Sorted,
+    sorted: TriangleBvh,
     /// The triangles at each vertex.
     at: FxHashMap<u32, Vec<u32>>,
     /// The triangles near some.
@@ -59,7 +59,7 @@ struct Search<'a> {
 
 impl<'a> Search<'a> {
     fn new(mesh: &'a mut Mesh, most: f64) -> Search<'a> {
-        let sorted = Sorted::new(&mesh.vertices, &mesh.triangles);
+        let sorted = TriangleBvh::new(&mesh.vertices, &mesh.triangles);
         let mut at: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
         for (corners, triangle) in mesh.triangles.iter().zip(0..) {
             corners.iter().for_each(|&vertex| at.entry(vertex).or_default().push(triangle));
@@ -67,8 +67,8 @@ impl<'a> Search<'a> {
         Search { mesh, sorted, at, near: FxHashMap::default(), home: FxHashMap::default(), most }
     }
 
-    fn tile(&self, triangle: u32) -> Tile {
-        Tile { names: self.mesh.triangles[triangle as usize], corners: self.mesh.corners(triangle as usize) }
+    fn tile(&self, triangle: u32) -> NamedTriangle {
+        NamedTriangle { names: self.mesh.triangles[triangle as usize], corners: self.mesh.corners(triangle as usize) }
     }
 
     fn is_overlap(&self, one: u32, two: u32) -> bool {

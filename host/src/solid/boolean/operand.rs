@@ -1,10 +1,10 @@
 //! The solids of an operation, with their vertices and triangles counted through.
 
-use super::contact::Face;
+use super::contact::ConvexFace;
 use super::quads::{NONE, ring};
 use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
-use crate::octree::Sorted;
+use crate::octree::TriangleBvh;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -14,7 +14,7 @@ pub struct Operand<'a> {
     /// Its surface.
     pub mesh: &'a Mesh,
     /// The triangles of it by place.
-    pub sorted: &'a Sorted,
+    pub sorted: &'a TriangleBvh,
     /// For each triangle the one with which it makes one face, or [`NONE`]; empty if all are on their own.
     pub mates: &'a [u32],
     /// Pairs of its triangles that overlap, the lower first; none if its surface is simple.
@@ -72,7 +72,7 @@ impl<'a> Operands<'a> {
     }
 
     /// The triangles of an operand by place.
-    pub fn sorted(&self, operand: u32) -> &Sorted {
+    pub fn sorted(&self, operand: u32) -> &TriangleBvh {
         self.operands[operand as usize].sorted
     }
 
@@ -122,7 +122,7 @@ impl<'a> Operands<'a> {
     }
 
     /// The face that a triangle is, or is one half of.
-    pub fn face(&self, id: u32, triangle: u32) -> Option<Face> {
+    pub fn face(&self, id: u32, triangle: u32) -> Option<ConvexFace> {
         let operand = self.of_triangle(triangle);
         let mesh = self.meshes[operand as usize];
         let triangle = triangle - self.first_triangle(operand);
@@ -130,10 +130,10 @@ impl<'a> Operands<'a> {
         let at = |vertex: u32| mesh.vertices[vertex as usize];
         let mate = self.operands[operand as usize].mate(triangle);
         if let Some([a, b, c, d]) = mate.and_then(|mate| ring(mesh, triangle, mate)) {
-            let face = Face::new(id, [a, b, c].map(numbered), [a, b, c].map(at))?;
+            let face = ConvexFace::new(id, [a, b, c].map(numbered), [a, b, c].map(at))?;
             return Some(face.with(numbered(d), at(d)));
         }
-        Face::new(id, mesh.triangles[triangle as usize].map(numbered), mesh.corners(triangle as usize))
+        ConvexFace::new(id, mesh.triangles[triangle as usize].map(numbered), mesh.corners(triangle as usize))
     }
 
     /// The triangles of the face that a triangle belongs to, the lower first.
@@ -159,7 +159,7 @@ impl<'a> Operands<'a> {
     /// Pairs of faces of different operands, by their lower triangles, of which the boxes of triangles touch.
     ///
     /// - `sorted`: the triangles of an operand that are looked at.
-    pub fn pairs<'b>(&self, sorted: impl Fn(u32) -> &'b Sorted + Sync) -> Vec<[u32; 2]> {
+    pub fn pairs<'b>(&self, sorted: impl Fn(u32) -> &'b TriangleBvh + Sync) -> Vec<[u32; 2]> {
         let count = self.meshes.len() as u32;
         let pairs_of = |i: u32| self.near(i).filter(move |j| *j > i).map(move |j| (i, j));
         let tasks: Vec<(u32, u32)> = (0..count).flat_map(pairs_of).collect();

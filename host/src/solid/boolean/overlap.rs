@@ -4,7 +4,7 @@
 //! names of their corners; that they have no more, from the side on which the others lie, from which way they face, or from
 //! a line that parts them.
 
-use super::contact::{Contact, Face, Feature, flat_turn};
+use super::contact::{Contact, ConvexFace, Feature, flat_turn};
 use crate::numeric::implicit::projection;
 use crate::numeric::plane::Plane;
 use glam::DVec3;
@@ -16,7 +16,7 @@ const THIN: f64 = 8.0;
 
 /// A triangle of a surface.
 #[derive(Clone, Copy, Debug)]
-pub struct Tile {
+pub struct NamedTriangle {
     /// Corners with the same name are at the same place; so may others be.
     pub names: [u32; 3],
     /// Where they are.
@@ -25,29 +25,29 @@ pub struct Tile {
 
 /// A triangle of a surface with its plane.
 #[derive(Clone, Copy, Debug)]
-pub struct PlaneTile {
-    tile: Tile,
+pub struct PlaneTriangle {
+    tile: NamedTriangle,
     plane: Plane,
 }
 
-impl Tile {
+impl NamedTriangle {
     /// The triangle with its plane.
-    pub fn with_plane(self) -> PlaneTile {
-        PlaneTile { tile: self, plane: Plane::through(self.corners) }
+    pub fn with_plane(self) -> PlaneTriangle {
+        PlaneTriangle { tile: self, plane: Plane::through(self.corners) }
     }
 
     /// Which corners of another triangle are none of this one, a bit for each.
     #[inline]
-    fn others_in(&self, other: &Tile) -> u8 {
+    fn others_in(&self, other: &NamedTriangle) -> u8 {
         let [a, b, c] = self.names;
         let is_other = |k: usize| other.names[k] != a && other.names[k] != b && other.names[k] != c;
         (0..3).fold(0, |all, k| all | u8::from(is_other(k)) << k)
     }
 }
 
-impl PlaneTile {
+impl PlaneTriangle {
     /// The triangle.
-    pub fn tile(&self) -> &Tile {
+    pub fn tile(&self) -> &NamedTriangle {
         &self.tile
     }
 
@@ -73,7 +73,7 @@ impl PlaneTile {
     /// Whether another triangle with a common edge is folded back onto this one: its third corner is near the plane, on the
     /// side of the edge where this one is.
     #[inline]
-    fn is_lain_on(&self, other: &Tile) -> bool {
+    fn is_lain_on(&self, other: &NamedTriangle) -> bool {
         let corners = &self.tile.corners;
         let third = self.tile.others_in(other).trailing_zeros() as usize;
         let height = self.plane.normal.dot(other.corners[third] - corners[0]);
@@ -88,7 +88,7 @@ impl PlaneTile {
     /// Whether all of another that is not common lies on one side of the plane.
     ///
     /// - `own`: the corners of the other that are not common, a bit for each.
-    fn is_beside(&self, other: &Tile, own: u8) -> bool {
+    fn is_beside(&self, other: &NamedTriangle, own: u8) -> bool {
         let mut side = 0.0;
         for k in (0..3).filter(|k| own >> k & 1 == 1) {
             match self.plane.rounded_side(other.corners[k]) {
@@ -100,7 +100,7 @@ impl PlaneTile {
     }
 
     /// Whether another with a common edge lies beyond that in some view, and so has no more in common with it.
-    fn is_hinged(&self, other: &PlaneTile) -> bool {
+    fn is_hinged(&self, other: &PlaneTriangle) -> bool {
         let (names, beyond) = (self.tile.names, other.tile.names);
         let runs_back = |k: usize| {
             let edge = [names[(k + 1) % 3], names[k]];
@@ -111,8 +111,8 @@ impl PlaneTile {
     }
 
     /// Whether an edge of this triangle parts it from another where both are seen along an axis.
-    fn parts(&self, other: &Tile, axis: usize) -> bool {
-        let Tile { names, corners } = self.tile;
+    fn parts(&self, other: &NamedTriangle, axis: usize) -> bool {
+        let NamedTriangle { names, corners } = self.tile;
         let mut facing = self.plane.facing(axis);
         if facing == 0.0 {
             facing = flat_turn(axis, corners[0], corners[1], corners[2]);
@@ -130,7 +130,7 @@ impl PlaneTile {
 /// Whether two triangles with an area have more in common than corners, and the edge between two of these.
 ///
 /// - `plane_two`: gives the second with its plane, where it is needed.
-pub fn overlap<P: Borrow<PlaneTile>>(one: &PlaneTile, two: &Tile, plane_two: impl FnOnce() -> P) -> bool {
+pub fn overlap<P: Borrow<PlaneTriangle>>(one: &PlaneTriangle, two: &NamedTriangle, plane_two: impl FnOnce() -> P) -> bool {
     overlap_of(one, two, one.tile.others_in(two), plane_two)
 }
 
@@ -138,7 +138,7 @@ pub fn overlap<P: Borrow<PlaneTile>>(one: &PlaneTile, two: &Tile, plane_two: imp
 ///
 /// - `plane_two`: gives the second with its plane, where it is needed.
 #[inline(always)]
-pub fn nearly_overlap<P: Borrow<PlaneTile>>(one: &PlaneTile, two: &Tile, plane_two: impl FnOnce() -> P) -> bool {
+pub fn nearly_overlap<P: Borrow<PlaneTriangle>>(one: &PlaneTriangle, two: &NamedTriangle, plane_two: impl FnOnce() -> P) -> bool {
     let own = one.tile.others_in(two);
     own.count_ones() == 1 && one.is_lain_on(two) || overlap_of(one, two, own, plane_two)
 }
@@ -147,7 +147,7 @@ pub fn nearly_overlap<P: Borrow<PlaneTile>>(one: &PlaneTile, two: &Tile, plane_t
 ///
 /// - `own`: the corners of the second that are none of the first, a bit for each.
 #[inline(always)]
-fn overlap_of<P: Borrow<PlaneTile>>(one: &PlaneTile, two: &Tile, own: u8, plane_two: impl FnOnce() -> P) -> bool {
+fn overlap_of<P: Borrow<PlaneTriangle>>(one: &PlaneTriangle, two: &NamedTriangle, own: u8, plane_two: impl FnOnce() -> P) -> bool {
     if own == 0 {
         return true;
     }
@@ -177,7 +177,7 @@ fn overlap_exactly(one: [DVec3; 3], two: [DVec3; 3]) -> bool {
         return true;
     }
     let names = [0, 1, 2].map(|k| shared[k].map_or(3 + k as u32, |own| own as u32));
-    let (Some(one), Some(two)) = (Face::new(0, [0, 1, 2], one), Face::new(1, names, two)) else { return false };
+    let (Some(one), Some(two)) = (ConvexFace::new(0, [0, 1, 2], one), ConvexFace::new(1, names, two)) else { return false };
     let contact = Contact::of(&one, &two);
     contact.points.len() > 2
         || contact.points.iter().any(|point| !matches!(point.features, [Feature::Corner(_), Feature::Corner(_)]))

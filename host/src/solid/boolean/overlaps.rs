@@ -1,8 +1,8 @@
 //! Pairs of triangles of a surface that overlap, and what of them is still known when the surface was changed.
 
-use super::overlap::{Tile, overlap};
+use super::overlap::{NamedTriangle, overlap};
 use crate::mesh::{Mesh, bits};
-use crate::octree::Sorted;
+use crate::octree::TriangleBvh;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -30,7 +30,7 @@ impl Overlaps {
     pub fn overlapping(&self, mesh: &Mesh) -> Vec<[u32; 2]> {
         let number = |triangle| self.numbers.get(&corners(mesh, triangle)).copied();
         let numbers: Vec<Option<u32>> = (0..mesh.triangles.len()).map(number).collect();
-        Sorted::new(&mesh.vertices, &mesh.triangles).pairs_within(|a, b| {
+        TriangleBvh::new(&mesh.vertices, &mesh.triangles).pairs_within(|a, b| {
             match [numbers[a as usize], numbers[b as usize]] {
                 [Some(one), Some(two)] if one != two => self.pairs.contains(&[one.min(two), one.max(two)]),
                 _ => do_overlap(mesh, a, b),
@@ -47,19 +47,19 @@ fn corners(mesh: &Mesh, triangle: usize) -> Corners {
 
 fn do_overlap(mesh: &Mesh, one: u32, two: u32) -> bool {
     let tile =
-        |triangle: u32| Tile { names: mesh.triangles[triangle as usize], corners: mesh.corners(triangle as usize) };
+        |triangle: u32| NamedTriangle { names: mesh.triangles[triangle as usize], corners: mesh.corners(triangle as usize) };
     overlap(&tile(one).with_plane(), &tile(two), || tile(two).with_plane())
 }
 
 /// Pairs of triangles of a mesh, the lower first, that have more in common than corners and the edges between.
 pub fn overlapping(mesh: &Mesh) -> Vec<[u32; 2]> {
-    overlapping_up_to(mesh, &Sorted::new(&mesh.vertices, &mesh.triangles), usize::MAX)
+    overlapping_up_to(mesh, &TriangleBvh::new(&mesh.vertices, &mesh.triangles), usize::MAX)
 }
 
 /// Pairs of triangles of a mesh as [`overlapping`] gives them; if there are more than `most`, a few more of them than that.
 ///
 /// - `sorted`: the triangles by place.
-pub fn overlapping_up_to(mesh: &Mesh, sorted: &Sorted, most: usize) -> Vec<[u32; 2]> {
+pub fn overlapping_up_to(mesh: &Mesh, sorted: &TriangleBvh, most: usize) -> Vec<[u32; 2]> {
     let count = AtomicUsize::new(0);
     let is_enough = || count.load(Ordering::Relaxed) > most;
     sorted.pairs_within_until(is_enough, |a, b| {

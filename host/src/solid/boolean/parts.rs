@@ -3,9 +3,9 @@
 use super::arrangement::Arrangement;
 use super::facets::Facet;
 use super::operand::Operands;
-use super::sides::{Sides, of_triangles};
+use super::sides::{HalfEdges, of_triangles};
 use super::winding::winding;
-use crate::numeric::implicit::{Definition, Point, turn};
+use crate::numeric::implicit::{PointDefinition, ImplicitPoint, turn};
 use crate::solid::union_find::UnionFind;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -13,7 +13,7 @@ use rustc_hash::FxHashMap;
 
 /// What becomes of a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fate {
+pub enum FaceClassification {
     /// It is no border of the result.
     Dropped,
     /// It is, with the result behind it.
@@ -26,7 +26,7 @@ pub enum Fate {
 pub struct Parts {
     nodes: UnionFind,
     vertices: usize,
-    fates: FxHashMap<u32, Fate>,
+    fates: FxHashMap<u32, FaceClassification>,
     /// Number of parts.
     pub count: u64,
     /// Rays that were sent.
@@ -87,7 +87,7 @@ impl Parts {
         }
         join_neighbours(&mut nodes, operands, arrangement, facets);
         let samples = samples(operands, &mut nodes, facets, is_whole);
-        let judged: Vec<(Fate, i32, u64)> = samples
+        let judged: Vec<(FaceClassification, i32, u64)> = samples
             .par_iter()
             .map(|sample| {
                 let mut rays = 0;
@@ -107,16 +107,16 @@ impl Parts {
 
     /// Whether all are borders of the result, with the result behind them.
     pub fn are_all_kept(&self) -> bool {
-        self.fates.values().all(|fate| *fate == Fate::Kept)
+        self.fates.values().all(|fate| *fate == FaceClassification::Kept)
     }
 
     /// What becomes of each triangle, counted over all operands; those that are not whole are dropped.
-    pub fn of_triangles(&self, operands: &Operands, is_whole: &[bool]) -> Vec<Fate> {
-        let mut fates = vec![Fate::Dropped; is_whole.len()];
+    pub fn of_triangles(&self, operands: &Operands, is_whole: &[bool]) -> Vec<FaceClassification> {
+        let mut fates = vec![FaceClassification::Dropped; is_whole.len()];
         for (operand, mesh) in (0..).zip(operands.meshes()) {
             let [first_vertex, first] = [operands.first_vertex(operand), operands.first_triangle(operand)];
             // Neighbours in the list are mostly of one part.
-            let mut last = (u32::MAX, Fate::Dropped);
+            let mut last = (u32::MAX, FaceClassification::Dropped);
             let own = first as usize..first as usize + mesh.triangles.len();
             let slots = fates[own.clone()].iter_mut().zip(&is_whole[own]);
             for (triangle, (fate, _)) in mesh.triangles.iter().zip(slots).filter(|(_, (_, whole))| **whole) {
@@ -131,12 +131,12 @@ impl Parts {
     }
 
     /// What becomes of a facet.
-    pub fn of_facet(&self, facet: usize) -> Fate {
+    pub fn of_facet(&self, facet: usize) -> FaceClassification {
         self.of_root(self.nodes.root((self.vertices + facet) as u32))
     }
 
-    fn of_root(&self, root: u32) -> Fate {
-        self.fates.get(&root).copied().unwrap_or(Fate::Dropped)
+    fn of_root(&self, root: u32) -> FaceClassification {
+        self.fates.get(&root).copied().unwrap_or(FaceClassification::Dropped)
     }
 }
 
@@ -150,7 +150,7 @@ fn join_neighbours(nodes: &mut UnionFind, operands: &Operands, arrangement: &Arr
         let cover = |index: u32| facets[(index - first) as usize].cover().map(|c| (operand(c.face), c.is_along));
         cover(one).eq(cover(two))
     };
-    let sides = Sides::new(arrangement.points.len(), of_triangles(facets.iter().map(|facet| facet.corners), first));
+    let sides = HalfEdges::new(arrangement.points.len(), of_triangles(facets.iter().map(|facet| facet.corners), first));
     for (_, beside) in sides.edges() {
         if let [one, two] = beside
             && are_alike(one.1, two.1)
@@ -207,7 +207,7 @@ fn windings(
         (Some(triangle), _) => {
             steps[operands.of_triangle(triangle) as usize] = 1;
             let corners = operands.corners(triangle).1;
-            (Point::middle(corners.map(|corner| Point::new(Definition::Given(corner))).each_ref()), corners)
+            (ImplicitPoint::middle(corners.map(|corner| ImplicitPoint::new(PointDefinition::Given(corner))).each_ref()), corners)
         }
         (None, Some(facet)) => {
             let facet = &facets[facet as usize];
@@ -215,13 +215,13 @@ fn windings(
                 let operand = operands.of_triangle(arrangement.triangles[covering.face as usize]);
                 steps[operand as usize] += if covering.is_along { 1 } else { -1 };
             }
-            let middle = Point::middle(facet.corners.map(|p| &arrangement.points[p as usize]));
+            let middle = ImplicitPoint::middle(facet.corners.map(|p| &arrangement.points[p as usize]));
             (middle, arrangement.faces[facet.face as usize].plane())
         }
         (None, None) => return vec![[0; 2]; steps.len()],
     };
     // The rays see what lies ahead of the surface: on which side of it that is, its first slope tells.
-    let [a, b, c] = corners.map(|corner| Point::new(Definition::Given(corner)));
+    let [a, b, c] = corners.map(|corner| ImplicitPoint::new(PointDefinition::Given(corner)));
     let is_front_ahead = (0..3).map(|axis| turn(axis, &a, &b, &c)).find(|slope| *slope != 0.0) > Some(0.0);
     let around = |(step, operand): (i32, u32)| match (operands.are_simple, step) {
         (true, 1) => [1, 0],
@@ -235,12 +235,12 @@ fn windings(
 }
 
 /// What becomes of a part between windings behind it and in front of it.
-fn fate(windings: &[[i32; 2]], inside: impl Fn(&[bool]) -> bool) -> Fate {
+fn fate(windings: &[[i32; 2]], inside: impl Fn(&[bool]) -> bool) -> FaceClassification {
     let [behind, before] =
         [0, 1].map(|side| inside(&windings.iter().map(|winding| winding[side] > 0).collect::<Vec<_>>()));
     match (behind, before) {
-        (true, false) => Fate::Kept,
-        (false, true) => Fate::Turned,
-        _ => Fate::Dropped,
+        (true, false) => FaceClassification::Kept,
+        (false, true) => FaceClassification::Turned,
+        _ => FaceClassification::Dropped,
     }
 }

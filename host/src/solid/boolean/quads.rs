@@ -3,8 +3,8 @@
 //! The sides of blocks and prisms are such. Taken as one face each, they need a quarter of the comparisons, and no line is
 //! drawn where they were only divided.
 
-use super::contact::Face;
-use super::sides::Sides;
+use super::contact::ConvexFace;
+use super::sides::HalfEdges;
 use crate::mesh::Mesh;
 use rayon::prelude::*;
 
@@ -25,7 +25,7 @@ pub fn mates(mesh: &Mesh) -> Vec<u32> {
         [k, (k + 1) % 3].map(|k| mesh.triangles[triangle][k])
     };
     let longest: Vec<[u32; 2]> = (0..mesh.triangles.len()).into_par_iter().with_min_len(4096).map(longest).collect();
-    let sides = Sides::new(mesh.vertices.len(), longest.iter().copied().zip(0..));
+    let sides = HalfEdges::new(mesh.vertices.len(), longest.iter().copied().zip(0..));
     let mut mates = Vec::new();
     for (_, beside) in sides.edges() {
         if let &[(_, one), (_, two)] = beside
@@ -43,7 +43,7 @@ fn is_face(mesh: &Mesh, one: u32, two: u32) -> bool {
     let is_one = mesh.surfaces.is_empty() || mesh.surfaces[one as usize] == mesh.surfaces[two as usize];
     let Some([a, b, c, d]) = ring(mesh, one, two).filter(|_| is_one) else { return false };
     let at = |vertex: u32| mesh.vertices[vertex as usize];
-    Face::new(0, [a, b, c], [a, b, c].map(at)).is_some_and(|face| face.is_convex_with(at(d)))
+    ConvexFace::new(0, [a, b, c], [a, b, c].map(at)).is_some_and(|face| face.is_convex_with(at(d)))
 }
 
 /// The vertices around two triangles with a common side, the first of them first; `None` if they are turned against each

@@ -4,11 +4,11 @@
 //! operand or outside another, and the expression then no longer depends on the operand of the triangle, neither the
 //! triangle nor what it crosses need be looked at: on both sides of a line that it would draw the result is the same.
 
-use super::burial::Burial;
+use super::burial::BuriedTriangles;
 use super::operand::Operands;
-use super::standing::Standing;
+use super::standing::PartialEvaluation;
 use super::winding::winding;
-use crate::numeric::implicit::{Definition, Point};
+use crate::numeric::implicit::{PointDefinition, ImplicitPoint};
 use crate::solid::union_find::UnionFind;
 use rayon::prelude::*;
 
@@ -16,7 +16,7 @@ use rayon::prelude::*;
 ///
 /// - `standing`: of a point outside all operands.
 /// - `touching`: pairs of triangles of different operands that have a point in common, none of them buried.
-pub fn relevant(operands: &Operands, standing: &Standing, burial: &Burial, touching: &[[u32; 2]]) -> Vec<bool> {
+pub fn relevant(operands: &Operands, standing: &PartialEvaluation, burial: &BuriedTriangles, touching: &[[u32; 2]]) -> Vec<bool> {
     let count = operands.meshes().len();
     if count < 3 {
         return vec![true; operands.triangle_count()];
@@ -40,18 +40,18 @@ pub fn relevant(operands: &Operands, standing: &Standing, burial: &Burial, touch
 }
 
 /// A triangle, an operand, and whether the triangle lies in it, if that is known.
-type Place = (u32, u32, Option<bool>);
+type Classification = (u32, u32, Option<bool>);
 
 fn relevant_of(
     operands: &Operands,
-    mut standing: Standing,
-    burial: &Burial,
+    mut standing: PartialEvaluation,
+    burial: &BuriedTriangles,
     operand: u32,
     touched: &[(u32, u32, u32)],
 ) -> Vec<bool> {
     let mesh = operands.meshes()[operand as usize];
     // By triangle, the partners that it may lie in; it is outside of all others.
-    let mut places: Vec<Place> = Vec::new();
+    let mut places: Vec<Classification> = Vec::new();
     for partner in operands.near(operand) {
         let begin = touched.partition_point(|t| t.1 < partner);
         let end = touched.partition_point(|t| t.1 <= partner);
@@ -77,7 +77,7 @@ fn relevant_of(
 /// those that it touches, or that may touch what is buried of it.
 fn known_places(
     operands: &Operands,
-    burial: &Burial,
+    burial: &BuriedTriangles,
     operand: u32,
     other: u32,
     touched: impl Iterator<Item = u32>,
@@ -106,7 +106,7 @@ fn known_places(
         }
         let root = parts.find(mesh.triangles[triangle as usize][0]);
         let is_inside = *inside[root as usize].get_or_insert_with(|| {
-            let point = Point::new(Definition::Given(mesh.vertices[root as usize]));
+            let point = ImplicitPoint::new(PointDefinition::Given(mesh.vertices[root as usize]));
             winding(operands, other, &point, &mut 0) > 0
         });
         if is_inside {

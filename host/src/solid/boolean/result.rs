@@ -4,8 +4,8 @@ use super::arrangement::{Arrangement, Counts};
 use super::facets::Facet;
 use super::merge::pieces;
 use super::operand::Operands;
-use super::parts::{Fate, Parts};
-use super::rounding::{self, Kept, Made};
+use super::parts::{FaceClassification, Parts};
+use super::rounding::{self, WholeTriangles, NewTriangles};
 use crate::mesh::Mesh;
 use crate::numeric::triangle;
 use crate::solid::cleaning::cleaned;
@@ -33,17 +33,17 @@ pub fn assemble(
     is_whole: &[bool],
     parts: &Parts,
     counts: Counts,
-) -> (Outcome, Made, bool) {
-    let tables = Tables::of(operands.meshes());
+) -> (Outcome, NewTriangles, bool) {
+    let tables = CornerTables::of(operands.meshes());
     let mut outcome = Outcome { counts, ..Outcome::default() };
     let fates = parts.of_triangles(operands, is_whole);
-    outcome.reserve(fates.iter().filter(|fate| **fate != Fate::Dropped).count() + facets.len());
+    outcome.reserve(fates.iter().filter(|fate| **fate != FaceClassification::Dropped).count() + facets.len());
     let mut of_vertex = vec![u32::MAX; operands.vertex_count()];
     for (operand, mesh) in operands.meshes().iter().enumerate() {
         let operand = operand as u32;
         let [first_vertex, first] = [operands.first_vertex(operand), operands.first_triangle(operand)];
         for (index, (triangle, &fate)) in mesh.triangles.iter().zip(&fates[first as usize..]).enumerate() {
-            if fate == Fate::Dropped {
+            if fate == FaceClassification::Dropped {
                 continue;
             }
             let corners = triangle.map(|vertex| {
@@ -83,14 +83,14 @@ pub fn assemble(
         let source = triangle_at(piece.face, (place[0] + place[1] + place[2]) / 3.0);
         let at = [0, 1, 2].map(|k| triangle_at(piece.at[k], place[k]) as usize);
         outcome.push(corners, piece.fate, [operand, source]);
-        let at = if piece.fate == Fate::Turned { [at[0], at[2], at[1]] } else { at };
+        let at = if piece.fate == FaceClassification::Turned { [at[0], at[2], at[1]] } else { at };
         let mesh = operands.meshes()[operand as usize];
         tables.interpolate(&mut outcome.mesh, mesh, operand, source as usize, at);
     }
-    let kept = Kept { fates, of_vertex };
+    let kept = WholeTriangles { fates, of_vertex };
     let crosses = rounding::crosses(operands, &outcome.mesh, first_facet, &is_moved, &kept);
     let is_free = vec![true; is_moved.len() - first_vertex as usize];
-    (outcome, Made { first: first_facet, first_vertex, is_free, kept: Some(kept) }, crosses)
+    (outcome, NewTriangles { first: first_facet, first_vertex, is_free, kept: Some(kept) }, crosses)
 }
 
 /// The triangle of a face that a point lies in; the face is given by its lower triangle.
@@ -125,23 +125,23 @@ impl Outcome {
         self.mesh.vertices.reserve(triangles / 2 + 2);
     }
 
-    fn push(&mut self, [a, b, c]: [u32; 3], fate: Fate, source: [u32; 2]) {
-        self.mesh.triangles.push(if fate == Fate::Turned { [a, c, b] } else { [a, b, c] });
+    fn push(&mut self, [a, b, c]: [u32; 3], fate: FaceClassification, source: [u32; 2]) {
+        self.mesh.triangles.push(if fate == FaceClassification::Turned { [a, c, b] } else { [a, b, c] });
         self.sources.push(source);
     }
 }
 
 /// What the triangles of all operands have besides their corners.
-pub struct Tables {
+pub struct CornerTables {
     normals: bool,
     parameters: bool,
     /// Number of the first surface of each operand; none if an operand has no surfaces.
     surfaces: Vec<u32>,
 }
 
-impl Tables {
+impl CornerTables {
     /// Tables that all of some meshes have.
-    pub fn of(meshes: &[&Mesh]) -> Tables {
+    pub fn of(meshes: &[&Mesh]) -> CornerTables {
         let all = |has: fn(&Mesh) -> bool| meshes.iter().all(|mesh| mesh.triangles.is_empty() || has(mesh));
         let mut surfaces = Vec::new();
         if all(|mesh| !mesh.surfaces.is_empty()) {
@@ -151,7 +151,7 @@ impl Tables {
                 first += mesh.surfaces.iter().max().map_or(0, |last| last + 1);
             }
         }
-        Tables {
+        CornerTables {
             normals: all(|mesh| !mesh.corner_normals.is_empty()),
             parameters: all(|mesh| !mesh.corner_parameters.is_empty()),
             surfaces,
@@ -169,8 +169,8 @@ impl Tables {
     }
 
     /// For a whole triangle.
-    fn copy(&self, result: &mut Mesh, mesh: &Mesh, operand: u32, triangle: usize, fate: Fate) {
-        let is_turned = fate == Fate::Turned;
+    fn copy(&self, result: &mut Mesh, mesh: &Mesh, operand: u32, triangle: usize, fate: FaceClassification) {
+        let is_turned = fate == FaceClassification::Turned;
         if self.normals {
             let [a, b, c] = mesh.corner_normals[triangle];
             result.corner_normals.push(if is_turned { [-a, -c, -b] } else { [a, b, c] });
@@ -184,7 +184,7 @@ impl Tables {
 
     /// For a whole triangle of a single mesh.
     pub fn take(&self, result: &mut Mesh, mesh: &Mesh, triangle: usize) {
-        self.copy(result, mesh, 0, triangle, Fate::Kept);
+        self.copy(result, mesh, 0, triangle, FaceClassification::Kept);
     }
 
     fn surface(&self, result: &mut Mesh, mesh: &Mesh, operand: u32, triangle: usize) {

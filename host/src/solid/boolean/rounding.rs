@@ -1,30 +1,30 @@
 //! Whether rounded points made a surface cross itself, or may have turned a part of it inside out.
 
 use super::operand::Operands;
-use super::overlap::{PlaneTile, Tile, nearly_overlap};
-use super::parts::Fate;
+use super::overlap::{PlaneTriangle, NamedTriangle, nearly_overlap};
+use super::parts::FaceClassification;
 use crate::mesh::Mesh;
-use crate::octree::Sorted;
+use crate::octree::TriangleBvh;
 use rayon::prelude::*;
 
 /// What stayed whole.
-pub struct Kept {
+pub struct WholeTriangles {
     /// What became of each triangle of the operands, counted through; those that did not stay whole are dropped.
-    pub fates: Vec<Fate>,
+    pub fates: Vec<FaceClassification>,
     /// By vertex of the operands, counted through, its number in the result.
     pub of_vertex: Vec<u32>,
 }
 
-impl Kept {
+impl WholeTriangles {
     /// Whether a triangle of the operands, counted through, is in the result as it is.
     #[inline]
     pub fn is_kept(&self, triangle: u32) -> bool {
-        self.fates[triangle as usize] != Fate::Dropped
+        self.fates[triangle as usize] != FaceClassification::Dropped
     }
 }
 
 /// What of a result was made by the operation.
-pub struct Made {
+pub struct NewTriangles {
     /// The first triangle of it.
     pub first: usize,
     /// Vertices before this one are corners of triangles that stayed whole.
@@ -32,10 +32,10 @@ pub struct Made {
     /// For each vertex from that on, whether it may go, since none of its triangles stayed whole.
     pub is_free: Vec<bool>,
     /// What stayed whole before the first triangle.
-    pub kept: Option<Kept>,
+    pub kept: Option<WholeTriangles>,
 }
 
-impl Made {
+impl NewTriangles {
     /// The number of a vertex that may go, among those from the first on; `None` for another.
     pub fn number(&self, vertex: u32) -> Option<usize> {
         let number = vertex.checked_sub(self.first_vertex)? as usize;
@@ -48,34 +48,34 @@ impl Made {
 ///
 /// - `first`: the first triangle of the result that was made anew.
 /// - `is_moved`: whether rounding moved a vertex of the result.
-pub fn crosses(operands: &Operands, result: &Mesh, first: usize, is_moved: &[bool], kept: &Kept) -> bool {
+pub fn crosses(operands: &Operands, result: &Mesh, first: usize, is_moved: &[bool], kept: &WholeTriangles) -> bool {
     if !is_moved.contains(&true) {
         return false;
     }
     // What was not moved is where it was when all was exact.
     let has_moved = |triangle: &[u32; 3]| triangle.iter().any(|&vertex| is_moved[vertex as usize]);
     let (moved, still): (Vec<[u32; 3]>, Vec<[u32; 3]>) = result.triangles[first..].iter().partition(|t| has_moved(t));
-    let tile = |names: [u32; 3]| Tile { names, corners: names.map(|vertex| result.vertices[vertex as usize]) };
+    let tile = |names: [u32; 3]| NamedTriangle { names, corners: names.map(|vertex| result.vertices[vertex as usize]) };
     let tiles = moved.par_iter().with_min_len(1024).map(|&triangle| tile(triangle).with_plane());
-    let tiles: Vec<PlaneTile> = tiles.collect();
+    let tiles: Vec<PlaneTriangle> = tiles.collect();
     if tiles.par_iter().with_min_len(1024).any(|tile| tile.is_thin() || tile.is_flat()) {
         return true;
     }
     let of_moved = |triangle: u32| &tiles[triangle as usize];
-    let is_overlap = |a: u32, two: Tile| nearly_overlap(of_moved(a), &two, || two.with_plane());
-    let sorted = Sorted::new(&result.vertices, &moved);
+    let is_overlap = |a: u32, two: NamedTriangle| nearly_overlap(of_moved(a), &two, || two.with_plane());
+    let sorted = TriangleBvh::new(&result.vertices, &moved);
     let is_own = |a: u32, b: u32| nearly_overlap(of_moved(a), of_moved(b).tile(), || of_moved(b));
     if !sorted.pairs_within(is_own).is_empty() {
         return true;
     }
-    let unmoved = Sorted::new(&result.vertices, &still);
+    let unmoved = TriangleBvh::new(&result.vertices, &still);
     if !sorted.pairs_if(&unmoved.all(), |a, b| is_overlap(a, tile(still[b as usize]))).is_empty() {
         return true;
     }
     (0..operands.meshes().len() as u32).any(|operand| {
         let mesh = operands.meshes()[operand as usize];
         let [first_vertex, first] = [operands.first_vertex(operand), operands.first_triangle(operand)];
-        let of_kept = |triangle: u32| Tile {
+        let of_kept = |triangle: u32| NamedTriangle {
             names: mesh.triangles[triangle as usize].map(|vertex| kept.of_vertex[(first_vertex + vertex) as usize]),
             corners: mesh.corners(triangle as usize),
         };

@@ -1,21 +1,21 @@
 //! Sides of triangles by the edges that they lie on.
 
 /// Sides, those on one edge beside each other.
-pub struct Sides {
+pub struct HalfEdges {
     /// By lower end: the first of its sides.
     firsts: Vec<u32>,
     /// The upper end of each side, and what is beside it.
     sides: Vec<(u32, u32)>,
 }
 
-impl Sides {
+impl HalfEdges {
     /// Sorts sides by their ends and then by what is beside them.
     ///
     /// - `ends`: number of points that may be ends.
     /// - `sides`: two ends in either order, and a number of what is beside the side, which never falls.
     ///
     /// Cost: linear where few sides end in each point.
-    pub fn new(ends: usize, sides: impl Iterator<Item = ([u32; 2], u32)> + Clone) -> Sides {
+    pub fn new(ends: usize, sides: impl Iterator<Item = ([u32; 2], u32)> + Clone) -> HalfEdges {
         let mut firsts = vec![0; ends + 2];
         let mut count = 0;
         for ([a, b], _) in sides.clone() {
@@ -34,7 +34,7 @@ impl Sides {
         for range in firsts.windows(2) {
             sorted[range[0] as usize..range[1] as usize].sort_by_key(|side| side.0);
         }
-        Sides { firsts, sides: sorted }
+        HalfEdges { firsts, sides: sorted }
     }
 
     /// Each edge: its ends, the lower first, and by its upper end again what is beside it.
@@ -67,7 +67,7 @@ mod tests {
             let all = of_triangles(triangles.iter().copied(), 10);
             let mut slow: Vec<([u32; 2], u32)> = all.clone().map(|([a, b], t)| ([a.min(b), a.max(b)], t)).collect();
             slow.sort_unstable();
-            let sides = Sides::new(points as usize, all);
+            let sides = HalfEdges::new(points as usize, all);
             let found = sides.edges().flat_map(|(edge, sides)| sides.iter().map(move |(_, t)| (edge, *t)));
             assert!(found.eq(slow.iter().copied()));
             assert!(sides.edges().map(|(edge, _)| edge).is_sorted_by(|a, b| a < b));

@@ -8,13 +8,13 @@ use super::nudging::nudge;
 use super::operand::{Operand, Operands};
 use super::overlaps::{Overlaps, overlapping};
 use super::result::Outcome;
-use super::sides::Sides;
+use super::sides::HalfEdges;
 use super::snapping::{Scope, snapped};
-use super::work::{Work, work};
+use super::work::{Evaluation, work};
 use crate::mesh::{Mesh, bits};
 use crate::numeric::bounds::Bounds;
 use crate::numeric::triangle;
-use crate::octree::Sorted;
+use crate::octree::TriangleBvh;
 use crate::solid::SolidError;
 use crate::solid::cleaning::is_closed;
 use crate::solid::union_find::UnionFind;
@@ -67,7 +67,7 @@ pub struct Resolution {
 /// [`SolidError::Unsettled`].
 pub fn resolve(mesh: &Mesh, overlaps: &[[u32; 2]]) -> Result<Resolution, SolidError> {
     let mesh = separated(mesh);
-    let Work { mut outcome, is_all_kept, odd, .. } = divided(&mesh, overlaps);
+    let Evaluation { mut outcome, is_all_kept, odd, .. } = divided(&mesh, overlaps);
     outcome.clean();
     Ok(Resolution { outcome: settled(outcome)?, is_same: is_all_kept, odd })
 }
@@ -161,7 +161,7 @@ impl Trial {
 /// it.
 fn right_side_out(outcome: &Outcome) -> Option<Outcome> {
     let mesh = separated(&outcome.mesh);
-    let Work { outcome: mut next, is_all_kept, .. } = divided(&mesh, &[]);
+    let Evaluation { outcome: mut next, is_all_kept, .. } = divided(&mesh, &[]);
     if is_all_kept {
         return None;
     }
@@ -187,7 +187,7 @@ fn is_near(settled: &Mesh, rounded: &Mesh) -> bool {
     let corners: FxHashSet<[u64; 3]> = rounded.vertices.iter().map(|vertex| bits(*vertex)).collect();
     let moved: Vec<DVec3> =
         settled.vertices.iter().copied().filter(|vertex| !corners.contains(&bits(*vertex))).collect();
-    let sorted = Sorted::new(&rounded.vertices, &rounded.triangles);
+    let sorted = TriangleBvh::new(&rounded.vertices, &rounded.triangles);
     let largest = rounded.vertices.iter().map(|v| v.abs().max_element()).fold(0.0, f64::max);
     let reach = MOST * f64::EPSILON * largest;
     let is_near = |point: DVec3| {
@@ -204,8 +204,8 @@ fn is_near(settled: &Mesh, rounded: &Mesh) -> bool {
 }
 
 /// What a mesh bounds, with its surface divided where it crosses itself: where triangles overlap.
-fn divided(mesh: &Mesh, overlaps: &[[u32; 2]]) -> Work {
-    let sorted = Sorted::new(&mesh.vertices, &mesh.triangles);
+fn divided(mesh: &Mesh, overlaps: &[[u32; 2]]) -> Evaluation {
+    let sorted = TriangleBvh::new(&mesh.vertices, &mesh.triangles);
     let operand = Operand { mesh, sorted: &sorted, mates: &[], overlaps };
     work(&Operands::new(vec![operand], false), &Expression::Operand(0))
 }
@@ -213,7 +213,7 @@ fn divided(mesh: &Mesh, overlaps: &[[u32; 2]]) -> Work {
 /// The mesh with vertices of their own for all that is not joined by edges of two triangles.
 fn separated(mesh: &Mesh) -> Mesh {
     let of_triangle = |(&[a, b, c], k): (&[u32; 3], u32)| [([a, b], 3 * k), ([b, c], 3 * k + 1), ([c, a], 3 * k + 2)];
-    let sides = Sides::new(mesh.vertices.len(), mesh.triangles.iter().zip(0..).flat_map(of_triangle));
+    let sides = HalfEdges::new(mesh.vertices.len(), mesh.triangles.iter().zip(0..).flat_map(of_triangle));
     let next = |corner: u32| if corner % 3 == 2 { corner - 2 } else { corner + 1 };
     let vertex = |corner: u32| mesh.triangles[corner as usize / 3][corner as usize % 3];
     let mut corners = UnionFind::new(3 * mesh.triangles.len());

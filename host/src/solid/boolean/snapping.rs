@@ -11,12 +11,12 @@
 //! # Cost
 //! n log n in the triangles that are drawn together and the pairs of them that are near each other.
 
-use super::result::{Outcome, Tables};
-use super::triangulation::Triangulation;
+use super::result::{Outcome, CornerTables};
+use super::triangulation::IncrementalTriangulation;
 use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
-use crate::numeric::implicit::{Definition, Point};
-use crate::octree::Sorted;
+use crate::numeric::implicit::{PointDefinition, ImplicitPoint};
+use crate::octree::TriangleBvh;
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
@@ -37,7 +37,7 @@ pub enum Scope {
 /// - `pairs`: the triangles.
 /// - `roundings`: what is near, in units in the last place of the largest coordinate there.
 pub fn snapped(mut outcome: Outcome, pairs: &[[u32; 2]], roundings: f64, scope: Scope) -> Outcome {
-    let reach = Reach(roundings * f64::EPSILON);
+    let reach = SnapDistance(roundings * f64::EPSILON);
     let mut involved = pairs.as_flattened().to_vec();
     involved.sort_unstable();
     involved.dedup();
@@ -48,16 +48,16 @@ pub fn snapped(mut outcome: Outcome, pairs: &[[u32; 2]], roundings: f64, scope: 
     for triangle in &mut outcome.mesh.triangles {
         *triangle = triangle.map(|vertex| one[vertex as usize]);
     }
-    let mut near = Near::new(&outcome.mesh, &involved);
+    let mut near = Incidences::new(&outcome.mesh, &involved);
     near.collect(&mut outcome.mesh, &involved, reach);
     rebuilt(outcome, near, &involved)
 }
 
 /// How far from a place what is near may be.
 #[derive(Clone, Copy)]
-struct Reach(f64);
+struct SnapDistance(f64);
 
-impl Reach {
+impl SnapDistance {
     fn at(self, p: DVec3) -> f64 {
         self.0 * p.abs().max_element()
     }
@@ -83,15 +83,15 @@ fn is_collapsed(t: [u32; 3]) -> bool {
 }
 
 /// Boxes by place.
-fn filed(boxes: impl Iterator<Item = [DVec3; 2]>) -> Sorted {
+fn filed(boxes: impl Iterator<Item = [DVec3; 2]>) -> TriangleBvh {
     let corners: Vec<DVec3> = boxes.flatten().collect();
     let boxes: Vec<[u32; 3]> = (0..corners.len() as u32 / 2).map(|k| [2 * k, 2 * k + 1, 2 * k + 1]).collect();
-    Sorted::new(&corners, &boxes)
+    TriangleBvh::new(&corners, &boxes)
 }
 
 /// Some triangles, and those near them.
-fn with_near(mesh: &Mesh, triangles: Vec<u32>, reach: Reach) -> Vec<u32> {
-    let all = Sorted::new(&mesh.vertices, &mesh.triangles);
+fn with_near(mesh: &Mesh, triangles: Vec<u32>, reach: SnapDistance) -> Vec<u32> {
+    let all = TriangleBvh::new(&mesh.vertices, &mesh.triangles);
     let mut found = triangles.clone();
     for triangle in triangles {
         let [min, max] = reach.around(&mesh.corners(triangle as usize));
@@ -110,7 +110,7 @@ fn from_segment(p: DVec3, [a, b]: [DVec3; 2]) -> (f64, f64) {
 }
 
 /// For each vertex the one that it becomes: the lowest of those of the triangles that is near.
-fn clustered(mesh: &Mesh, involved: &[u32], reach: Reach) -> Vec<u32> {
+fn clustered(mesh: &Mesh, involved: &[u32], reach: SnapDistance) -> Vec<u32> {
     let mut one: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
     let mut vertices: Vec<u32> = involved.iter().flat_map(|&t| mesh.triangles[t as usize]).collect();
     vertices.sort_unstable();
@@ -129,7 +129,7 @@ fn clustered(mesh: &Mesh, involved: &[u32], reach: Reach) -> Vec<u32> {
 }
 
 /// What lies near edges and in faces.
-struct Near {
+struct Incidences {
     edges: Vec<Edge>,
     number: FxHashMap<Edge, u32>,
     /// For each edge: vertices with their place along it from its lower vertex on, in order.
@@ -140,15 +140,15 @@ struct Near {
     next: FxHashMap<u32, Vec<u32>>,
 }
 
-impl Near {
-    fn new(mesh: &Mesh, involved: &[u32]) -> Near {
+impl Incidences {
+    fn new(mesh: &Mesh, involved: &[u32]) -> Incidences {
         let triangles = involved.iter().map(|&t| mesh.triangles[t as usize]);
         let mut edges: Vec<Edge> = triangles.flat_map(sides).filter(|[a, b]| a != b).collect();
         edges.sort_unstable();
         edges.dedup();
         let number = edges.iter().copied().zip(0..).collect();
         let on_edges = vec![Vec::new(); edges.len()];
-        Near { edges, number, on_edges, in_faces: vec![Vec::new(); involved.len()], next: FxHashMap::default() }
+        Incidences { edges, number, on_edges, in_faces: vec![Vec::new(); involved.len()], next: FxHashMap::default() }
     }
 
     /// Makes an edge pass through a vertex; whether it did not before.
@@ -180,7 +180,7 @@ impl Near {
     }
 
     /// Finds what is near.
-    fn collect(&mut self, mesh: &mut Mesh, involved: &[u32], reach: Reach) {
+    fn collect(&mut self, mesh: &mut Mesh, involved: &[u32], reach: SnapDistance) {
         let mut vertices: Vec<u32> = self.edges.as_flattened().to_vec();
         vertices.sort_unstable();
         vertices.dedup();
@@ -231,7 +231,7 @@ impl Near {
     }
 
     /// Makes edges pass through vertices that are near.
-    fn pass_near(&mut self, mesh: &Mesh, vertices: &[u32], of_edges: &Sorted, reach: Reach) {
+    fn pass_near(&mut self, mesh: &Mesh, vertices: &[u32], of_edges: &TriangleBvh, reach: SnapDistance) {
         let of_vertices = filed(vertices.iter().map(|&v| [mesh.vertices[v as usize]; 2]));
         let pairs = of_vertices.pairs_if(&of_edges.all(), |vertex, edge| {
             let (vertex, edge) = (vertices[vertex as usize], self.edges[edge as usize]);
@@ -244,7 +244,7 @@ impl Near {
     }
 
     /// Gives edges that pass near each other, and have no vertex in common, one; returns those that are new.
-    fn meet(&mut self, mesh: &mut Mesh, of_edges: &Sorted, reach: Reach) -> Vec<u32> {
+    fn meet(&mut self, mesh: &mut Mesh, of_edges: &TriangleBvh, reach: SnapDistance) -> Vec<u32> {
         let first = mesh.vertices.len() as u32;
         let mut pairs = of_edges.pairs_within(|one, two| self.meeting(mesh, [one, two], reach).is_some());
         pairs.sort_unstable();
@@ -264,7 +264,7 @@ impl Near {
     }
 
     /// Where two edges pass near each other away from their ends, if they have no vertex in common.
-    fn meeting(&self, mesh: &Mesh, [one, two]: [u32; 2], reach: Reach) -> Option<DVec3> {
+    fn meeting(&self, mesh: &Mesh, [one, two]: [u32; 2], reach: SnapDistance) -> Option<DVec3> {
         let [[a, b], [p, q]] = [one, two].map(|edge| self.edges[edge as usize].map(|v| mesh.vertices[v as usize]));
         let (d, g) = (b - a, q - p);
         let normal = d.cross(g);
@@ -338,9 +338,9 @@ fn barycentric([a, b, c]: [DVec3; 3], p: DVec3) -> [f64; 3] {
 }
 
 /// The surface with all edges and faces through what is near them, less triangles that cancel.
-fn rebuilt(outcome: Outcome, mut near: Near, involved: &[u32]) -> Outcome {
+fn rebuilt(outcome: Outcome, mut near: Incidences, involved: &[u32]) -> Outcome {
     let old = &outcome.mesh;
-    let tables = Tables::of(&[old]);
+    let tables = CornerTables::of(&[old]);
     let mut place = vec![u32::MAX; old.triangles.len()];
     involved.iter().zip(0..).for_each(|(&triangle, at)| place[triangle as usize] = at);
     let mut made: Vec<([u32; 3], u32, bool)> = Vec::with_capacity(old.triangles.len());
@@ -416,13 +416,13 @@ fn divided(
 ) -> Vec<[u32; 3]> {
     let t = mesh.triangles[triangle as usize];
     let corners = mesh.corners(triangle as usize);
-    let point = |x: f64, y: f64| Point::new(Definition::Given(DVec3::new(x, y, 0.0)));
+    let point = |x: f64, y: f64| ImplicitPoint::new(PointDefinition::Given(DVec3::new(x, y, 0.0)));
     let place = |k: usize, s: f64| match k {
         0 => point(s, 0.0),
         1 => point(STEPS - s, s),
         _ => point(0.0, STEPS - s),
     };
-    let on_sides: Vec<Vec<Point>> = chains
+    let on_sides: Vec<Vec<ImplicitPoint>> = chains
         .iter()
         .enumerate()
         .map(|(k, chain)| {
@@ -435,7 +435,7 @@ fn divided(
             steps.collect()
         })
         .collect();
-    let inside: Vec<Point> = inner
+    let inside: Vec<ImplicitPoint> = inner
         .iter()
         .map(|&v| {
             let [_, x, y] = barycentric(corners, mesh.vertices[v as usize]).map(|w| (w * STEPS).round().max(1.0));
@@ -445,7 +445,7 @@ fn divided(
         .collect();
     let frame = [point(0.0, 0.0), point(STEPS, 0.0), point(0.0, STEPS)];
     let mut names = t.to_vec();
-    let mut triangulation = Triangulation::new(2, &frame.each_ref());
+    let mut triangulation = IncrementalTriangulation::new(2, &frame.each_ref());
     for k in 0..3_u8 {
         triangulation.insert_on_side(k, &on_sides[k as usize]);
         names.extend(chains[k as usize].iter().map(|(_, v)| v));

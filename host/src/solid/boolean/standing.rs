@@ -15,7 +15,7 @@ enum Rule {
 
 /// A part of the expression.
 #[derive(Clone, Debug)]
-struct Part {
+struct ExpressionNode {
     rule: Rule,
     parent: Option<u32>,
     /// Whether the parent takes the opposite of its value.
@@ -28,7 +28,7 @@ struct Part {
     children: u32,
 }
 
-impl Part {
+impl ExpressionNode {
     fn among_children(&self) -> Option<bool> {
         let open = (self.unknown == 0).then_some(());
         match self.rule {
@@ -58,16 +58,16 @@ impl Part {
 
 /// An expression with what is known of a point. Each change takes time as the expression is deep, not as it is wide.
 #[derive(Clone, Debug)]
-pub struct Standing {
-    parts: Vec<Part>,
+pub struct PartialEvaluation {
+    parts: Vec<ExpressionNode>,
     /// Where each operand is in the expression.
     places: Vec<Vec<u32>>,
 }
 
-impl Standing {
+impl PartialEvaluation {
     /// A point outside of all operands.
-    pub fn outside(expression: &Expression, operands: usize) -> Standing {
-        let mut standing = Standing { parts: Vec::new(), places: vec![Vec::new(); operands] };
+    pub fn outside(expression: &Expression, operands: usize) -> PartialEvaluation {
+        let mut standing = PartialEvaluation { parts: Vec::new(), places: vec![Vec::new(); operands] };
         standing.add(expression, None, false);
         standing
     }
@@ -83,7 +83,7 @@ impl Standing {
         let place = self.parts.len();
         let value = (rule == Rule::Operand).then_some(false);
         let count = children.len() as u32;
-        self.parts.push(Part { rule, parent, is_negated, value, unknown: 0, truths: 0, children: count });
+        self.parts.push(ExpressionNode { rule, parent, is_negated, value, unknown: 0, truths: 0, children: count });
         if let Expression::Operand(index) = expression
             && let Some(places) = self.places.get_mut(*index)
         {
@@ -178,7 +178,7 @@ mod tests {
         let mut settled = [0; 2];
         for _ in 0..2000 {
             let expression = some(&mut random, 3);
-            let mut standing = Standing::outside(&expression, 4);
+            let mut standing = PartialEvaluation::outside(&expression, 4);
             let mut known = [Some(false); 4];
             for _ in 0..12 {
                 let (operand, value) =

@@ -6,7 +6,7 @@
 //! # Source
 //! Lawson 1977 for the exchange of diagonals; Sloan 1993 for given edges.
 
-use crate::numeric::implicit::{Point, compare, others, turn};
+use crate::numeric::implicit::{ImplicitPoint, compare, others, turn};
 use glam::DVec2;
 use rustc_hash::FxHashSet;
 use std::cmp::Ordering;
@@ -16,9 +16,9 @@ use std::collections::VecDeque;
 pub const NONE: u32 = u32::MAX;
 
 /// A triangulation that grows.
-pub struct Triangulation<'a> {
+pub struct IncrementalTriangulation<'a> {
     axis: usize,
-    points: Vec<&'a Point>,
+    points: Vec<&'a ImplicitPoint>,
     /// Corners of each triangle, counter-clockwise as seen along the axis.
     pub triangles: Vec<[u32; 3]>,
     /// The triangle beyond the side from corner k to the next, or [`NONE`].
@@ -49,11 +49,11 @@ fn sorted(a: u32, b: u32) -> [u32; 2] {
     if a < b { [a, b] } else { [b, a] }
 }
 
-impl<'a> Triangulation<'a> {
+impl<'a> IncrementalTriangulation<'a> {
     /// Begins with a triangle or a convex quadrilateral that turns counter-clockwise as seen along `axis`.
-    pub fn new(axis: usize, corners: &[&'a Point]) -> Triangulation<'a> {
+    pub fn new(axis: usize, corners: &[&'a ImplicitPoint]) -> IncrementalTriangulation<'a> {
         let is_quad = corners.len() == 4;
-        Triangulation {
+        IncrementalTriangulation {
             axis,
             points: roomy(corners, ROOM),
             sides: roomy(if is_quad { &[0b1001, 0b0011, 0b0110, 0b1100] } else { &[0b101, 0b011, 0b110] }, ROOM),
@@ -80,7 +80,7 @@ impl<'a> Triangulation<'a> {
     }
 
     /// Adds a point inside what it began with; returns its number, that of an earlier one at the same place if there is one.
-    pub fn insert(&mut self, point: &'a Point) -> u32 {
+    pub fn insert(&mut self, point: &'a ImplicitPoint) -> u32 {
         let p = self.push(point, 0);
         let (triangle, turns) = self.locate(p);
         let on = |k: usize| turns[k] == 0.0;
@@ -99,7 +99,7 @@ impl<'a> Triangulation<'a> {
     }
 
     /// Adds points on side `k` of what it began with, in order from corner `k` to the next, before all others.
-    pub fn insert_on_side(&mut self, k: u8, points: impl IntoIterator<Item = &'a Point>) {
+    pub fn insert_on_side(&mut self, k: u8, points: impl IntoIterator<Item = &'a ImplicitPoint>) {
         let (mut from, to) = (u32::from(k), (u32::from(k) + 1) % self.corners);
         for point in points {
             let p = self.push(point, 1 << k);
@@ -110,7 +110,7 @@ impl<'a> Triangulation<'a> {
         }
     }
 
-    fn push(&mut self, point: &'a Point, sides: u8) -> u32 {
+    fn push(&mut self, point: &'a ImplicitPoint, sides: u8) -> u32 {
         self.points.push(point);
         self.sides.push(sides);
         self.at.push(NONE);
@@ -373,15 +373,15 @@ impl<'a> Triangulation<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::implicit::Definition;
+    use crate::numeric::implicit::PointDefinition;
     use glam::DVec3;
     use rand::{RngExt, SeedableRng};
 
-    fn given(x: f64, y: f64) -> Point {
-        Point::new(Definition::Given(DVec3::new(x, y, 0.0)))
+    fn given(x: f64, y: f64) -> ImplicitPoint {
+        ImplicitPoint::new(PointDefinition::Given(DVec3::new(x, y, 0.0)))
     }
 
-    fn check(t: &Triangulation, area: f64) {
+    fn check(t: &IncrementalTriangulation, area: f64) {
         let mut sum = 0.0;
         for (index, corners) in t.triangles.iter().enumerate() {
             let [a, b, c] = *corners;
@@ -406,9 +406,9 @@ mod tests {
     fn points_and_lines_on_a_grid_are_all_there() {
         // A grid is full of points on one line and on one circle.
         let corners = [given(0.0, 0.0), given(16.0, 0.0), given(0.0, 16.0)];
-        let grid: Vec<Point> =
+        let grid: Vec<ImplicitPoint> =
             (0..=16).flat_map(|x| (0..=16 - x).map(move |y| given(f64::from(x), f64::from(y)))).collect();
-        let mut t = Triangulation::new(2, &corners.each_ref());
+        let mut t = IncrementalTriangulation::new(2, &corners.each_ref());
         let numbers: Vec<u32> = grid.iter().map(|p| t.insert(p)).collect();
         assert_eq!(t.points.len(), 17 * 18 / 2);
         assert_eq!(t.triangles.len(), 256);
@@ -431,9 +431,9 @@ mod tests {
     fn random_points_and_lines_from_a_star_are_all_there() {
         let mut random = rand_pcg::Pcg64Mcg::seed_from_u64(5);
         let corners = [given(-4.0, -2.0), given(4.0, -2.0), given(0.0, 4.0)];
-        let points: Vec<Point> =
+        let points: Vec<ImplicitPoint> =
             (0..300).map(|_| given(random.random_range(-0.9..0.9), random.random_range(-0.9..0.9))).collect();
-        let mut t = Triangulation::new(2, &corners.each_ref());
+        let mut t = IncrementalTriangulation::new(2, &corners.each_ref());
         let numbers: Vec<u32> = points.iter().map(|p| t.insert(p)).collect();
         for &to in &numbers[1..40] {
             t.fix(numbers[0], to);

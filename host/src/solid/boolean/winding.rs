@@ -3,14 +3,14 @@
 use super::contact::flat_turn;
 use super::operand::Operands;
 use crate::numeric::bounds::Bounds;
-use crate::numeric::implicit::{Definition, Point, side_of, turn};
+use crate::numeric::implicit::{PointDefinition, ImplicitPoint, side_of, turn};
 use glam::DVec3;
 
 /// How often an operand winds around a point that is not on its surface.
 ///
 /// Counts the triangles beside a ray along x. The ray is thought to be moved a little along y and much less along z, so
 /// that it meets neither vertex nor edge.
-pub fn winding(operands: &Operands, operand: u32, point: &Point, rays: &mut u64) -> i32 {
+pub fn winding(operands: &Operands, operand: u32, point: &ImplicitPoint, rays: &mut u64) -> i32 {
     let near = point.bounds();
     if !operands.bounds(operand).touches(near) {
         return 0;
@@ -26,7 +26,7 @@ pub fn winding(operands: &Operands, operand: u32, point: &Point, rays: &mut u64)
 }
 
 /// 1 if the ray along x leaves through the front of a triangle, -1 if through its back, 0 if not at all.
-pub fn passes(point: &Point, corners: [DVec3; 3]) -> i32 {
+pub fn passes(point: &ImplicitPoint, corners: [DVec3; 3]) -> i32 {
     let [a, b, c] = corners;
     let facing = flat_turn(0, a, b, c);
     if facing == 0.0 {
@@ -34,8 +34,8 @@ pub fn passes(point: &Point, corners: [DVec3; 3]) -> i32 {
     }
     for (p, q) in [(a, b), (b, c), (c, a)] {
         let mut turns = match point.definition() {
-            &Definition::Given(point) => flat_turn(0, point, p, q),
-            _ => turn(0, point, &Point::new(Definition::Given(p)), &Point::new(Definition::Given(q))),
+            &PointDefinition::Given(point) => flat_turn(0, point, p, q),
+            _ => turn(0, point, &ImplicitPoint::new(PointDefinition::Given(p)), &ImplicitPoint::new(PointDefinition::Given(q))),
         };
         if turns == 0.0 {
             // The derivatives of the turn by y and by z.

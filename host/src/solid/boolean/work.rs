@@ -5,15 +5,15 @@ use super::expression::Expression;
 use super::operand::Operands;
 use super::parts::Parts;
 use super::result::Outcome;
-use super::rounding::Made;
+use super::rounding::NewTriangles;
 use super::{facets, result};
 
 /// What is known when an expression was evaluated once.
-pub struct Work {
+pub struct Evaluation {
     /// What comes out, before it is made simple.
     pub outcome: Outcome,
     /// What of it was made.
-    pub made: Made,
+    pub made: NewTriangles,
     /// Whether rounding made the result cross itself, as far as could be seen.
     pub must_settle: bool,
     /// Whether all parts of the surfaces are borders of the result.
@@ -23,7 +23,7 @@ pub struct Work {
 }
 
 /// Evaluates an expression once.
-pub fn work(operands: &Operands, expression: &Expression) -> Work {
+pub fn work(operands: &Operands, expression: &Expression) -> Evaluation {
     let mut arrangement = Arrangement::new(operands, expression);
     let facets = facets::divide(&arrangement);
     // Triangles that stay whole, if they stay.
@@ -39,5 +39,5 @@ pub fn work(operands: &Operands, expression: &Expression) -> Work {
     let (outcome, made, must_settle) = result::assemble(operands, &arrangement, &facets, &is_whole, &parts, counts);
     // Of those that lie on each other, one is kept.
     let is_all_kept = parts.are_all_kept() && facets.iter().all(|facet| facet.others.is_empty());
-    Work { outcome, made, must_settle, is_all_kept, odd: parts.odd }
+    Evaluation { outcome, made, must_settle, is_all_kept, odd: parts.odd }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::PrimitiveError;
 use super::error::{count, length, length_or_zero, points};
-use crate::polygon::{Shape, triangulate};
+use crate::polygon::{TriangulationKind, triangulate};
 use crate::solid::{Body, Face};
 use crate::surface::{Parallelogram, Surface, box_faces};
 use glam::{DVec2, DVec3};
@@ -66,7 +66,7 @@ pub fn prism<C: AsRef<[DVec2]>>(contours: &[C], [low, high]: [f64; 2]) -> Result
     let corners: Vec<DVec2> = contours.iter().flat_map(|contour| contour.as_ref()).copied().collect();
     count("corners", corners.len(), 3, MAX_CORNERS)?;
     points(corners.iter().map(|corner| corner.extend(0.0)))?;
-    let base = triangulate(contours, Shape::Delaunay)?;
+    let base = triangulate(contours, TriangulationKind::Delaunay)?;
     let lifted = |z: f64| corners.iter().map(|corner| corner.extend(z)).collect::<Vec<_>>();
     let turned = base.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
     let mut faces = vec![Face::new(lifted(low), turned), Face::new(lifted(high), base.triangles.clone())];

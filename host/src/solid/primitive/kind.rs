@@ -3,7 +3,7 @@
 use super::*;
 use crate::curve::SplineCurve;
 use crate::solid::Body;
-use crate::surface::Widening;
+use crate::surface::TwistAndTaper;
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
@@ -172,7 +172,7 @@ impl Primitive {
             Primitive::Lathe { profile } => smooth_revolution(profile),
             Primitive::Turning { contours, turn } => turned_polygon(contours, *turn),
             Primitive::Sweep { contours, path, twist, taper } => {
-                sweep(contours, SplineCurve::clone(path), Widening { turns: *twist, scale: *taper })
+                sweep(contours, SplineCurve::clone(path), TwistAndTaper { turns: *twist, scale: *taper })
             }
         }
     }

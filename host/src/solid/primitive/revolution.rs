@@ -4,9 +4,9 @@ use super::PrimitiveError;
 use super::error::{count, points};
 use super::round::turned;
 use crate::curve::{Basis, SplineCurve, SplineError};
-use crate::polygon::{PolygonError, Shape, triangulate};
+use crate::polygon::{PolygonError, TriangulationKind, triangulate};
 use crate::solid::{Body, Face};
-use crate::surface::{Profile, Surface, Turned};
+use crate::surface::{Profile, Surface, SurfaceOfRevolution};
 use glam::{DVec2, DVec3};
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -114,7 +114,7 @@ fn closed(pieces: Vec<Profile>, point_of: &[usize]) -> Result<Body, PrimitiveErr
 /// # Errors
 /// If the outline crosses or overlaps itself, or bounds nothing.
 fn check_simple(outline: &[DVec2], point_of: impl Fn(usize) -> usize) -> Result<(), PrimitiveError> {
-    match triangulate(&[outline], Shape::Any) {
+    match triangulate(&[outline], TriangulationKind::Any) {
         Ok(_) => Ok(()),
         Err(PolygonError::Crossing { first, second } | PolygonError::Overlap { first, second }) => {
             Err(PrimitiveError::Crossing { first: point_of(first.corner), second: point_of(second.corner) })
@@ -138,18 +138,18 @@ pub fn turned_polygon<C: AsRef<[DVec2]>>(contours: &[C], turn: f64) -> Result<Bo
     if let Some(index) = corners.iter().position(|corner| corner.x < 0.0) {
         return Err(PrimitiveError::ThroughAxis { index, at: corners[index] });
     }
-    let base = triangulate(contours, Shape::Delaunay)?;
+    let base = triangulate(contours, TriangulationKind::Delaunay)?;
     let mut curved: Vec<Arc<dyn Surface>> = Vec::new();
     for edge in base.border() {
         let [from, to] = edge.map(|corner| corners[corner as usize]);
         let side = Profile::line(from, to);
         if !side.is_on_axis() {
-            curved.push(Arc::new(Turned::part(side, [0.0, turn])));
+            curved.push(Arc::new(SurfaceOfRevolution::part(side, [0.0, turn])));
         }
     }
     let mut faces = Vec::new();
     if turn < 1.0 {
-        let at = |turns: f64| corners.iter().map(|corner| Turned::turned(*corner, turns)).collect::<Vec<_>>();
+        let at = |turns: f64| corners.iter().map(|corner| SurfaceOfRevolution::turned(*corner, turns)).collect::<Vec<_>>();
         let turned = base.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
         faces = vec![Face::new(at(0.0), base.triangles.clone()), Face::new(at(turn), turned)];
     }

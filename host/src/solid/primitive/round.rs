@@ -3,7 +3,7 @@
 use super::PrimitiveError;
 use super::error::{above, length, length_or_zero};
 use crate::solid::Body;
-use crate::surface::{Profile, Sphere, Surface, Turned};
+use crate::surface::{Profile, Sphere, Surface, SurfaceOfRevolution};
 use glam::{DAffine3, DVec2, DVec3};
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// Each piece begins where the one before it ends, to the bit; the inside is on the left.
 pub(super) fn turned(pieces: impl IntoIterator<Item = Profile>) -> Body {
     let pieces = pieces.into_iter().filter(|piece| !piece.is_on_axis());
-    Body::new(pieces.map(|piece| Arc::new(Turned::whole(piece)) as Arc<dyn Surface>).collect(), Vec::new())
+    Body::new(pieces.map(|piece| Arc::new(SurfaceOfRevolution::whole(piece)) as Arc<dyn Surface>).collect(), Vec::new())
 }
 
 /// A curve between two flat discs; where it meets the axis there is none.

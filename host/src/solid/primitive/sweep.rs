@@ -3,9 +3,9 @@
 use super::PrimitiveError;
 use super::error::{count, points};
 use crate::curve::{Basis, SplineCurve};
-use crate::polygon::{Shape, triangulate};
+use crate::polygon::{TriangulationKind, triangulate};
 use crate::solid::{Body, Face};
-use crate::surface::{Spine, Surface, Swept, Widening};
+use crate::surface::{Spine, Surface, Swept, TwistAndTaper};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
@@ -36,9 +36,9 @@ pub fn path(control: &[DVec3], is_closed: bool) -> Result<SplineCurve, Primitive
 pub fn sweep<C: AsRef<[DVec2]>>(
     contours: &[C],
     curve: SplineCurve,
-    widening: Widening,
+    widening: TwistAndTaper,
 ) -> Result<Body, PrimitiveError> {
-    let Widening { turns, scale } = widening;
+    let TwistAndTaper { turns, scale } = widening;
     let is_closed = curve.basis().is_closed();
     let refused = |what, value, range| Err(PrimitiveError::Measure { what, value, range });
     if !(0.0..=1e6).contains(&scale) {
@@ -52,7 +52,7 @@ pub fn sweep<C: AsRef<[DVec2]>>(
     }
     let corners: Vec<DVec2> = contours.iter().flat_map(|contour| contour.as_ref()).copied().collect();
     points(corners.iter().map(|corner| corner.extend(0.0)))?;
-    let base = triangulate(contours, Shape::Delaunay)?;
+    let base = triangulate(contours, TriangulationKind::Delaunay)?;
     let border = base.border();
     let breaks = curve.basis().breaks().to_vec();
     count("surfaces", border.len() * (breaks.len() - 1), 1, MAX_SURFACES)?;
@@ -79,7 +79,7 @@ pub fn sweep<C: AsRef<[DVec2]>>(
 
 /// # Errors
 /// [`PrimitiveError::Bend`] at the first place where a corner of the section is at the center of the bend or beyond.
-fn check_bend(spine: &Spine, corners: &[DVec2], widening: Widening, breaks: &[f64]) -> Result<(), PrimitiveError> {
+fn check_bend(spine: &Spine, corners: &[DVec2], widening: TwistAndTaper, breaks: &[f64]) -> Result<(), PrimitiveError> {
     let [low, high] = [breaks[0], breaks[breaks.len() - 1]];
     for part in breaks.windows(2) {
         for look in 0..=LOOKS {

@@ -1,17 +1,17 @@
 //! Closes a surface by patches for its boundary loops that meet nothing else.
 
-use super::super::boolean::{Tile, overlap};
+use super::super::boolean::{NamedTriangle, overlap};
 use super::super::error::OpenLoop;
 use super::super::union_find::UnionFind;
-use super::patches::{Beside, LoopPlane, Method, Patch};
+use super::patches::{ThirdCorners, LoopPlane, Method, ClosingPatch};
 use crate::mesh::edges::EdgeTable;
 use crate::mesh::{BoundaryLoop, Mesh};
-use crate::octree::Sorted;
+use crate::octree::TriangleBvh;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// What became of the boundary loops of a mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Closed {
+pub(super) struct ClosingReport {
     /// Loops that were closed.
     pub(super) loops: usize,
     /// Triangles that were added.
@@ -27,16 +27,16 @@ struct Hole<'a> {
     length: f64,
     /// The methods that are left to be tried, the next first.
     methods: &'static [Method],
-    patch: Patch,
+    patch: ClosingPatch,
     /// The first patch that met others than its own component only.
-    second_best: Option<Patch>,
+    second_best: Option<ClosingPatch>,
     /// Whether the patch may meet other components.
     may_meet_others: bool,
 }
 
 /// What a patch has more in common with than edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Met {
+enum Obstacle {
     Others,
     OwnComponent,
 }
@@ -49,12 +49,12 @@ impl<'a> Hole<'a> {
             [boundary] => Method::of(boundary, &plane),
             _ => &[Method::Seen],
         };
-        let (patch, second_best) = (Patch::default(), None);
+        let (patch, second_best) = (ClosingPatch::default(), None);
         Hole { loops, plane, length, methods, patch, second_best, may_meet_others: false }
     }
 
     /// Takes the patch of the next method that has one, after them the second best; whether there is one.
-    fn try_next(&mut self, mesh: &Mesh, beside: &Beside) -> bool {
+    fn try_next(&mut self, mesh: &Mesh, beside: &ThirdCorners) -> bool {
         while let Some((method, rest)) = self.methods.split_first() {
             self.methods = rest;
             if let Some(patch) = method.patch(&self.loops, &self.plane, &mesh.vertices, beside) {
@@ -68,11 +68,11 @@ impl<'a> Hole<'a> {
     }
 
     /// Whether what the patch met rules it out.
-    fn is_ruled_out(&mut self, met: Met) -> bool {
-        if met == Met::Others && !self.may_meet_others && self.second_best.is_none() {
+    fn is_ruled_out(&mut self, met: Obstacle) -> bool {
+        if met == Obstacle::Others && !self.may_meet_others && self.second_best.is_none() {
             self.second_best = Some(self.patch.clone());
         }
-        met == Met::OwnComponent || !self.may_meet_others
+        met == Obstacle::OwnComponent || !self.may_meet_others
     }
 }
 
@@ -83,10 +83,10 @@ impl<'a> Hole<'a> {
 /// of corners are dropped if anything is added.
 ///
 /// Cost: about that of a few looks at all triangles, and k^3 / 6 steps for a loop of k edges up to a limit.
-pub(super) fn close(mesh: &mut Mesh) -> Closed {
+pub(super) fn close(mesh: &mut Mesh) -> ClosingReport {
     let loops = mesh.boundary_loops();
     if loops.is_empty() {
-        return Closed::default();
+        return ClosingReport::default();
     }
     let beside = beside(mesh, &loops);
     let mut open: Vec<OpenLoop> = Vec::new();
@@ -115,7 +115,7 @@ pub(super) fn close(mesh: &mut Mesh) -> Closed {
             break;
         }
     }
-    let (mut closed, count) = (Closed::default(), mesh.vertices.len());
+    let (mut closed, count) = (ClosingReport::default(), mesh.vertices.len());
     let surfaces = surfaces_beside(mesh, &holes);
     for (hole, surface) in holes.iter().zip(surfaces) {
         closed.loops += hole.loops.len();
@@ -128,7 +128,7 @@ pub(super) fn close(mesh: &mut Mesh) -> Closed {
         mesh.corner_parameters.clear();
     }
     open.sort_by(|one, two| two.length.total_cmp(&one.length));
-    Closed { open, ..closed }
+    ClosingReport { open, ..closed }
 }
 
 /// The loops of each plane together, and each that is in none on its own.
@@ -160,7 +160,7 @@ fn in_planes<'a>(loops: &'a [BoundaryLoop], mesh: &Mesh) -> Vec<Hole<'a>> {
 }
 
 /// The third corners of the triangles at the edges of loops.
-fn beside(mesh: &Mesh, loops: &[BoundaryLoop]) -> Beside {
+fn beside(mesh: &Mesh, loops: &[BoundaryLoop]) -> ThirdCorners {
     let edges: HashSet<[u32; 2]> = loops.iter().flat_map(BoundaryLoop::edges).collect();
     let third = |&[a, b, c]: &[u32; 3]| [([b, a], c), ([c, b], a), ([a, c], b)];
     mesh.triangles.iter().flat_map(third).filter(|(edge, _)| edges.contains(edge)).collect()
@@ -173,7 +173,7 @@ fn told(boundary: &BoundaryLoop, mesh: &Mesh) -> OpenLoop {
 }
 
 /// Adds a patch that was made for a mesh with so many vertices.
-fn add(mesh: &mut Mesh, Patch { triangles, vertex }: &Patch, count: usize) {
+fn add(mesh: &mut Mesh, ClosingPatch { triangles, vertex }: &ClosingPatch, count: usize) {
     let own = mesh.vertices.len() as u32;
     let number = |corner: u32| if corner as usize == count { own } else { corner };
     mesh.vertices.extend(*vertex);
@@ -204,7 +204,7 @@ fn surfaces_beside(mesh: &Mesh, holes: &[Hole]) -> Vec<u32> {
 
 /// The holes whose patches have more in common with the surface, or with the patch of a longer one, than edges, and with
 /// what; by rising number.
-fn meeting(mesh: &Mesh, holes: &[Hole]) -> Vec<(usize, Met)> {
+fn meeting(mesh: &Mesh, holes: &[Hole]) -> Vec<(usize, Obstacle)> {
     let mut tried = Mesh { vertices: mesh.vertices.clone(), triangles: mesh.triangles.clone(), ..Mesh::default() };
     let mut of_patch = Vec::new();
     for (hole, number) in holes.iter().zip(0..) {
@@ -217,16 +217,16 @@ fn meeting(mesh: &Mesh, holes: &[Hole]) -> Vec<(usize, Met)> {
         uses.iter().for_each(|at| components.join(uses[0].triangle, at.triangle));
     }
     let first = mesh.triangles.len() as u32;
-    let tile = |t: u32| Tile { names: tried.triangles[t as usize], corners: tried.corners(t as usize) };
-    let sorted = Sorted::new(&tried.vertices, &tried.triangles);
+    let tile = |t: u32| NamedTriangle { names: tried.triangles[t as usize], corners: tried.corners(t as usize) };
+    let sorted = TriangleBvh::new(&tried.vertices, &tried.triangles);
     let meet = |a: u32, b: u32| {
         // Those without an area are dissolved later; they are on the edges of others.
         let (one, two) = (tile(a).with_plane(), tile(b).with_plane());
         b >= first && !one.is_flat() && !two.is_flat() && overlap(&one, &tile(b), || two)
     };
-    let mut met: BTreeMap<usize, Met> = BTreeMap::new();
+    let mut met: BTreeMap<usize, Obstacle> = BTreeMap::new();
     for [a, b] in sorted.pairs_within(meet) {
-        let what = if components.find(a) == components.find(b) { Met::OwnComponent } else { Met::Others };
+        let what = if components.find(a) == components.find(b) { Obstacle::OwnComponent } else { Obstacle::Others };
         let known = met.entry(of_patch[(b - first) as usize]).or_insert(what);
         *known = what.max(*known);
     }

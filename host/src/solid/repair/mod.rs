@@ -12,12 +12,12 @@ mod orientation;
 mod patches;
 mod surplus;
 
-use super::bodies::Bodies;
+use super::bodies::Shells;
 use super::cleaning::{check_edges, without_collapsed};
 use super::import::{imported_on_lattice, on_lattice};
 use super::{Solid, SolidError};
 use crate::mesh::{BoundaryLoop, Mesh};
-use crate::octree::Sorted;
+use crate::octree::TriangleBvh;
 use joining::join_near;
 use orientation::{turn, turn_alike};
 use serde::Serialize;
@@ -150,14 +150,14 @@ pub fn boundary(mesh: &Mesh) -> Vec<BoundaryLoop> {
 
 /// Turns bodies that face inwards and lie in no other, all of them if the whole does; returns how many were turned.
 fn turn_bodies(mesh: &mut Mesh) -> usize {
-    let mut bodies = Bodies::of(mesh);
+    let mut bodies = Shells::of(mesh);
     let is_inside_out = (0..bodies.count()).map(|body| bodies.volume(body)).sum::<f64>() < 0.0;
     if is_inside_out {
         (0..mesh.triangles.len()).for_each(|triangle| turn(mesh, triangle));
-        bodies = Bodies::of(mesh);
+        bodies = Shells::of(mesh);
     }
     let mut is_turned = vec![is_inside_out; bodies.count()];
-    let sorted = Sorted::new(&mesh.vertices, &mesh.triangles);
+    let sorted = TriangleBvh::new(&mesh.vertices, &mesh.triangles);
     for body in bodies.inside_out(mesh, &sorted) {
         is_turned[body] ^= true;
         bodies.triangles(body).iter().for_each(|&triangle| turn(mesh, triangle as usize));

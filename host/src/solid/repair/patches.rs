@@ -17,7 +17,7 @@ const SHAPE: f64 = 1e-6;
 
 /// Triangles that close loops, and a vertex that some of them share if they need one.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Patch {
+pub(super) struct ClosingPatch {
     /// Corners; the vertex that is added has the number after that of the last one.
     pub(super) triangles: Vec<[u32; 3]>,
     /// The vertex that is added.
@@ -94,22 +94,22 @@ impl Method {
         loops: &[&BoundaryLoop],
         plane: &LoopPlane,
         places: &[DVec3],
-        beside: &Beside,
-    ) -> Option<Patch> {
+        beside: &ThirdCorners,
+    ) -> Option<ClosingPatch> {
         let points: Vec<&[u32]> = loops.iter().map(|BoundaryLoop(points)| points.as_slice()).collect();
         match (self, &points[..]) {
             (Method::Seen, _) => {
                 let triangles = filled(plane.axis(), places, &points)?;
-                Some(Patch { triangles, vertex: None })
+                Some(ClosingPatch { triangles, vertex: None })
             }
             (Method::LeastArea, [points]) if points.len() <= MOST_POINTS => {
-                Some(Patch { triangles: least_area(points, places, beside), vertex: None })
+                Some(ClosingPatch { triangles: least_area(points, places, beside), vertex: None })
             }
             (Method::Fan, [points]) => {
                 let center = places.len() as u32;
                 let triangles = loops[0].edges().map(|[from, to]| [from, to, center]).collect();
                 let mean = points.iter().map(|&point| places[point as usize]).sum::<DVec3>() / points.len() as f64;
-                Some(Patch { triangles, vertex: Some(mean) })
+                Some(ClosingPatch { triangles, vertex: Some(mean) })
             }
             _ => None,
         }
@@ -117,14 +117,14 @@ impl Method {
 }
 
 /// For an edge of a boundary loop, as it runs, the third corner of the triangle there.
-pub(super) type Beside = HashMap<[u32; 2], u32>;
+pub(super) type ThirdCorners = HashMap<[u32; 2], u32>;
 
 /// The triangles through the points of a loop whose areas have the least sum, of those that are folded back onto triangles
 /// beside the loop as seldom as can be.
 ///
 /// # Source
 /// Barequet and Sharir 1995, by the recursion of Klincsek 1980.
-fn least_area(points: &[u32], places: &[DVec3], beside: &Beside) -> Vec<[u32; 3]> {
+fn least_area(points: &[u32], places: &[DVec3], beside: &ThirdCorners) -> Vec<[u32; 3]> {
     let count = points.len();
     let at = |k: usize| places[points[k] as usize];
     // The unit normal of the triangle beside each edge of the loop.
@@ -190,7 +190,7 @@ mod tests {
     }
 
     /// Every edge of the loop once, as it runs, and all others both ways.
-    fn closes(boundary: &BoundaryLoop, patch: &Patch) -> bool {
+    fn closes(boundary: &BoundaryLoop, patch: &ClosingPatch) -> bool {
         let mut net = std::collections::BTreeMap::<[u32; 2], i32>::new();
         for &[a, b, c] in &patch.triangles {
             for [p, q] in [[a, b], [b, c], [c, a]] {
@@ -215,7 +215,7 @@ mod tests {
                 assert_eq!(plane.is_flat, is_flat);
                 assert_eq!(plane.normal.z > 0.0, !back);
                 for method in Method::of(&boundary, &plane) {
-                    let patch = method.patch(&[&boundary], &plane, &places, &Beside::new()).expect("the loop is plain");
+                    let patch = method.patch(&[&boundary], &plane, &places, &ThirdCorners::new()).expect("the loop is plain");
                     assert!(closes(&boundary, &patch), "{method:?}");
                     assert_eq!(patch.triangles.len(), if *method == Method::Fan { 40 } else { 38 });
                 }
@@ -230,7 +230,7 @@ mod tests {
             .map(|[x, y, z]: [i32; 3]| glam::IVec3::new(x, y, z).as_dvec3())
             .to_vec();
         let boundary = BoundaryLoop((0..6).collect());
-        let triangles = least_area(&boundary.0, &places, &Beside::new());
+        let triangles = least_area(&boundary.0, &places, &ThirdCorners::new());
         let area = |[a, b, c]: [u32; 3]| {
             let [a, b, c] = [a, b, c].map(|p| places[p as usize]);
             0.5 * (b - a).cross(c - a).length()
@@ -243,8 +243,8 @@ mod tests {
     fn a_loop_that_is_long_has_no_patch_of_least_area() {
         let (boundary, places) = ring(2 * MOST_POINTS as u32, |angle| angle.sin());
         let plane = LoopPlane::of(&boundary, &places);
-        assert!(Method::LeastArea.patch(&[&boundary], &plane, &places, &Beside::new()).is_none());
-        assert!(Method::Seen.patch(&[&boundary], &plane, &places, &Beside::new()).is_some());
+        assert!(Method::LeastArea.patch(&[&boundary], &plane, &places, &ThirdCorners::new()).is_none());
+        assert!(Method::Seen.patch(&[&boundary], &plane, &places, &ThirdCorners::new()).is_some());
     }
 
     #[test]
@@ -254,10 +254,10 @@ mod tests {
         let places = [&places[..], &[DVec3::new(-0.1, 0.5, 0.5)]].concat();
         let boundary = BoundaryLoop(vec![0, 1, 2, 3, 4]);
         let is_ear = |corners: &&[u32; 3]| [3, 4, 0].iter().all(|corner| corners.contains(corner));
-        let free = least_area(&boundary.0, &places, &Beside::new());
+        let free = least_area(&boundary.0, &places, &ThirdCorners::new());
         assert_eq!(free.iter().filter(is_ear).count(), 1);
         // The triangle of the surface that has two sides of the loop and lies where that ear would.
-        let beside = Beside::from([([3, 4], 0), ([4, 0], 3)]);
+        let beside = ThirdCorners::from([([3, 4], 0), ([4, 0], 3)]);
         let bound = least_area(&boundary.0, &places, &beside);
         assert_eq!((bound.len(), bound.iter().filter(is_ear).count()), (3, 0));
     }

@@ -12,39 +12,39 @@ use crate::solid::union_find::UnionFind;
 const FLAT: f64 = 1e-9;
 
 /// A face.
-pub struct Face {
+pub struct PolygonFace {
     /// Outwards, unit length.
     pub normal: DVec3,
     /// Whether it is a part of a curved surface.
     pub is_curved: bool,
     /// Its borders: edges, each followed from its corner to the next, with the face on the left.
-    pub loops: Vec<Vec<Side>>,
+    pub loops: Vec<Vec<HalfEdge>>,
 }
 
 /// An edge as a part of the border of a face.
 #[derive(Clone, Copy, Debug)]
-pub struct Side {
+pub struct HalfEdge {
     pub edge: usize,
     /// The vertices where it begins and ends.
     pub ends: [u32; 2],
 }
 
 /// An edge between two faces.
-pub struct Edge {
+pub struct SolidEdge {
     /// Its vertices, in the direction in which the first face has it.
     pub ends: [u32; 2],
     pub faces: [usize; 2],
 }
 
 /// Faces and edges.
-pub struct Faces {
-    pub faces: Vec<Face>,
-    pub edges: Vec<Edge>,
+pub struct PolygonFaces {
+    pub faces: Vec<PolygonFace>,
+    pub edges: Vec<SolidEdge>,
 }
 
-impl Faces {
+impl PolygonFaces {
     /// Finds those of a closed mesh whose triangles have normals at their corners.
-    pub fn of(mesh: &Mesh) -> Result<Faces, RoundingError> {
+    pub fn of(mesh: &Mesh) -> Result<PolygonFaces, RoundingError> {
         let count = mesh.triangles.len();
         let flat = |t: usize| {
             let [a, b, c] = mesh.corner_normals[t];
@@ -70,7 +70,7 @@ impl Faces {
             .map(|t| {
                 *number.entry(joined.root(t as u32)).or_insert_with(|| {
                     let normal = flat(t).or(mesh.face_normal(t)).unwrap_or(DVec3::ZERO);
-                    faces.push(Face { normal, is_curved: flat(t).is_none(), loops: Vec::new() });
+                    faces.push(PolygonFace { normal, is_curved: flat(t).is_none(), loops: Vec::new() });
                     next.push(HashMap::new());
                     faces.len() - 1
                 })
@@ -92,7 +92,7 @@ impl Faces {
         }
         // A vertex of two faces lies within an edge.
         let is_corner = |vertex: u32| around[&vertex].len() > 2;
-        let mut result = Faces { faces, edges: Vec::new() };
+        let mut result = PolygonFaces { faces, edges: Vec::new() };
         let mut known: HashMap<[u32; 2], usize> = HashMap::new();
         for (face, next) in next.iter().enumerate() {
             for run in loops(next) {
@@ -101,7 +101,7 @@ impl Faces {
                     return Err(RoundingError::Touching { at: DVec3::ZERO });
                 }
                 let ends = (0..corners.len()).map(|k| [corners[k], corners[(k + 1) % corners.len()]]);
-                let sides = ends.map(|ends| Side { edge: result.edge(face, ends, &mut known), ends }).collect();
+                let sides = ends.map(|ends| HalfEdge { edge: result.edge(face, ends, &mut known), ends }).collect();
                 result.faces[face].loops.push(sides);
             }
         }
@@ -114,13 +114,13 @@ impl Faces {
             return edge;
         }
         known.insert(ends, self.edges.len());
-        self.edges.push(Edge { ends, faces: [face; 2] });
+        self.edges.push(SolidEdge { ends, faces: [face; 2] });
         self.edges.len() - 1
     }
 
     /// By how much an edge turns, radians, positive where the solid is convex.
     pub fn turn(&self, edge: usize, points: &[DVec3]) -> f64 {
-        let Edge { ends, faces } = &self.edges[edge];
+        let SolidEdge { ends, faces } = &self.edges[edge];
         let [n, m] = faces.map(|face| self.faces[face].normal);
         let along = points[ends[1] as usize] - points[ends[0] as usize];
         n.cross(m).dot(along).signum() * n.angle_between(m)

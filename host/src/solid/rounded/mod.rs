@@ -27,9 +27,9 @@ mod surfaces;
 
 pub use error::RoundingError;
 
-use faces::{Faces, to_segment};
+use faces::{PolygonFaces, to_segment};
 use glam::DVec3;
-use net::Net;
+use net::RoundingNet;
 use std::collections::HashMap;
 
 use super::ExactSolid;
@@ -85,12 +85,12 @@ impl ExactSolid {
     }
 
     /// The polyhedron whose limit is the solid with some edges rounded, the faces, and the chosen edges.
-    fn net(&self, choice: &EdgeChoice, radius: f64) -> Result<(Polyhedron, Faces, Vec<usize>), RoundingError> {
+    fn net(&self, choice: &EdgeChoice, radius: f64) -> Result<(Polyhedron, PolygonFaces, Vec<usize>), RoundingError> {
         if !(radius > 0.0 && radius.is_finite()) {
             return Err(RoundingError::Radius { radius });
         }
         let mesh = self.solid().mesh();
-        let faces = Faces::of(mesh)?;
+        let faces = PolygonFaces::of(mesh)?;
         let points = &mesh.vertices;
         let ends = |edge: usize| faces.edges[edge].ends.map(|vertex| points[vertex as usize]);
         let mut chosen: Vec<usize> = match choice {
@@ -119,7 +119,7 @@ impl ExactSolid {
             }
             setbacks[edge] = Some(radius * (0.5 * turn).tan());
         }
-        Ok((Net::polyhedron(&faces, points, &setbacks, radius)?, faces, chosen))
+        Ok((RoundingNet::polyhedron(&faces, points, &setbacks, radius)?, faces, chosen))
     }
 }
 

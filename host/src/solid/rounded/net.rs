@@ -5,16 +5,16 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::error::RoundingError;
-use super::faces::{Face, Faces, Side};
-use crate::polygon::{Shape, triangulate_in_space};
+use super::faces::{PolygonFace, PolygonFaces, HalfEdge};
+use crate::polygon::{TriangulationKind, triangulate_in_space};
 use crate::subdivision::Polyhedron;
 
 /// Corners of faces whose sides turn by less than this sine are straight.
 const STRAIGHT: f64 = 1e-9;
 
 /// Makes the polyhedron.
-pub struct Net<'a> {
-    faces: &'a Faces,
+pub struct RoundingNet<'a> {
+    faces: &'a PolygonFaces,
     points: Vec<DVec3>,
     /// For each edge how far from it the rounding begins; none where it stays sharp.
     setbacks: &'a [Option<f64>],
@@ -37,15 +37,15 @@ struct Corner {
     has_piece: bool,
 }
 
-impl<'a> Net<'a> {
+impl<'a> RoundingNet<'a> {
     /// The polyhedron, its sharp edges sharp for ever.
     pub fn polyhedron(
-        faces: &'a Faces,
+        faces: &'a PolygonFaces,
         points: &[DVec3],
         setbacks: &'a [Option<f64>],
         radius: f64,
     ) -> Result<Polyhedron, RoundingError> {
-        let mut net = Net {
+        let mut net = RoundingNet {
             faces,
             points: points.to_vec(),
             setbacks,
@@ -69,19 +69,19 @@ impl<'a> Net<'a> {
         self.points[vertex as usize]
     }
 
-    fn along(&self, side: &Side) -> DVec3 {
+    fn along(&self, side: &HalfEdge) -> DVec3 {
         (self.at(side.ends[1]) - self.at(side.ends[0])).normalize_or_zero()
     }
 
-    fn too_wide(&self, side: &Side) -> RoundingError {
+    fn too_wide(&self, side: &HalfEdge) -> RoundingError {
         RoundingError::TooWide { from: self.at(side.ends[0]), to: self.at(side.ends[1]), radius: self.radius }
     }
 
     /// How far along the two sides of a corner the strips of the other side reach, and the sine of its angle; twice the
     /// setback, so that the rounding ends in the middle of the strip.
-    fn reaches(&self, face: &Face, before: &Side, behind: &Side) -> ([f64; 2], f64) {
+    fn reaches(&self, face: &PolygonFace, before: &HalfEdge, behind: &HalfEdge) -> ([f64; 2], f64) {
         let sine = face.normal.dot(self.along(behind).cross(-self.along(before)));
-        let reach = |side: &Side| 2.0 * self.setbacks[side.edge].unwrap_or(0.0) / sine;
+        let reach = |side: &HalfEdge| 2.0 * self.setbacks[side.edge].unwrap_or(0.0) / sine;
         // Along the side behind, the strip of the side before, and the other way round.
         ([reach(before), reach(behind)], sine)
     }
@@ -121,7 +121,7 @@ impl<'a> Net<'a> {
             };
             let reaches = found.ends.map(mean);
             if reaches.iter().flatten().sum::<f64>() >= length * (1.0 - STRAIGHT) {
-                return Err(self.too_wide(&Side { edge, ends: found.ends }));
+                return Err(self.too_wide(&HalfEdge { edge, ends: found.ends }));
             }
             for (k, reach) in reaches.into_iter().enumerate() {
                 let Some(reach) = reach else { continue };
@@ -147,7 +147,7 @@ impl<'a> Net<'a> {
     }
 
     /// Divides a face into strips along rounded edges, pieces between two strips, and the rest.
-    fn divide(&mut self, face: &Face) -> Result<(), RoundingError> {
+    fn divide(&mut self, face: &PolygonFace) -> Result<(), RoundingError> {
         let mut rest = Vec::new();
         for run in &face.loops {
             let count = run.len();
@@ -189,10 +189,10 @@ impl<'a> Net<'a> {
         self.add_rest(face, rest)
     }
 
-    fn corner(&mut self, face: &Face, before: &Side, behind: &Side) -> Corner {
+    fn corner(&mut self, face: &PolygonFace, before: &HalfEdge, behind: &HalfEdge) -> Corner {
         let vertex = behind.ends[0];
         let is_rounded = [before, behind].map(|side| self.setbacks[side.edge].is_some());
-        let on = |side: &Side| self.on_edges.get(&(side.edge, vertex)).copied().unwrap_or(vertex);
+        let on = |side: &HalfEdge| self.on_edges.get(&(side.edge, vertex)).copied().unwrap_or(vertex);
         let inner = match is_rounded {
             [false, false] => vertex,
             [true, false] => on(behind),
@@ -209,7 +209,7 @@ impl<'a> Net<'a> {
     }
 
     /// Adds what is left of a face: whole if it is convex, otherwise in triangles.
-    fn add_rest(&mut self, face: &Face, rest: Vec<Vec<u32>>) -> Result<(), RoundingError> {
+    fn add_rest(&mut self, face: &PolygonFace, rest: Vec<Vec<u32>>) -> Result<(), RoundingError> {
         let turn = |run: &[u32], k: usize| {
             let [a, b, c] = [0, 1, 2].map(|step| self.at(run[(k + step) % run.len()]));
             let (one, two) = ((b - a).normalize_or_zero(), (c - b).normalize_or_zero());
@@ -225,7 +225,7 @@ impl<'a> Net<'a> {
         }
         let contours: Vec<Vec<DVec3>> = rest.iter().map(|run| run.iter().map(|v| self.at(*v)).collect()).collect();
         let names: Vec<u32> = rest.concat();
-        let triangles = triangulate_in_space(&contours, Shape::Delaunay)?.triangles;
+        let triangles = triangulate_in_space(&contours, TriangulationKind::Delaunay)?.triangles;
         // Points that lie straight between others are no corners of triangles, but of faces.
         let next: HashMap<u32, u32> =
             rest.iter().flat_map(|run| (0..run.len()).map(|k| (run[k], run[(k + 1) % run.len()]))).collect();

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use super::faces::{Edge, Faces, to_segment};
+use super::faces::{SolidEdge, PolygonFaces, to_segment};
 use crate::mesh::Mesh;
 use crate::numeric::triangle::weights;
 use crate::solid::ExactSolid;
@@ -24,7 +24,7 @@ struct Rounding {
 }
 
 impl Rounding {
-    fn new(edge: &Edge, faces: &Faces, points: &[DVec3]) -> Rounding {
+    fn new(edge: &SolidEdge, faces: &PolygonFaces, points: &[DVec3]) -> Rounding {
         Rounding {
             ends: edge.ends.map(|end| points[end as usize]),
             normals: edge.faces.map(|face| faces.faces[face].normal),
@@ -46,7 +46,7 @@ impl Rounding {
 /// its u from face to face and v along the edge, each about 0 to 1. Around a corner the nearest edge counts.
 ///
 /// Returns the surfaces; those of edges are not known exactly.
-pub fn assign(mesh: &mut Mesh, solid: &ExactSolid, faces: &Faces, rounded: &[usize]) -> Vec<Option<Arc<dyn Surface>>> {
+pub fn assign(mesh: &mut Mesh, solid: &ExactSolid, faces: &PolygonFaces, rounded: &[usize]) -> Vec<Option<Arc<dyn Surface>>> {
     let before = solid.solid().mesh();
     let roundings: Vec<Rounding> =
         rounded.iter().map(|edge| Rounding::new(&faces.edges[*edge], faces, &before.vertices)).collect();

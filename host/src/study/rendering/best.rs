@@ -1,7 +1,7 @@
 //! The knobs of a renderer in a scene: which of them change anything, and all of them at their best.
 
 use super::knob::{RENDER_KNOBS, RenderKnob};
-use super::setup::{Base, Setup};
+use super::setup::{StudiedScene, Setup};
 use crate::plan::Stage;
 use crate::render::Technique;
 
@@ -10,7 +10,7 @@ pub(super) fn knobs_of(technique: Technique) -> impl Iterator<Item = &'static Re
     RENDER_KNOBS.iter().filter(move |knob| (knob.renderers)(technique.row()))
 }
 
-impl Base {
+impl StudiedScene {
     /// Why a knob changes nothing, or nothing that it does not change by another renderer, where that is so.
     pub(super) fn idle(&self, technique: Technique, knob: &RenderKnob) -> Option<&'static str> {
         let why = "no light is followed from lamps: this is ray tracing";

@@ -1,6 +1,6 @@
 //! The knobs of the renderers: one row each, from which the sweep, the help and the tables are derived.
 
-use super::setup::{Base, Setup};
+use super::setup::{StudiedScene, Setup};
 use crate::illumination::Light;
 use crate::illumination::optics::Interreflection;
 use crate::octree::MAX_POINT_DEPTH;
@@ -52,11 +52,11 @@ pub struct RenderKnob {
     /// Whether the triangles depend on it: the run time includes their making.
     pub remodels: bool,
     /// Why it changes nothing in a scene, where that is so.
-    pub(super) idle: fn(&Base) -> Option<&'static str>,
+    pub(super) idle: fn(&StudiedScene) -> Option<&'static str>,
     /// Settings to try, from the coarsest to the finest.
-    pub(super) values: fn(&Base) -> Vec<f64>,
+    pub(super) values: fn(&StudiedScene) -> Vec<f64>,
     /// The setting of a reference.
-    pub(super) best: fn(&Base, Technique) -> f64,
+    pub(super) best: fn(&StudiedScene, Technique) -> f64,
     /// How it is set.
     pub(super) get: fn(&Setup) -> f64,
     /// Sets it.
@@ -328,43 +328,43 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
 ];
 
 /// 1, 2, 4, ..., as many as are to be tried.
-fn doubled(base: &Base) -> impl Iterator<Item = f64> + use<> {
+fn doubled(base: &StudiedScene) -> impl Iterator<Item = f64> + use<> {
     (0..base.options.settings as i32).map(|i| 2f64.powi(i))
 }
 
 /// A value, its half, ..., as many as are to be tried.
-fn halved(base: &Base, from: f64) -> impl Iterator<Item = f64> + use<> {
+fn halved(base: &StudiedScene, from: f64) -> impl Iterator<Item = f64> + use<> {
     (0..base.options.settings as i32).map(move |i| from / 2f64.powi(i))
 }
 
 /// What the scene has, coarser ones before it and one finer one, as many as are to be tried.
-fn around(base: &Base, own: f64, step: f64) -> impl Iterator<Item = f64> + use<> {
+fn around(base: &StudiedScene, own: f64, step: f64) -> impl Iterator<Item = f64> + use<> {
     let count = base.options.settings as i32;
     (0..count).map(move |i| own * step.powi(i + 2 - count))
 }
 
 /// The radius of the largest disc that the scene has.
-fn own_radius(base: &Base) -> f64 {
+fn own_radius(base: &StudiedScene) -> f64 {
     base.settings().photons.radius.unwrap_or_else(|| widest_disc(&base.prepared))
 }
 
 /// Tolerances for the largest curved object.
-fn tolerances(base: &Base) -> impl Iterator<Item = f64> + use<> {
+fn tolerances(base: &StudiedScene) -> impl Iterator<Item = f64> + use<> {
     let coarsest = base.largest_curved * COARSEST;
     // Triangles grow as the reciprocal: four settings and the reference span a factor of a thousand.
     (0..base.options.settings.min(5) as i32).map(move |i| coarsest / TOLERANCE_STEP.powi(i))
 }
 
-fn no_radiosity(base: &Base) -> Option<&'static str> {
+fn no_radiosity(base: &StudiedScene) -> Option<&'static str> {
     base.lacks(Stage::Radiosity, "the scene has no light by radiosity")
 }
 
-fn curved(base: &Base) -> Option<&'static str> {
+fn curved(base: &StudiedScene) -> Option<&'static str> {
     (base.largest_curved == 0.0).then_some("no object is tessellated from a curved surface")
 }
 
 /// Whether some light is no point and not parallel.
-fn has_spread_light(base: &Base) -> bool {
+fn has_spread_light(base: &StudiedScene) -> bool {
     let emits = base.prepared.objects.iter().flat_map(|object| &object.materials);
     base.prepared.lights.iter().any(Light::has_size) || emits.into_iter().any(|material| !material.emission.is_black())
 }

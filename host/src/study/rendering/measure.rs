@@ -7,7 +7,7 @@
 //! # Source
 //! Ours; the product of independent halves is an old means against noise.
 
-use super::setup::Shot;
+use super::setup::TimedRendering;
 use crate::picture::{Difference, PIXELS_PER_DEGREE, Picture, PictureError, Pixel, difference, flip};
 use crate::study::StudyError;
 use serde::Serialize;
@@ -16,7 +16,7 @@ use serde::Serialize;
 pub(super) const CLEAR: f64 = 3.0;
 
 /// A reference.
-pub(super) struct Reference {
+pub(super) struct ReferencePicture {
     halves: [Picture; 2],
     /// The mean of both.
     mean: Picture,
@@ -28,7 +28,7 @@ pub(super) struct Reference {
 
 /// How far a setting is from the reference.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Measures {
+pub struct ErrorMeasures {
     /// Root of the mean squared error of radiance.
     pub rmse: f64,
     /// The part of it that is chance: two runs differ by √2 times as much. 0 for renderers without chance.
@@ -43,7 +43,7 @@ pub struct Measures {
     pub flip: f64,
 }
 
-impl Measures {
+impl ErrorMeasures {
     /// The part of the root mean squared error that is no chance; 0 where it is not clear of chance.
     pub fn bias(&self) -> f64 {
         if self.is_clear() { self.bias_squared.sqrt() } else { 0.0 }
@@ -60,10 +60,10 @@ impl Measures {
     }
 }
 
-impl Reference {
+impl ReferencePicture {
     /// # Errors
     /// [`PictureError::Mismatch`].
-    pub(super) fn new([one, other]: [Shot; 2]) -> Result<Reference, StudyError> {
+    pub(super) fn new([one, other]: [TimedRendering; 2]) -> Result<ReferencePicture, StudyError> {
         // Both are of one build.
         let seconds = one.build + one.render + other.render;
         let halves = [one.picture, other.picture];
@@ -75,11 +75,11 @@ impl Reference {
                 coverage: one.coverage.midpoint(other.coverage),
             };
         }
-        Ok(Reference { halves, mean, error, seconds })
+        Ok(ReferencePicture { halves, mean, error, seconds })
     }
 
     /// The root mean squared distance from another reference.
-    pub(super) fn apart(&self, other: &Reference) -> Result<f64, PictureError> {
+    pub(super) fn apart(&self, other: &ReferencePicture) -> Result<f64, PictureError> {
         Ok(difference(&self.mean, &other.mean)?.rmse)
     }
 
@@ -87,7 +87,7 @@ impl Reference {
     ///
     /// # Errors
     /// [`StudyError::Picture`].
-    pub(super) fn measure(&self, runs: &[Shot]) -> Result<Measures, StudyError> {
+    pub(super) fn measure(&self, runs: &[TimedRendering]) -> Result<ErrorMeasures, StudyError> {
         let count = runs.len() as f64;
         let found: Result<Vec<_>, _> = runs.iter().map(|run| difference(&run.picture, &self.mean)).collect();
         let found = found?;
@@ -116,7 +116,7 @@ impl Reference {
         let is_sure = runs.iter().all(|run| run.picture == runs[0].picture);
         let error = if is_sure { 0.0 } else { ((squares / pixels - mean * mean).max(0.0) / pixels).sqrt() };
         let mean_of = |of: fn(&Difference) -> f64| found.iter().map(of).sum::<f64>() / count;
-        Ok(Measures {
+        Ok(ErrorMeasures {
             rmse: mean_of(|found| found.rmse * found.rmse).sqrt(),
             noise: if is_sure { 0.0 } else { (chance / pixels).sqrt() },
             bias_squared: mean,

@@ -13,20 +13,20 @@ mod setup;
 #[cfg(test)]
 mod tests;
 
-pub use bend::Bend;
+pub use bend::ErrorFloor;
 pub use knob::{RENDER_KNOBS, RenderKnob};
-pub use measure::Measures;
+pub use measure::ErrorMeasures;
 pub use results::{KnobStudy, RenderRow, RenderStudy};
 pub use setup::{studied, usual};
 
 use super::{Options, StudyError};
 use crate::picture::Picture;
-use crate::render::{Amount, Technique, Watch};
+use crate::render::{Progress, Technique, Watch};
 use crate::scene::Scene;
 use bend::bend;
 use best::knobs_of;
-use measure::Reference;
-use setup::{Base, Setup, Shot};
+use measure::ReferencePicture;
+use setup::{StudiedScene, Setup, TimedRendering};
 
 /// A setting is tried again, for its shortest time, while it took less than this many seconds in all.
 const SHORT_SECONDS: f64 = 0.25;
@@ -54,7 +54,7 @@ pub fn renderers(
     options: &Options,
     watch: &Watch<'_>,
 ) -> Result<RenderStudy, StudyError> {
-    let base = Base::new(scene, options)?;
+    let base = StudiedScene::new(scene, options)?;
     let chosen: Vec<(Technique, &RenderKnob)> = techniques
         .iter()
         .flat_map(|technique| knobs_of(*technique).map(|knob| (*technique, knob)))
@@ -87,9 +87,9 @@ pub fn renderers(
 
 /// A scene, and the references that were made of it.
 struct Bench<'a> {
-    base: &'a Base,
+    base: &'a StudiedScene,
     watch: &'a Watch<'a>,
-    references: Vec<(Setup, Reference)>,
+    references: Vec<(Setup, ReferencePicture)>,
     done: u64,
     steps: u64,
 }
@@ -136,11 +136,11 @@ impl Bench<'_> {
             changes |= *first.get_or_insert_with(|| picture.clone()) != picture;
             found.rows.push(row);
             self.done += 1;
-            (self.watch.progress)(Amount::of(self.done, self.steps, "measurements"));
+            (self.watch.progress)(Progress::of(self.done, self.steps, "measurements"));
         }
-        let measured: Vec<Measures> = found.rows.iter().map(|row| row.measures).collect();
+        let measured: Vec<ErrorMeasures> = found.rows.iter().map(|row| row.measures).collect();
         found.bend = bend(&measured, found.reference_error);
-        if let Some(Bend::Bias { causes, .. }) = &mut found.bend {
+        if let Some(ErrorFloor::Bias { causes, .. }) = &mut found.bend {
             *causes = self.causes(technique, knob, reference)?;
         }
         let apart = match is_whole {
@@ -160,7 +160,7 @@ impl Bench<'_> {
         if let Some(known) = self.references.iter().position(|(setup, _)| setup == best) {
             return Ok(known);
         }
-        let reference = Reference::new(self.base.halves(best, self.watch)?)?;
+        let reference = ReferencePicture::new(self.base.halves(best, self.watch)?)?;
         self.references.push((*best, reference));
         Ok(self.references.len() - 1)
     }
@@ -173,11 +173,11 @@ impl Bench<'_> {
         setting: f64,
         reference: usize,
     ) -> Result<(RenderRow, Picture), StudyError> {
-        let spent = |shots: &[Shot]| shots.iter().map(|shot| shot.render).sum::<f64>();
+        let spent = |shots: &[TimedRendering]| shots.iter().map(|shot| shot.render).sum::<f64>();
         let is_enough =
-            |shots: &[Shot]| shots.len() >= 2 && (spent(shots) >= SHORT_SECONDS || shots.len() >= MOST_TRIALS);
+            |shots: &[TimedRendering]| shots.len() >= 2 && (spent(shots) >= SHORT_SECONDS || shots.len() >= MOST_TRIALS);
         let mut shots = self.base.trials(setup, &is_enough, self.watch)?;
-        let least = |of: &dyn Fn(&Shot) -> f64| shots.iter().map(of).fold(f64::INFINITY, f64::min);
+        let least = |of: &dyn Fn(&TimedRendering) -> f64| shots.iter().map(of).fold(f64::INFINITY, f64::min);
         let seconds = least(&|shot| if knob.remodels { shot.build + shot.render } else { shot.render });
         let build = least(&|shot| shot.build);
         let measures = self.references[reference].1.measure(&shots)?;

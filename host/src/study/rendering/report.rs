@@ -1,8 +1,8 @@
 //! A study of renderers as text, comma-separated values and plots.
 
-use super::bend::Bend;
+use super::bend::ErrorFloor;
 use super::results::{KnobStudy, RenderRow, RenderStudy};
-use crate::study::plot::{Axis, Plot, Point, Series};
+use crate::study::plot::{Axis, Plot, PlotPoint, Series};
 use crate::study::sweep::short;
 
 /// What is less than this part of the RMSE is not drawn: rounding would fill most of the plot.
@@ -33,11 +33,11 @@ pub(super) fn verdict(study: &KnobStudy, changes: bool, apart: Option<(f64, Vec<
         _ if !changes => "changes nothing: all settings give the same picture".to_owned(),
         None if study.rows.len() < 3 => String::new(),
         None => "the error still falls at the finest setting".to_owned(),
-        Some(Bend::Least { at: least }) => format!("the error is least at {}, and grows beyond", at(*least)),
-        Some(Bend::Chance { from }) => {
+        Some(ErrorFloor::Least { at: least }) => format!("the error is least at {}, and grows beyond", at(*least)),
+        Some(ErrorFloor::Chance { from }) => {
             format!("from {} on the error is chance: more samples lower it, not {}", at(*from), study.name)
         }
-        Some(Bend::Bias { from, causes }) => {
+        Some(ErrorFloor::Bias { from, causes }) => {
             let cause = |(name, part): &(String, f64)| format!("{name} ({:.0} %)", 100.0 * part.min(1.0));
             let causes: Vec<String> = causes.iter().map(cause).collect();
             let causes = match (causes.is_empty(), study.technique.row().adds_samples) {
@@ -144,11 +144,11 @@ impl KnobStudy {
         curves.into_iter().map(curve).filter(|series| series.points.iter().any(|point| point.y > 0.0)).collect()
     }
 
-    fn points(&self, of: fn(&RenderRow) -> f64, labels: bool) -> Vec<Point> {
+    fn points(&self, of: fn(&RenderRow) -> f64, labels: bool) -> Vec<PlotPoint> {
         let label = |row: &RenderRow| if labels { short(row.setting) } else { String::new() };
         // What was not seen at a setting has no place there, and no line leads past it.
         let seen = |row: &RenderRow| Some(of(row)).filter(|error| *error > NEGLIGIBLE * row.measures.rmse);
-        let point = |row: &RenderRow| Point { x: row.seconds, y: seen(row).unwrap_or(f64::NAN), label: label(row) };
+        let point = |row: &RenderRow| PlotPoint { x: row.seconds, y: seen(row).unwrap_or(f64::NAN), label: label(row) };
         self.rows.iter().map(point).collect()
     }
 }

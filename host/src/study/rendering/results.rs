@@ -1,7 +1,7 @@
 //! What a study of renderers found: rows of settings, and a verdict for each knob.
 
-use super::bend::Bend;
-use super::measure::Measures;
+use super::bend::ErrorFloor;
+use super::measure::ErrorMeasures;
 use crate::render::Technique;
 use serde::Serialize;
 
@@ -36,7 +36,7 @@ pub struct KnobStudy {
     /// Its settings, from the coarsest to the finest.
     pub rows: Vec<RenderRow>,
     /// Where its error bends, if it does.
-    pub bend: Option<Bend>,
+    pub bend: Option<ErrorFloor>,
     /// What the rows tell, in words.
     pub verdict: String,
 }
@@ -52,7 +52,7 @@ pub struct RenderRow {
     pub build: f64,
     /// How far it is from the reference.
     #[serde(flatten)]
-    pub measures: Measures,
+    pub measures: ErrorMeasures,
 }
 
 impl RenderRow {

@@ -3,7 +3,7 @@
 use crate::picture::Picture;
 use crate::plan::{Plan, Stage};
 use crate::render::two_way::widest_disc;
-use crate::render::{Memo, Order, RENDERERS, Ready, Task, Technique, Watch};
+use crate::render::{Memo, RenderOrder, RENDERERS, PreparedRenderer, Task, Technique, Watch};
 use crate::scene::{Caustics, Prepared, Scene, Settings};
 use crate::study::options::resized;
 use crate::study::{Options, StudyError};
@@ -42,7 +42,7 @@ pub(super) struct Setup {
 }
 
 /// The scene that is studied, as it was asked for.
-pub(super) struct Base {
+pub(super) struct StudiedScene {
     scene: Scene,
     pub(super) prepared: Prepared,
     pub(super) options: Options,
@@ -54,7 +54,7 @@ pub(super) struct Base {
 
 /// One rendering.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct Shot {
+pub(super) struct TimedRendering {
     pub(super) picture: Picture,
     /// From the scene to a renderer that has taken it up, seconds.
     pub(super) build: f64,
@@ -62,10 +62,10 @@ pub(super) struct Shot {
     pub(super) render: f64,
 }
 
-impl Base {
+impl StudiedScene {
     /// # Errors
     /// [`StudyError::Scene`].
-    pub(super) fn new(scene: &Scene, options: &Options) -> Result<Base, StudyError> {
+    pub(super) fn new(scene: &Scene, options: &Options) -> Result<StudiedScene, StudyError> {
         let options = Options { settings: options.settings.clamp(2, 16), ..*options };
         let mut scene = resized(scene, &options);
         let prepared = Prepared::new(&scene)?;
@@ -78,7 +78,7 @@ impl Base {
         free.settings.light.spectral = free.settings.light.spectral.filter(|spectral| *spectral);
         free.settings.light.caustics = Caustics::PhotonMapped;
         let plan = Plan::new(&free, &free.view());
-        Ok(Base { scene, prepared, options, plan, largest_curved })
+        Ok(StudiedScene { scene, prepared, options, plan, largest_curved })
     }
 
     pub(super) fn settings(&self) -> &Settings {
@@ -120,15 +120,15 @@ impl Base {
     ///
     /// # Errors
     /// As [`Base::shoot`].
-    pub(super) fn halves(&self, setup: &Setup, watch: &Watch<'_>) -> Result<[Shot; 2], StudyError> {
-        let half = |half: u64, order: &mut Order| {
+    pub(super) fn halves(&self, setup: &Setup, watch: &Watch<'_>) -> Result<[TimedRendering; 2], StudyError> {
+        let half = |half: u64, order: &mut RenderOrder| {
             order.seed = order.seed.wrapping_add(REFERENCE_SEED + half);
             if half == 1 && !setup.technique.row().adds_samples {
                 order.samples -= order.samples / 8;
             }
         };
         let shots = self.shoot(setup, &half, &|shots| shots.len() == 2, watch)?;
-        <[Shot; 2]>::try_from(shots).map_err(|_| StudyError::Interrupted)
+        <[TimedRendering; 2]>::try_from(shots).map_err(|_| StudyError::Interrupted)
     }
 
     /// Renders a setup again and again, each time with another seed.
@@ -140,29 +140,29 @@ impl Base {
     pub(super) fn trials(
         &self,
         setup: &Setup,
-        is_enough: &dyn Fn(&[Shot]) -> bool,
+        is_enough: &dyn Fn(&[TimedRendering]) -> bool,
         watch: &Watch<'_>,
-    ) -> Result<Vec<Shot>, StudyError> {
+    ) -> Result<Vec<TimedRendering>, StudyError> {
         self.shoot(setup, &|trial, order| order.seed = order.seed.wrapping_add(trial), is_enough, watch)
     }
 
     fn shoot(
         &self,
         setup: &Setup,
-        vary: &dyn Fn(u64, &mut Order),
-        is_enough: &dyn Fn(&[Shot]) -> bool,
+        vary: &dyn Fn(u64, &mut RenderOrder),
+        is_enough: &dyn Fn(&[TimedRendering]) -> bool,
         watch: &Watch<'_>,
-    ) -> Result<Vec<Shot>, StudyError> {
+    ) -> Result<Vec<TimedRendering>, StudyError> {
         Memo::next(watch.memo, || self.shoot_now(setup, vary, is_enough, watch))
     }
 
     fn shoot_now(
         &self,
         setup: &Setup,
-        vary: &dyn Fn(u64, &mut Order),
-        is_enough: &dyn Fn(&[Shot]) -> bool,
+        vary: &dyn Fn(u64, &mut RenderOrder),
+        is_enough: &dyn Fn(&[TimedRendering]) -> bool,
         watch: &Watch<'_>,
-    ) -> Result<Vec<Shot>, StudyError> {
+    ) -> Result<Vec<TimedRendering>, StudyError> {
         let start = Instant::now();
         let mut prepared = self.prepared_for(setup)?;
         let modelling = start.elapsed().as_secs_f64();
@@ -171,14 +171,14 @@ impl Base {
             Some(_) => setup.settings.image.samples.max(self.options.samples / 2),
             None => setup.settings.image.samples,
         };
-        let order = Order {
+        let order = RenderOrder {
             samples,
             target: setup.target,
             denoise: setup.denoise,
             threads: self.options.threads,
-            ..Order::of(&setup.settings)
+            ..RenderOrder::of(&setup.settings)
         };
-        let varied = |shots: &[Shot]| {
+        let varied = |shots: &[TimedRendering]| {
             let mut order = order;
             vary(shots.len() as u64, &mut order);
             order
@@ -194,7 +194,7 @@ impl Base {
             let (start, built) = (Instant::now(), prepared.accelerations());
             let view = prepared.view();
             let plan = Plan::new(&prepared, &view);
-            let Ready { renderer, .. } = setup.technique.prepare(&Task::new(&prepared, &plan))?;
+            let PreparedRenderer { renderer, .. } = setup.technique.prepare(&Task::new(&prepared, &plan))?;
             // An octree of an earlier setting is part of what this one costs, too.
             let shared = if prepared.accelerations() == built { renderer.octree_time() } else { Duration::ZERO };
             let build = modelling + (start.elapsed() + shared).as_secs_f64();
@@ -203,7 +203,7 @@ impl Base {
                 if !rendering.complete || watch.cancelled.load(Ordering::Relaxed) {
                     return Err(StudyError::Interrupted);
                 }
-                shots.push(Shot { picture: rendering.picture, build, render: rendering.seconds });
+                shots.push(TimedRendering { picture: rendering.picture, build, render: rendering.seconds });
                 if is_followed {
                     break;
                 }

@@ -1,10 +1,10 @@
 //! Facts about studies of renderers: closed forms first, then every row of the table.
 
 use super::*;
-use crate::color::{Beyond, Color, Spectrum};
-use crate::illumination::light::Patch;
+use crate::color::{Extrapolation, Color, Spectrum};
+use crate::illumination::light::LightShape;
 use crate::illumination::material::{Classic, Material};
-use crate::illumination::texture::{Laying, Motif, Pattern};
+use crate::illumination::texture::{TextureMapping, Motif, Pattern};
 use crate::illumination::{Light, Paint};
 use crate::numeric::ray::Ray;
 use crate::render::RENDERERS;
@@ -47,7 +47,7 @@ fn ball() -> Scene {
 
 #[test]
 fn eight_settings_of_samples_need_one_octree() {
-    let base = setup::Base::new(&all_knobs(), &Options { width: 8, settings: 8, ..SMALL }).expect("a scene");
+    let base = setup::StudiedScene::new(&all_knobs(), &Options { width: 8, settings: 8, ..SMALL }).expect("a scene");
     for samples in (0..8).map(|power| 1 << power) {
         let mut setup = base.own(Technique::RayTracing);
         setup.settings.image.samples = samples;
@@ -60,7 +60,7 @@ fn eight_settings_of_samples_need_one_octree() {
 /// Every knob has something to do: a ball that mirrors, on tiles beside a colored wall, under a lamp with a spectrum.
 fn all_knobs() -> Scene {
     let (paints, laying) =
-        (vec![Paint::grey(0.2), Paint::grey(0.8)], Laying { size: DVec3::splat(0.07), ..Laying::default() });
+        (vec![Paint::grey(0.2), Paint::grey(0.8)], TextureMapping { size: DVec3::splat(0.07), ..TextureMapping::default() });
     let tiles = Paint::Pattern(Box::new(Pattern { motif: Motif::Checker, laying, paints }));
     let red = Paint::Plain(Color::Bands(DVec3::new(0.7, 0.15, 0.1)));
     let wall = DMat4::from_translation(DVec3::new(-1.2, 1.0, 0.0));
@@ -78,8 +78,8 @@ fn all_knobs() -> Scene {
             diffuse(0.7),
         ),
     ];
-    let patch = Patch::Rectangle { corner: DVec3::new(-0.5, 2.5, 0.0), across: DVec3::X, up: DVec3::Z };
-    let steep = Spectrum::regular(400.0, 100.0, vec![0.0, 0.2, 1.0, 0.1], Beyond::Held).expect("a spectrum");
+    let patch = LightShape::Rectangle { corner: DVec3::new(-0.5, 2.5, 0.0), across: DVec3::X, up: DVec3::Z };
+    let steep = Spectrum::regular(400.0, 100.0, vec![0.0, 0.2, 1.0, 0.1], Extrapolation::Held).expect("a spectrum");
     let radiance = Color::light_of(&steep, 12.0).expect("a light");
     let eye = camera(DVec3::new(0.8, 1.4, 4.0), DVec3::new(0.0, 0.5, 0.0), DVec3::Y, 34.0);
     let mut scene = scene(objects, vec![Light::Area { patch, radiance }], eye);
@@ -123,12 +123,12 @@ fn study(scene: &Scene, names: &[&str], options: Options) -> Vec<KnobStudy> {
 
 #[test]
 fn a_reference_is_as_near_to_the_closed_form_as_it_says() {
-    let base = Base::new(&ball(), &SMALL).expect("a scene");
+    let base = StudiedScene::new(&ball(), &SMALL).expect("a scene");
     let samples = RENDER_KNOBS.iter().find(|knob| knob.name == "samples").expect("a knob");
     let best = base.best(Technique::RayTracing, samples);
-    let reference = Reference::new(base.halves(&best, &Watch::NOBODY).expect("pictures")).expect("a reference");
+    let reference = ReferencePicture::new(base.halves(&best, &Watch::NOBODY).expect("pictures")).expect("a reference");
     let exact = base.trials(&best, &|shots| shots.len() == 1, &Watch::NOBODY).expect("a picture").remove(0);
-    let exact = Shot { picture: exact_ball(20), ..exact };
+    let exact = TimedRendering { picture: exact_ball(20), ..exact };
     let found = reference.measure(&[exact.clone(), exact]).expect("measured").rmse;
     // The sum of 64 x 64 points at the edge is off by a little, too.
     assert!(found < 2.0 * reference.error + 5e-4, "{found}, stated {}", reference.error);
@@ -172,7 +172,7 @@ fn a_coarse_tessellation_bends_the_curve_of_the_samples_and_is_named() {
     let mut scene = ball();
     scene.settings.geometry.tolerance = Some(0.08);
     let [found] = study(&scene, &["samples"], Options { settings: 7, ..SMALL }).try_into().expect("one knob");
-    let Some(Bend::Bias { from, causes }) = &found.bend else { panic!("{}", found.table()) };
+    let Some(ErrorFloor::Bias { from, causes }) = &found.bend else { panic!("{}", found.table()) };
     assert!(*from < 4 && causes[0].0 == "tolerance" && causes[0].1 > 0.9, "{}", found.table());
     assert!(found.verdict.contains("the error is bias") && found.table().contains("tolerance ("), "{}", found.verdict);
 }
@@ -210,7 +210,7 @@ fn every_knob_changes_the_picture_or_says_why_not() {
     found.knobs.retain(|study| !study.name.starts_with("radiosity"));
     for study in &found.knobs {
         let is_model = RENDER_KNOBS.iter().any(|knob| knob.name == study.name && knob.is_model);
-        let measured: Vec<Measures> = study.rows.iter().map(|row| row.measures).collect();
+        let measured: Vec<ErrorMeasures> = study.rows.iter().map(|row| row.measures).collect();
         // The tolerance alone turns normals far enough.
         let idle = study.name == "angle";
         assert!(idle || !study.verdict.contains("changes nothing"), "{}", study.table());
@@ -241,7 +241,7 @@ fn every_knob_changes_the_picture_or_says_why_not() {
 #[test]
 fn denoising_lowers_the_error_of_a_picture_with_noise() {
     // A ball in the soft shadow of a large lamp, and light between it and the floor.
-    let patch = Patch::Rectangle { corner: DVec3::new(-2.0, 3.0, -2.0), across: DVec3::X * 4.0, up: DVec3::Z * 4.0 };
+    let patch = LightShape::Rectangle { corner: DVec3::new(-2.0, 3.0, -2.0), across: DVec3::X * 4.0, up: DVec3::Z * 4.0 };
     let ball = DMat4::from_translation(DVec3::Y * 0.7);
     let objects = vec![
         object(Shape::Ground { size: 8.0 }, DMat4::IDENTITY, diffuse(0.6)),
@@ -274,7 +274,7 @@ fn scan_line_is_held_against_ray_tracing_where_it_leaves_nothing_out() {
 #[test]
 fn what_was_finished_before_an_interruption_is_kept() {
     let cancelled = AtomicBool::new(false);
-    let progress = |amount: Amount| cancelled.store(amount.done >= 2.0, std::sync::atomic::Ordering::Relaxed);
+    let progress = |amount: Progress| cancelled.store(amount.done >= 2.0, std::sync::atomic::Ordering::Relaxed);
     let watch = Watch { cancelled: &cancelled, progress: &progress, ..Watch::NOBODY };
     let found = renderers(&ball(), RAYS, &["samples", "error"], &SMALL, &watch).expect("a part");
     assert!(!found.complete && found.knobs.len() == 1 && found.knobs[0].rows.len() == 2, "{found:?}");

@@ -23,12 +23,12 @@ use crate::surface::{Surface, nearest_from};
 /// Charrot and Gregory 1984, with variable twists after Gregory 1974.
 #[derive(Clone, Debug)]
 pub struct NSidedPatch {
-    whole: Arc<Whole>,
+    whole: Arc<PolygonPatch>,
     sector: usize,
 }
 
 #[derive(Debug)]
-struct Whole {
+struct PolygonPatch {
     /// For each corner the strip along the side that begins there, and the one along the side that ends there, reversed.
     corners: Vec<[Ribbon; 2]>,
     curves: Vec<[DVec3; 4]>,
@@ -57,7 +57,7 @@ pub fn n_sided_patch(sides: &[HoleSide]) -> Result<Vec<NSidedPatch>, HoleError> 
     };
     let ribbons = (0..count).map(ribbon).collect::<Result<Vec<_>, _>>().map_err(|error| error.among(count))?;
     let normal = |k: usize| DVec2::from_angle((k as f64 + 0.5) / count as f64 * TAU);
-    let mut whole = Whole {
+    let mut whole = PolygonPatch {
         corners: (0..count).map(|k| [ribbons[k], ribbons[(k + count - 1) % count].reversed()]).collect(),
         curves: sides.iter().map(|side| side.curve).collect(),
         normals: (0..count).map(normal).collect(),
@@ -68,7 +68,7 @@ pub fn n_sided_patch(sides: &[HoleSide]) -> Result<Vec<NSidedPatch>, HoleError> 
     Ok((0..count).map(|sector| NSidedPatch { whole: whole.clone(), sector }).collect())
 }
 
-impl Whole {
+impl PolygonPatch {
     /// The point over a point of the polygon.
     fn at(&self, [x, y]: [Jet<f64>; 2]) -> Jet<DVec3> {
         let count = self.normals.len();

@@ -2,11 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use super::super::border::Borders;
+use super::super::border::SharedCurves;
 use super::super::{Curved, Surface, Tolerance, joint, tessellate, tessellate_adaptively};
 use super::*;
 use crate::mesh::Mesh;
-use crate::numeric::sampling::Stream;
+use crate::numeric::sampling::RandomStream;
 
 /// The greatest angle between normals that counts as none, degrees: 1e-12 of a radian.
 const NONE: f64 = 6e-11;
@@ -18,7 +18,7 @@ fn height(x: f64, y: f64) -> DVec3 {
 
 /// Patches around a hole with uneven corners on a dome. Each has the side with the hole as its highest v.
 fn ring(count: usize, seed: u64) -> Vec<BezierPatch> {
-    let mut stream = Stream::new(95, seed);
+    let mut stream = RandomStream::new(95, seed);
     let step = 1e-5;
     let mut corner = |k: usize| {
         let angle = (k as f64 + 0.1 * (stream.uniform() - 0.5)) / count as f64 * TAU;
@@ -175,7 +175,7 @@ fn filled_holes_are_tessellated_without_cracks() {
         let sides: Vec<HoleSide> = around.iter().map(|patch| HoleSide::of(patch, SurfaceSide::HighV)).collect();
         let sectors = n_sided_patch(&sides).expect("filled");
         // The patches of a ring do not meet each other, so each has its own rim.
-        let borders = Borders::of(&sectors);
+        let borders = SharedCurves::of(&sectors);
         assert_eq!(borders.sides.iter().filter(|sides| sides.iter().any(|side| side.is_point)).count(), count);
         for tolerance in [0.03, 0.003] {
             let tolerance = Tolerance::new(tolerance, 180.0);

@@ -5,7 +5,7 @@
 //! greater E of viewer and light.
 
 use super::super::interface::beta;
-use crate::illumination::distribution::{Facets, Microfacet};
+use crate::illumination::distribution::{SlopeDistribution, Microfacet};
 use crate::illumination::fresnel::Dielectric;
 use crate::numeric::cubature::{GAUSS, unit_square};
 use glam::{DVec2, DVec3};
@@ -24,7 +24,7 @@ const LEAST_COSINE: f64 = 1e-7;
 
 /// The parts of light from all around, 0..=1, that a viewer gets at a cosine.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Shares {
+pub(super) struct DirectionalAlbedos {
     /// By facets that reflect everything.
     pub(super) all: f64,
     /// By facets as Fresnel's equations have them, reflected.
@@ -41,11 +41,11 @@ pub(super) struct Shares {
     pub(super) sent_coat: f64,
 }
 
-impl Add for Shares {
-    type Output = Shares;
+impl Add for DirectionalAlbedos {
+    type Output = DirectionalAlbedos;
 
-    fn add(self, other: Shares) -> Shares {
-        Shares {
+    fn add(self, other: DirectionalAlbedos) -> DirectionalAlbedos {
+        DirectionalAlbedos {
             all: self.all + other.all,
             reflected: self.reflected + other.reflected,
             sent: self.sent + other.sent,
@@ -57,11 +57,11 @@ impl Add for Shares {
     }
 }
 
-impl Mul<f64> for Shares {
-    type Output = Shares;
+impl Mul<f64> for DirectionalAlbedos {
+    type Output = DirectionalAlbedos;
 
-    fn mul(self, factor: f64) -> Shares {
-        Shares {
+    fn mul(self, factor: f64) -> DirectionalAlbedos {
+        DirectionalAlbedos {
             all: self.all * factor,
             reflected: self.reflected * factor,
             sent: self.sent * factor,
@@ -137,17 +137,17 @@ fn half_square(of: impl Fn([f64; 2]) -> f64) -> f64 {
 
 /// A surface of facets, or a polished one: what it reflects and refracts once.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Interface {
+pub(super) struct AlbedoInterface {
     /// None where it is polished.
     pub(super) roughness: Option<f64>,
     /// From outside.
     pub(super) surface: Dielectric,
 }
 
-impl Interface {
+impl AlbedoInterface {
     fn facets(&self) -> Option<(Microfacet, DVec2)> {
         let m = DVec2::splat(self.roughness?);
-        Some((Microfacet::new(Facets::Ggx, m).ok()?, m))
+        Some((Microfacet::new(SlopeDistribution::Ggx, m).ok()?, m))
     }
 }
 
@@ -158,13 +158,13 @@ fn slanted(cosine: f64) -> DVec3 {
 /// What a coat reflects, over the cosine.
 #[derive(Clone, Debug)]
 pub(super) struct CoatAlbedo {
-    interface: Interface,
+    interface: AlbedoInterface,
     /// None where it is polished.
     table: Option<Table<f64>>,
 }
 
 impl CoatAlbedo {
-    pub(super) fn new(interface: Interface) -> CoatAlbedo {
+    pub(super) fn new(interface: AlbedoInterface) -> CoatAlbedo {
         let table = interface.facets().map(|(facets, m)| {
             Table::new(m.x, |cosine| {
                 let view = slanted(cosine);
@@ -189,7 +189,7 @@ impl CoatAlbedo {
 
 /// A facet as a viewer sees it, and the direction that it reflects.
 fn reflected(view: DVec3, roughness: DVec2, point: [f64; 2]) -> Option<(DVec3, DVec3)> {
-    let facet = Facets::Ggx.visible(view, roughness, point)?;
+    let facet = SlopeDistribution::Ggx.visible(view, roughness, point)?;
     let cosine = facet.dot(view);
     let light = facet * (2.0 * cosine) - view;
     (cosine > 0.0 && light.z > 0.0).then_some((facet, light))
@@ -198,32 +198,32 @@ fn reflected(view: DVec3, roughness: DVec2, point: [f64; 2]) -> Option<(DVec3, D
 /// What facets of one roughness reflect and let through under a coat, on both sides.
 #[derive(Clone, Debug)]
 pub(super) struct Albedo {
-    interface: Interface,
+    interface: AlbedoInterface,
     coat: Option<CoatAlbedo>,
     /// None where they are polished.
-    tables: Option<[Table<Shares>; 2]>,
-    means: [Shares; 2],
+    tables: Option<[Table<DirectionalAlbedos>; 2]>,
+    means: [DirectionalAlbedos; 2],
     /// The mean of Fresnel's term from outside, from inside, and of a pane of two interfaces.
     fresnel: [f64; 3],
 }
 
 /// From which side an interface is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Seen {
+pub(super) enum InterfaceSide {
     Outside,
     Inside,
 }
 
 impl Albedo {
     /// - `transmits`: whether what comes through counts; if not, all that is known of it is 0.
-    pub(super) fn new(interface: Interface, coat: Option<CoatAlbedo>, transmits: bool) -> Albedo {
-        let mut albedo = Albedo { interface, coat, tables: None, means: [Shares::default(); 2], fresnel: [0.0; 3] };
+    pub(super) fn new(interface: AlbedoInterface, coat: Option<CoatAlbedo>, transmits: bool) -> Albedo {
+        let mut albedo = Albedo { interface, coat, tables: None, means: [DirectionalAlbedos::default(); 2], fresnel: [0.0; 3] };
         if let Some(m) = interface.roughness {
-            let table = |from: Seen| Table::new(m, |cosine| albedo.rough(from, cosine, transmits));
-            let tables = [Seen::Outside, Seen::Inside].map(table);
+            let table = |from: InterfaceSide| Table::new(m, |cosine| albedo.rough(from, cosine, transmits));
+            let tables = [InterfaceSide::Outside, InterfaceSide::Inside].map(table);
             albedo.tables = Some(tables);
         }
-        albedo.means = [Seen::Outside, Seen::Inside].map(|from| mean(|c| albedo.at(from, c)).unwrap_or_default());
+        albedo.means = [InterfaceSide::Outside, InterfaceSide::Inside].map(|from| mean(|c| albedo.at(from, c)).unwrap_or_default());
         let surface = interface.surface;
         let square = surface.index().powi(2);
         if transmits {
@@ -255,7 +255,7 @@ impl Albedo {
     }
 
     /// The shares at a cosine.
-    pub(super) fn at(&self, from: Seen, cosine: f64) -> Shares {
+    pub(super) fn at(&self, from: InterfaceSide, cosine: f64) -> DirectionalAlbedos {
         match &self.tables {
             Some(tables) => tables[from as usize].at(cosine),
             None => self.polished(from, cosine),
@@ -263,29 +263,29 @@ impl Albedo {
     }
 
     /// Their mean over all directions of the viewer, weighted with the cosine.
-    pub(super) fn mean(&self, from: Seen) -> &Shares {
+    pub(super) fn mean(&self, from: InterfaceSide) -> &DirectionalAlbedos {
         &self.means[from as usize]
     }
 
     /// The mean of Fresnel's term on a side, or that of a pane of two interfaces.
-    pub(super) fn fresnel(&self, from: Seen, is_pane: bool) -> f64 {
+    pub(super) fn fresnel(&self, from: InterfaceSide, is_pane: bool) -> f64 {
         if is_pane { self.fresnel[2] } else { self.fresnel[from as usize] }
     }
 
-    fn surface(&self, from: Seen) -> Dielectric {
+    fn surface(&self, from: InterfaceSide) -> Dielectric {
         match from {
-            Seen::Outside => self.interface.surface,
-            Seen::Inside => self.interface.surface.inverted(),
+            InterfaceSide::Outside => self.interface.surface,
+            InterfaceSide::Inside => self.interface.surface.inverted(),
         }
     }
 
-    fn polished(&self, from: Seen, cosine: f64) -> Shares {
+    fn polished(&self, from: InterfaceSide, cosine: f64) -> DirectionalAlbedos {
         let surface = self.surface(from);
         let reflected = surface.reflectance(cosine).mean();
         match from {
-            Seen::Outside => {
+            InterfaceSide::Outside => {
                 let coat = self.coat(cosine);
-                Shares {
+                DirectionalAlbedos {
                     all: 1.0,
                     reflected,
                     sent: 1.0,
@@ -295,40 +295,40 @@ impl Albedo {
                     sent_coat: coat,
                 }
             }
-            Seen::Inside => {
+            InterfaceSide::Inside => {
                 let beyond = surface.refracted(slanted(cosine), DVec3::Z).map_or(0.0, |light| -light.z);
                 let through = surface.transmittance(cosine).mean();
-                Shares { sent: 1.0, sent_coat: self.coat(beyond) * through, ..Shares::default() }
+                DirectionalAlbedos { sent: 1.0, sent_coat: self.coat(beyond) * through, ..DirectionalAlbedos::default() }
             }
         }
     }
 
-    fn rough(&self, from: Seen, cosine: f64, transmits: bool) -> Shares {
+    fn rough(&self, from: InterfaceSide, cosine: f64, transmits: bool) -> DirectionalAlbedos {
         let Some((facets, m)) = self.interface.facets() else { return self.polished(from, cosine) };
         let surface = self.surface(from);
         let view = slanted(cosine);
-        let shown = Facets::Ggx.projected(view, m) / view.z;
+        let shown = SlopeDistribution::Ggx.projected(view, m) / view.z;
         let has_coat = self.coat.is_some();
-        let own = if from == Seen::Outside { self.coat(cosine) } else { 0.0 };
+        let own = if from == InterfaceSide::Outside { self.coat(cosine) } else { 0.0 };
         // What is reflected, and times a function of facet and light.
         let mirrored = |point: [f64; 2], of: &dyn Fn(f64, DVec3) -> f64| {
             reflected(view, m, point)
                 .map_or(0.0, |(facet, light)| facets.weight(view, light) * of(facet.dot(view), light))
         };
         let refracted = |point: [f64; 2], of: &dyn Fn(DVec3) -> f64| {
-            let facet = Facets::Ggx.visible(view, m, point).filter(|facet| facet.dot(view) > 0.0);
+            let facet = SlopeDistribution::Ggx.visible(view, m, point).filter(|facet| facet.dot(view) > 0.0);
             let light = facet.and_then(|facet| Some((facet.dot(view), surface.refracted(view, facet)?)));
             light.filter(|(_, light)| light.z < 0.0).map_or(0.0, |(cosine, light)| {
-                let beyond = Facets::Ggx.projected(DVec3::new(light.x, light.y, -light.z), m) / -light.z;
+                let beyond = SlopeDistribution::Ggx.projected(DVec3::new(light.x, light.y, -light.z), m) / -light.z;
                 // Above and below, one hides what the other does not.
                 beta(shown, beyond) * shown * surface.transmittance(cosine).mean() * of(light)
             })
         };
         let fresnel = |cosine: f64| surface.reflectance(cosine).mean();
         let greater = |light: DVec3| own.max(self.coat(light.z));
-        let mut shares = Shares { coat: own, ..Shares::default() };
+        let mut shares = DirectionalAlbedos { coat: own, ..DirectionalAlbedos::default() };
         match from {
-            Seen::Outside => {
+            InterfaceSide::Outside => {
                 shares.all = half_square(|point| mirrored(point, &|_, _| 1.0));
                 shares.reflected = half_square(|point| mirrored(point, &|cosine, _| fresnel(cosine)));
                 if has_coat {
@@ -342,14 +342,14 @@ impl Albedo {
                     shares.sent_coat = shares.reflected_coat + own * through;
                 }
             }
-            Seen::Inside if transmits => {
+            InterfaceSide::Inside if transmits => {
                 shares.sent =
                     half_square(|point| mirrored(point, &|cosine, _| fresnel(cosine)) + refracted(point, &|_| 1.0));
                 if has_coat {
                     shares.sent_coat = half_square(|point| refracted(point, &|light| self.coat(-light.z)));
                 }
             }
-            Seen::Inside => {}
+            InterfaceSide::Inside => {}
         }
         shares
     }

@@ -1,8 +1,8 @@
 //! A part of a principled material as a lobe.
 
 use super::super::lobe::{Flags, Lobe, NARROW};
-use super::super::sighting::{Onward, Sighting};
-use super::surface::{Part, Surface};
+use super::super::sighting::{BsdfSample, ShadingContext};
+use super::surface::{PrincipledPart, PrincipledSurface};
 use crate::color::Channels;
 use glam::DVec3;
 use std::sync::Arc;
@@ -10,13 +10,13 @@ use std::sync::Arc;
 /// One of the parts of a surface, which share its tables.
 #[derive(Clone, Debug)]
 pub(in crate::illumination::optics) struct PrincipledLobe {
-    pub(in crate::illumination::optics) part: Part,
-    pub(in crate::illumination::optics) surface: Arc<Surface>,
+    pub(in crate::illumination::optics) part: PrincipledPart,
+    pub(in crate::illumination::optics) surface: Arc<PrincipledSurface>,
 }
 
 impl PrincipledLobe {
     fn is_clear(&self) -> bool {
-        self.part == Part::Facets && self.surface.is_mirror(self.part) && self.surface.transmits()
+        self.part == PrincipledPart::Facets && self.surface.is_mirror(self.part) && self.surface.transmits()
     }
 }
 
@@ -24,44 +24,44 @@ impl Lobe for PrincipledLobe {
     fn flags(&self) -> Flags {
         let PrincipledLobe { part, surface } = self;
         Flags::BROAD.when(surface.is_broad(*part, NARROW))
-            | Flags::DIFFUSE.when(*part == Part::Spread && !surface.transmits())
+            | Flags::DIFFUSE.when(*part == PrincipledPart::Spread && !surface.transmits())
             | Flags::DELTA.when(surface.is_mirror(*part))
             | Flags::CLEAR.when(self.is_clear())
-            | Flags::PANE.when(*part == Part::Facets && surface.is_pane())
+            | Flags::PANE.when(*part == PrincipledPart::Facets && surface.is_pane())
     }
 
-    fn value(&self, sighting: &Sighting, light: DVec3) -> Channels {
+    fn value(&self, sighting: &ShadingContext, light: DVec3) -> Channels {
         self.surface.value(self.part, sighting, light)
     }
 
-    fn density(&self, sighting: &Sighting, light: DVec3) -> f64 {
+    fn density(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
         self.surface.density(self.part, sighting, light)
     }
 
-    fn sample(&self, sighting: &Sighting, choice: f64, point: [f64; 2]) -> Option<Onward> {
+    fn sample(&self, sighting: &ShadingContext, choice: f64, point: [f64; 2]) -> Option<BsdfSample> {
         match self.surface.is_mirror(self.part) {
             true => self.surface.mirrored_sample(self.part, sighting, choice),
-            false => self.surface.sample(self.part, sighting, choice, point).map(Onward::spread),
+            false => self.surface.sample(self.part, sighting, choice, point).map(BsdfSample::spread),
         }
     }
 
-    fn strength(&self, sighting: &Sighting) -> f64 {
+    fn strength(&self, sighting: &ShadingContext) -> f64 {
         self.surface.strength(self.part, sighting)
     }
 
-    fn mirrored(&self, sighting: &Sighting) -> [Option<Onward>; 2] {
+    fn mirrored(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
         self.surface.mirrored(self.part, sighting)
     }
 
-    fn diffuse(&self, sighting: &Sighting) -> Channels {
+    fn diffuse(&self, sighting: &ShadingContext) -> Channels {
         self.surface.diffuse(self.part, sighting)
     }
 
-    fn shown(&self, sighting: &Sighting) -> Channels {
+    fn shown(&self, sighting: &ShadingContext) -> Channels {
         self.surface.shown(self.part, sighting)
     }
 
-    fn cleared(&self, sighting: &Sighting) -> Channels {
+    fn cleared(&self, sighting: &ShadingContext) -> Channels {
         if self.is_clear() { self.surface.straight(sighting) } else { Channels::ZERO }
     }
 }

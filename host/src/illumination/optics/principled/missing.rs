@@ -1,63 +1,63 @@
 //! What of all light is missing when facets have reflected and refracted once, and on which side it comes back.
 
-use super::super::sighting::Sighting;
-use super::albedo::{Seen, Shares};
-use super::surface::{At, Surface};
+use super::super::sighting::ShadingContext;
+use super::albedo::{InterfaceSide, DirectionalAlbedos};
+use super::surface::{PrincipledValues, PrincipledSurface};
 
 /// The part of all light that surfaces miss when facets have reflected and refracted once.
 #[derive(Clone, Copy)]
-pub(super) struct Missing {
+pub(super) struct MissingEnergy {
     pub(super) opaque: f64,
     pub(super) metal: f64,
     /// A transparent one, on the side that is meant.
     pub(super) clear: f64,
 }
 
-impl Surface {
+impl PrincipledSurface {
     /// What is missing at a cosine on a side.
-    pub(super) fn missing(&self, at: &At, seen: Seen, cosine: f64) -> Missing {
+    pub(super) fn missing(&self, at: &PrincipledValues, seen: InterfaceSide, cosine: f64) -> MissingEnergy {
         let [outside, side] = match seen {
-            Seen::Outside => [self.albedo.at(seen, cosine); 2],
-            Seen::Inside => [Seen::Outside, seen].map(|seen| self.albedo.at(seen, cosine)),
+            InterfaceSide::Outside => [self.albedo.at(seen, cosine); 2],
+            InterfaceSide::Inside => [InterfaceSide::Outside, seen].map(|seen| self.albedo.at(seen, cosine)),
         };
         self.missing_of(at, seen, &outside, &side)
     }
 
     /// The mean of [`Surface::missing`] over all directions, weighted with the cosine.
-    pub(super) fn mean_missing(&self, at: &At, seen: Seen) -> Missing {
-        self.missing_of(at, seen, self.albedo.mean(Seen::Outside), self.albedo.mean(seen))
+    pub(super) fn mean_missing(&self, at: &PrincipledValues, seen: InterfaceSide) -> MissingEnergy {
+        self.missing_of(at, seen, self.albedo.mean(InterfaceSide::Outside), self.albedo.mean(seen))
     }
 
     /// - `outside`: shares from outside. `side`: those on the side that is meant.
-    pub(super) fn missing_of(&self, at: &At, seen: Seen, outside: &Shares, side: &Shares) -> Missing {
+    pub(super) fn missing_of(&self, at: &PrincipledValues, seen: InterfaceSide, outside: &DirectionalAlbedos, side: &DirectionalAlbedos) -> MissingEnergy {
         let s = at.specular;
         // From inside, what is no transparent body has no coat.
-        let c = if seen == Seen::Outside { at.coat } else { 0.0 };
+        let c = if seen == InterfaceSide::Outside { at.coat } else { 0.0 };
         let metal = 1.0 - outside.all - c * (outside.coat - outside.all_coat);
         let opaque = 1.0 - s * outside.reflected - c * (outside.coat - s * outside.reflected_coat);
         let under_coat = match seen {
-            Seen::Outside => side.coat - side.sent_coat,
-            Seen::Inside => -side.sent_coat,
+            InterfaceSide::Outside => side.coat - side.sent_coat,
+            InterfaceSide::Inside => -side.sent_coat,
         };
         let clear = if self.thin { metal } else { 1.0 - side.sent - at.coat * under_coat };
-        Missing { opaque: opaque.max(0.0), metal: metal.max(0.0), clear: clear.max(0.0) }
+        MissingEnergy { opaque: opaque.max(0.0), metal: metal.max(0.0), clear: clear.max(0.0) }
     }
 
     /// Whether the media on both sides are those for which the tables were made.
-    pub(super) fn is_alone(&self, sighting: &Sighting, seen: Seen) -> bool {
+    pub(super) fn is_alone(&self, sighting: &ShadingContext, seen: InterfaceSide) -> bool {
         let [before, behind] = [sighting.side.before.0[0], sighting.side.behind.0[0]];
         match seen {
             _ if self.thin => true,
-            Seen::Outside => before == 1.0 && behind == self.index,
-            Seen::Inside => before == self.index && behind == 1.0,
+            InterfaceSide::Outside => before == 1.0 && behind == self.index,
+            InterfaceSide::Inside => before == self.index && behind == 1.0,
         }
     }
 
     /// The other side.
-    pub(super) fn beyond(&self, at: &At) -> Seen {
+    pub(super) fn beyond(&self, at: &PrincipledValues) -> InterfaceSide {
         match at.seen {
-            Seen::Outside if !self.thin => Seen::Inside,
-            _ => Seen::Outside,
+            InterfaceSide::Outside if !self.thin => InterfaceSide::Inside,
+            _ => InterfaceSide::Outside,
         }
     }
 
@@ -67,7 +67,7 @@ impl Surface {
     /// mean F of Fresnel's term: with it, light that goes to and fro is the same but for the square of the index.
     ///
     /// - `own`: the mean of what is missing on the side of the viewer.
-    pub(super) fn division(&self, at: &At, own: f64) -> [f64; 2] {
+    pub(super) fn division(&self, at: &PrincipledValues, own: f64) -> [f64; 2] {
         let fresnel = self.albedo.fresnel(at.seen, self.thin);
         let other = self.mean_missing(at, self.beyond(at)).clear;
         let goes = if own > 0.0 { (1.0 - fresnel) * (other / own).min(1.0) } else { 0.0 };

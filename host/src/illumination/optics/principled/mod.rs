@@ -26,4 +26,4 @@ mod lobe;
 mod tests;
 
 pub(super) use lobe::PrincipledLobe;
-pub(super) use surface::{Make, Part, Surface};
+pub(super) use surface::{PrincipledParameters, PrincipledPart, PrincipledSurface};

@@ -1,12 +1,12 @@
 //! The surface of a principled material: its parts, what each sends to a viewer, and how directions of light are drawn.
 
 use super::super::interface::{beta, interface, reflected};
-use super::super::shade::{Quantity, Shade};
-use super::super::sighting::{Onward, Sighting};
-use super::albedo::{Albedo, CoatAlbedo, Interface, Seen, pane};
+use super::super::shade::{PreparedNumber, PreparedPaint};
+use super::super::sighting::{BsdfSample, ShadingContext};
+use super::albedo::{Albedo, CoatAlbedo, AlbedoInterface, InterfaceSide, pane};
 use super::sheen::Sheen;
 use crate::color::Channels;
-use crate::illumination::distribution::{Distribution, Facets, Microfacet};
+use crate::illumination::distribution::{Distribution, SlopeDistribution, Microfacet};
 use crate::illumination::fresnel::Dielectric;
 use crate::illumination::material::MaterialError;
 use crate::numeric::sampling::cosine_hemisphere;
@@ -18,14 +18,14 @@ const LEAST_CHANCE: f64 = 0.05;
 
 /// A principled material of one roughness under a coat of one roughness, ready.
 #[derive(Debug)]
-pub(in crate::illumination::optics) struct Surface {
-    pub(super) base: Shade,
-    pub(super) sheen: Shade,
-    pub(super) sheen_roughness: Quantity,
-    pub(super) metallic: Quantity,
-    pub(super) specular: Quantity,
-    pub(super) transmission: Quantity,
-    pub(super) coat: Quantity,
+pub(in crate::illumination::optics) struct PrincipledSurface {
+    pub(super) base: PreparedPaint,
+    pub(super) sheen: PreparedPaint,
+    pub(super) sheen_roughness: PreparedNumber,
+    pub(super) metallic: PreparedNumber,
+    pub(super) specular: PreparedNumber,
+    pub(super) transmission: PreparedNumber,
+    pub(super) coat: PreparedNumber,
     /// From outside into the body.
     surface: Dielectric,
     pub(super) index: f64,
@@ -40,7 +40,7 @@ pub(in crate::illumination::optics) struct Surface {
 
 /// A part of what it scatters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::illumination::optics) enum Part {
+pub(in crate::illumination::optics) enum PrincipledPart {
     /// The rim of the cloth.
     Sheen,
     /// What the coat reflects.
@@ -52,8 +52,8 @@ pub(in crate::illumination::optics) enum Part {
 }
 
 /// The numbers of it at a place.
-pub(super) struct At {
-    pub(super) seen: Seen,
+pub(super) struct PrincipledValues {
+    pub(super) seen: InterfaceSide,
     pub(super) metallic: f64,
     pub(super) specular: f64,
     pub(super) transmission: f64,
@@ -65,7 +65,7 @@ pub(super) struct At {
 }
 
 /// What a facet sends on.
-pub(super) struct Fresnel {
+pub(super) struct FacetFresnel {
     /// Reflected by what is metal and by what is opaque.
     ground: Channels,
     /// Reflected by what is transparent.
@@ -75,7 +75,7 @@ pub(super) struct Fresnel {
 }
 
 /// What a principled surface is made of, beside what may change from place to place.
-pub(in crate::illumination::optics) struct Make {
+pub(in crate::illumination::optics) struct PrincipledParameters {
     /// Of the body and of the coat.
     pub(in crate::illumination::optics) index: f64,
     pub(in crate::illumination::optics) coat_index: f64,
@@ -88,7 +88,7 @@ pub(in crate::illumination::optics) struct Make {
     pub(in crate::illumination::optics) transmits: bool,
 }
 
-impl At {
+impl PrincipledValues {
     /// The part of it that is transparent.
     pub(super) fn clear(&self) -> f64 {
         (1.0 - self.metallic) * self.transmission
@@ -110,22 +110,22 @@ impl At {
     }
 }
 
-impl Surface {
+impl PrincipledSurface {
     /// # Errors
     /// [`MaterialError`] for an index or a roughness that is none.
     pub(in crate::illumination::optics) fn new(
-        make: &Make,
-        [base, sheen]: [Shade; 2],
-        [metallic, specular, transmission, coat, sheen_roughness]: [Quantity; 5],
-    ) -> Result<Surface, MaterialError> {
+        make: &PrincipledParameters,
+        [base, sheen]: [PreparedPaint; 2],
+        [metallic, specular, transmission, coat, sheen_roughness]: [PreparedNumber; 5],
+    ) -> Result<PrincipledSurface, MaterialError> {
         let surface = Dielectric::new(1.0, make.index)?;
         let coat_surface = Dielectric::new(1.0, make.coat_index)?;
-        let facets = |m: Option<f64>| m.map(|m| Microfacet::new(Facets::Ggx, DVec2::splat(m))).transpose();
+        let facets = |m: Option<f64>| m.map(|m| Microfacet::new(SlopeDistribution::Ggx, DVec2::splat(m))).transpose();
         let below =
-            make.has_coat.then(|| CoatAlbedo::new(Interface { roughness: make.coat_roughness, surface: coat_surface }));
+            make.has_coat.then(|| CoatAlbedo::new(AlbedoInterface { roughness: make.coat_roughness, surface: coat_surface }));
         let transmits = make.transmits && !make.thin;
-        let albedo = Albedo::new(Interface { roughness: make.roughness, surface }, below, transmits);
-        Ok(Surface {
+        let albedo = Albedo::new(AlbedoInterface { roughness: make.roughness, surface }, below, transmits);
+        Ok(PrincipledSurface {
             base,
             sheen,
             sheen_roughness,
@@ -143,11 +143,11 @@ impl Surface {
         })
     }
 
-    pub(super) fn at(&self, sighting: &Sighting) -> At {
+    pub(super) fn at(&self, sighting: &ShadingContext) -> PrincipledValues {
         let is_inside = sighting.side.inside && !self.thin;
-        let part = |quantity: Quantity| quantity.of(sighting).clamp(0.0, 1.0);
-        At {
-            seen: if is_inside { Seen::Inside } else { Seen::Outside },
+        let part = |quantity: PreparedNumber| quantity.of(sighting).clamp(0.0, 1.0);
+        PrincipledValues {
+            seen: if is_inside { InterfaceSide::Inside } else { InterfaceSide::Outside },
             metallic: part(self.metallic),
             specular: part(self.specular),
             transmission: part(self.transmission),
@@ -159,31 +159,31 @@ impl Surface {
     }
 
     /// Whether a part knows single directions only.
-    pub(super) fn is_mirror(&self, part: Part) -> bool {
+    pub(super) fn is_mirror(&self, part: PrincipledPart) -> bool {
         match part {
-            Part::Coat => self.coat_facets.is_none(),
-            Part::Facets => self.facets.is_none(),
-            Part::Sheen | Part::Spread => false,
+            PrincipledPart::Coat => self.coat_facets.is_none(),
+            PrincipledPart::Facets => self.facets.is_none(),
+            PrincipledPart::Sheen | PrincipledPart::Spread => false,
         }
     }
 
     /// Whether a part spreads light about everywhere.
     ///
     /// - `narrow`: the density from straight above from which on it is a beam, 1/sr.
-    pub(super) fn is_broad(&self, part: Part, narrow: f64) -> bool {
+    pub(super) fn is_broad(&self, part: PrincipledPart, narrow: f64) -> bool {
         let density = |facets: &Option<Microfacet>| {
             facets.as_ref().map_or(f64::INFINITY, |facets| facets.sample_density(DVec3::Z, DVec3::Z))
         };
         match part {
-            Part::Coat => density(&self.coat_facets) < narrow,
-            Part::Facets => density(&self.facets.map(|(facets, _)| facets)) < narrow,
-            Part::Sheen | Part::Spread => true,
+            PrincipledPart::Coat => density(&self.coat_facets) < narrow,
+            PrincipledPart::Facets => density(&self.facets.map(|(facets, _)| facets)) < narrow,
+            PrincipledPart::Sheen | PrincipledPart::Spread => true,
         }
     }
 
     /// Whether light may go through.
     pub(super) fn transmits(&self) -> bool {
-        !matches!(self.transmission, Quantity::Constant(0.0))
+        !matches!(self.transmission, PreparedNumber::Constant(0.0))
     }
 
     /// Whether light may go straight through.
@@ -192,25 +192,25 @@ impl Surface {
     }
 
     /// What a facet sends on at a cosine.
-    pub(super) fn fresnel(&self, at: &At, sighting: &Sighting, cosine: f64) -> Fresnel {
+    pub(super) fn fresnel(&self, at: &PrincipledValues, sighting: &ShadingContext, cosine: f64) -> FacetFresnel {
         let grazing = (1.0 - cosine.clamp(0.0, 1.0)).powi(5);
         let own = self.surface.reflectance(cosine).mean();
         let dielectric = at.opaque() * at.specular * own;
         let ground = at.base.map(|base| at.metallic * (base + (1.0 - base) * grazing) + dielectric);
         let part = at.clear();
         if part == 0.0 {
-            return Fresnel { ground, clear: Channels::ZERO, through: Channels::ZERO };
+            return FacetFresnel { ground, clear: Channels::ZERO, through: Channels::ZERO };
         }
         let (clear, tint) = match self.thin {
             true => (Channels::splat(pane(own)), at.base),
             // Light comes through twice, on its way in and out.
             false => (reflected(sighting, cosine), at.base.map(f64::sqrt)),
         };
-        Fresnel { ground, clear: clear * part, through: clear.map(|clear| part * (1.0 - clear)) * tint }
+        FacetFresnel { ground, clear: clear * part, through: clear.map(|clear| part * (1.0 - clear)) * tint }
     }
 
     /// The chance that a facet is taken to reflect.
-    pub(super) fn chance(&self, fresnel: &Fresnel) -> f64 {
+    pub(super) fn chance(&self, fresnel: &FacetFresnel) -> f64 {
         let (reflects, through) = ((fresnel.ground + fresnel.clear).max(), fresnel.through.max());
         match (reflects > 0.0, through > 0.0) {
             (_, false) => 1.0,
@@ -222,12 +222,12 @@ impl Surface {
     /// What the coat leaves of what facets send.
     ///
     /// - `cosine`: of the viewer or the light, whichever is outside and nearer to the surface.
-    fn under(&self, at: &At, cosine: f64) -> f64 {
+    fn under(&self, at: &PrincipledValues, cosine: f64) -> f64 {
         if at.coat > 0.0 { 1.0 - at.coat * self.albedo.coat(cosine) } else { 1.0 }
     }
 
     /// Where a facet would have to look to send light to the viewer, through or not.
-    pub(super) fn facet(&self, sighting: &Sighting, light: DVec3) -> Option<DVec3> {
+    pub(super) fn facet(&self, sighting: &ShadingContext, light: DVec3) -> Option<DVec3> {
         let view = sighting.view;
         let facet = if light.z > 0.0 {
             light + view
@@ -244,7 +244,7 @@ impl Surface {
     }
 
     /// How much of the directions around a facet goes to one solid angle of light.
-    fn jacobian(&self, sighting: &Sighting, light: DVec3, facet: DVec3) -> f64 {
+    fn jacobian(&self, sighting: &ShadingContext, light: DVec3, facet: DVec3) -> f64 {
         let to_view = facet.dot(sighting.view);
         if light.z > 0.0 || self.thin {
             return 0.25 / to_view;
@@ -257,19 +257,19 @@ impl Surface {
     }
 
     /// Radiance towards the viewer for a unit of flux density, 1/sr.
-    pub(super) fn value(&self, part: Part, sighting: &Sighting, light: DVec3) -> Channels {
+    pub(super) fn value(&self, part: PrincipledPart, sighting: &ShadingContext, light: DVec3) -> Channels {
         let view = sighting.view;
         if view.z <= 0.0 || light.z == 0.0 {
             return Channels::ZERO;
         }
         let at = self.at(sighting);
         let value = match part {
-            Part::Facets => self.once(&at, sighting, light),
-            Part::Spread if light.z < 0.0 => self.spread_through(&at, sighting, light),
-            Part::Spread => self.spread(&at, sighting, light),
-            _ if light.z < 0.0 || at.seen == Seen::Inside => Channels::ZERO,
-            Part::Sheen => at.cloth * ((1.0 - at.clear()) * at.rim.value(view.z, light.z)),
-            Part::Coat => match self.coat_facets.as_ref().zip((light + view).try_normalize()) {
+            PrincipledPart::Facets => self.once(&at, sighting, light),
+            PrincipledPart::Spread if light.z < 0.0 => self.spread_through(&at, sighting, light),
+            PrincipledPart::Spread => self.spread(&at, sighting, light),
+            _ if light.z < 0.0 || at.seen == InterfaceSide::Inside => Channels::ZERO,
+            PrincipledPart::Sheen => at.cloth * ((1.0 - at.clear()) * at.rim.value(view.z, light.z)),
+            PrincipledPart::Coat => match self.coat_facets.as_ref().zip((light + view).try_normalize()) {
                 Some((facets, half)) => {
                     let fresnel = self.coat_surface.reflectance(half.dot(view)).mean();
                     self.beside_cloth(&at) * (at.coat * fresnel * facets.density(light, view) / view.z)
@@ -281,39 +281,39 @@ impl Surface {
     }
 
     /// What is no cloth.
-    fn beside_cloth(&self, at: &At) -> Channels {
+    fn beside_cloth(&self, at: &PrincipledValues) -> Channels {
         Channels::ONE - at.cloth * (1.0 - at.clear())
     }
 
     /// What facets send to the viewer by one reflection or refraction.
-    fn once(&self, at: &At, sighting: &Sighting, light: DVec3) -> Channels {
+    fn once(&self, at: &PrincipledValues, sighting: &ShadingContext, light: DVec3) -> Channels {
         let view = sighting.view;
         let Some(((facets, m), facet)) = self.facets.as_ref().zip(self.facet(sighting, light)) else {
             return Channels::ZERO;
         };
-        let Fresnel { ground, clear, through } = self.fresnel(at, sighting, facet.dot(view));
+        let FacetFresnel { ground, clear, through } = self.fresnel(at, sighting, facet.dot(view));
         let above = DVec3::new(light.x, light.y, light.z.abs());
         if light.z > 0.0 || self.thin {
-            let is_inside = at.seen == Seen::Inside;
+            let is_inside = at.seen == InterfaceSide::Inside;
             let under = if is_inside { 1.0 } else { self.under(at, view.z.min(above.z)) };
             let sent = if light.z > 0.0 { ground * (Channels::ONE - at.cloth) + clear } else { through };
             return sent * (under * facets.density(above, view) / view.z);
         }
-        let [l, v] = [above, view].map(|towards| Facets::Ggx.projected(towards, *m) / towards.z);
+        let [l, v] = [above, view].map(|towards| SlopeDistribution::Ggx.projected(towards, *m) / towards.z);
         // Above and below, one hides what the other does not.
         let masking = beta(v, l) / (view.z * above.z);
-        let under = self.under(at, if at.seen == Seen::Outside { view.z } else { above.z });
-        let density = Facets::Ggx.area(facet, *m) * facet.dot(view) * self.jacobian(sighting, light, facet);
+        let under = self.under(at, if at.seen == InterfaceSide::Outside { view.z } else { above.z });
+        let density = SlopeDistribution::Ggx.area(facet, *m) * facet.dot(view) * self.jacobian(sighting, light, facet);
         through * (density * masking * thinned(sighting) * under)
     }
 
     /// What is spread alike on the side of the viewer: colors, and what is missing.
-    fn spread(&self, at: &At, sighting: &Sighting, light: DVec3) -> Channels {
+    fn spread(&self, at: &PrincipledValues, sighting: &ShadingContext, light: DVec3) -> Channels {
         let [from, to] = [sighting.view.z, light.z].map(|cosine| self.missing(at, at.seen, cosine));
         let mean = self.mean_missing(at, at.seen);
         let mut value = at.base * (at.opaque() * over(from.opaque * to.opaque, mean.opaque));
         if at.metallic > 0.0 {
-            let further = at.further(self.albedo.mean(Seen::Outside).all);
+            let further = at.further(self.albedo.mean(InterfaceSide::Outside).all);
             value += further * (at.metallic * over(from.metal * to.metal, mean.metal));
         }
         let ground = at.rim.ground(sighting.view.z, light.z);
@@ -326,7 +326,7 @@ impl Surface {
     }
 
     /// What is missing and comes from the other side, spread alike.
-    fn spread_through(&self, at: &At, sighting: &Sighting, light: DVec3) -> Channels {
+    fn spread_through(&self, at: &PrincipledValues, sighting: &ShadingContext, light: DVec3) -> Channels {
         if at.clear() == 0.0 || !self.is_alone(sighting, at.seen) {
             return Channels::ZERO;
         }
@@ -339,39 +339,39 @@ impl Surface {
     }
 
     /// The density of samples, 1/sr.
-    pub(super) fn density(&self, part: Part, sighting: &Sighting, light: DVec3) -> f64 {
+    pub(super) fn density(&self, part: PrincipledPart, sighting: &ShadingContext, light: DVec3) -> f64 {
         let view = sighting.view;
         if view.z <= 0.0 || light.z == 0.0 {
             return 0.0;
         }
         let density = match part {
-            Part::Facets => {
+            PrincipledPart::Facets => {
                 let Some(((_, m), facet)) = self.facets.as_ref().zip(self.facet(sighting, light)) else { return 0.0 };
                 let at = self.at(sighting);
                 let chance = self.chance(&self.fresnel(&at, sighting, facet.dot(view)));
                 let chance = if light.z > 0.0 { chance } else { 1.0 - chance };
-                let seen = facet.dot(view) * Facets::Ggx.area(facet, *m) / Facets::Ggx.projected(view, *m);
+                let seen = facet.dot(view) * SlopeDistribution::Ggx.area(facet, *m) / SlopeDistribution::Ggx.projected(view, *m);
                 chance * seen * self.jacobian(sighting, light, facet)
             }
-            Part::Spread => {
+            PrincipledPart::Spread => {
                 let [above, below] = self.spread_shares(&self.at(sighting), sighting);
                 let share = if light.z > 0.0 { above } else { below };
                 if share > 0.0 { share / (above + below) * light.z.abs() * FRAC_1_PI } else { 0.0 }
             }
             _ if light.z < 0.0 => 0.0,
-            Part::Sheen => self.at(sighting).rim.density(light.z),
-            Part::Coat => self.coat_facets.as_ref().map_or(0.0, |facets| facets.sample_density(view, light)),
+            PrincipledPart::Sheen => self.at(sighting).rim.density(light.z),
+            PrincipledPart::Coat => self.coat_facets.as_ref().map_or(0.0, |facets| facets.sample_density(view, light)),
         };
         if density.is_finite() { density } else { 0.0 }
     }
 
     /// Draws a direction of light.
-    pub(super) fn sample(&self, part: Part, sighting: &Sighting, choice: f64, point: [f64; 2]) -> Option<DVec3> {
+    pub(super) fn sample(&self, part: PrincipledPart, sighting: &ShadingContext, choice: f64, point: [f64; 2]) -> Option<DVec3> {
         let view = sighting.view;
         match part {
-            Part::Facets => {
+            PrincipledPart::Facets => {
                 let (_, m) = self.facets.as_ref()?;
-                let facet = Facets::Ggx.visible(view, *m, point)?;
+                let facet = SlopeDistribution::Ggx.visible(view, *m, point)?;
                 let cosine = facet.dot(view);
                 if cosine <= 0.0 {
                     return None;
@@ -386,21 +386,21 @@ impl Surface {
                     interface(sighting, sighting.lane)?.refracted(view, facet).filter(|light| light.z < 0.0)
                 }
             }
-            Part::Spread => {
+            PrincipledPart::Spread => {
                 let [above, below] = self.spread_shares(&self.at(sighting), sighting);
                 let light = cosine_hemisphere(point, DVec3::Z);
                 let is_above = choice * (above + below) < above;
                 Some(if is_above { light } else { -light }).filter(|light| light.z != 0.0)
             }
-            Part::Sheen => Some(self.at(sighting).rim.sample(point)).filter(|light| light.z > 0.0),
-            Part::Coat => self.coat_facets.as_ref()?.sample(view, point),
+            PrincipledPart::Sheen => Some(self.at(sighting).rim.sample(point)).filter(|light| light.z > 0.0),
+            PrincipledPart::Coat => self.coat_facets.as_ref()?.sample(view, point),
         }
     }
 
     /// How much is spread alike to the viewer from above, and from below.
-    pub(super) fn spread_shares(&self, at: &At, sighting: &Sighting) -> [f64; 2] {
+    pub(super) fn spread_shares(&self, at: &PrincipledValues, sighting: &ShadingContext) -> [f64; 2] {
         let missing = self.missing(at, at.seen, sighting.view.z);
-        let further = if at.metallic > 0.0 { at.further(self.albedo.mean(Seen::Outside).all).max() } else { 0.0 };
+        let further = if at.metallic > 0.0 { at.further(self.albedo.mean(InterfaceSide::Outside).all).max() } else { 0.0 };
         let color = at.base.max();
         let cloth = at.cloth.max() * (1.0 - at.clear()) * (1.0 - at.rim.albedo(sighting.view.z));
         let above = at.opaque() * color * missing.opaque + at.metallic * further * missing.metal + cloth * color;
@@ -412,62 +412,62 @@ impl Surface {
     }
 
     /// Single directions of a part: what is reflected, and what comes through.
-    pub(super) fn mirrored(&self, part: Part, sighting: &Sighting) -> [Option<Onward>; 2] {
+    pub(super) fn mirrored(&self, part: PrincipledPart, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
         if !self.is_mirror(part) {
             return [None, None];
         }
         let view = sighting.view;
         let at = self.at(sighting);
         let light = DVec3::new(-view.x, -view.y, view.z);
-        if part == Part::Coat {
-            let part = if at.seen == Seen::Inside { 0.0 } else { at.coat };
+        if part == PrincipledPart::Coat {
+            let part = if at.seen == InterfaceSide::Inside { 0.0 } else { at.coat };
             let fresnel = self.coat_surface.reflectance(view.z).mean();
-            return [Some(Onward::single(light, self.beside_cloth(&at) * (part * fresnel))), None];
+            return [Some(BsdfSample::single(light, self.beside_cloth(&at) * (part * fresnel))), None];
         }
-        let Fresnel { ground, clear, through } = self.fresnel(&at, sighting, view.z);
-        let under = if at.seen == Seen::Inside { 1.0 } else { self.under(&at, view.z) };
+        let FacetFresnel { ground, clear, through } = self.fresnel(&at, sighting, view.z);
+        let under = if at.seen == InterfaceSide::Inside { 1.0 } else { self.under(&at, view.z) };
         let reflects = (ground * (Channels::ONE - at.cloth) + clear) * under;
-        let reflection = Some(Onward::single(light, reflects)).filter(|onward| onward.weight.max() > 0.0);
+        let reflection = Some(BsdfSample::single(light, reflects)).filter(|onward| onward.weight.max() > 0.0);
         if self.thin {
-            let straight = Onward { is_straight: true, ..Onward::single(-view, through * under) };
+            let straight = BsdfSample { is_straight: true, ..BsdfSample::single(-view, through * under) };
             return [reflection, Some(straight).filter(|onward| onward.weight.max() > 0.0)];
         }
         let refracted = interface(sighting, sighting.lane).and_then(|surface| surface.refracted(view, DVec3::Z));
         let refraction = refracted.filter(|light| light.z < 0.0).map(|light| {
-            let outside = if at.seen == Seen::Outside { view.z } else { -light.z };
-            Onward::single(light, through * (self.under(&at, outside) * thinned(sighting)))
+            let outside = if at.seen == InterfaceSide::Outside { view.z } else { -light.z };
+            BsdfSample::single(light, through * (self.under(&at, outside) * thinned(sighting)))
         });
         [reflection, refraction.filter(|onward| onward.weight.max() > 0.0)]
     }
 
     /// What comes through a polished surface, as if it were not bent.
-    pub(in crate::illumination::optics) fn straight(&self, sighting: &Sighting) -> Channels {
+    pub(in crate::illumination::optics) fn straight(&self, sighting: &ShadingContext) -> Channels {
         let at = self.at(sighting);
         self.fresnel(&at, sighting, sighting.view.z).through * self.under(&at, sighting.view.z)
     }
 
     /// One of the single directions, by its part.
-    pub(super) fn mirrored_sample(&self, part: Part, sighting: &Sighting, choice: f64) -> Option<Onward> {
+    pub(super) fn mirrored_sample(&self, part: PrincipledPart, sighting: &ShadingContext, choice: f64) -> Option<BsdfSample> {
         let [reflection, through] = self.mirrored(part, sighting);
         let (Some(reflection), Some(through)) = (reflection, through) else { return reflection.or(through) };
         let chance = reflection.weight.max() / (reflection.weight.max() + through.weight.max());
         let chance = chance.clamp(LEAST_CHANCE, 1.0 - LEAST_CHANCE);
         let (onward, chance) = if choice < chance { (reflection, chance) } else { (through, 1.0 - chance) };
-        Some(Onward { weight: onward.weight * chance.recip(), ..onward })
+        Some(BsdfSample { weight: onward.weight * chance.recip(), ..onward })
     }
 
     /// About what a part sends to the viewer of all the light; more than 0 where it sends anything.
-    pub(super) fn strength(&self, part: Part, sighting: &Sighting) -> f64 {
+    pub(super) fn strength(&self, part: PrincipledPart, sighting: &ShadingContext) -> f64 {
         let at = self.at(sighting);
         let cosine = sighting.view.z.clamp(0.0, 1.0);
-        let is_inside = at.seen == Seen::Inside;
+        let is_inside = at.seen == InterfaceSide::Inside;
         match part {
-            Part::Sheen => at.cloth.max() * (1.0 - at.clear()) * at.rim.albedo(cosine),
-            Part::Coat if is_inside => 0.0,
-            Part::Coat => at.coat * self.albedo.coat(cosine),
-            Part::Spread => self.spread_shares(&at, sighting).into_iter().sum(),
-            Part::Facets => {
-                let outside = self.albedo.at(Seen::Outside, cosine);
+            PrincipledPart::Sheen => at.cloth.max() * (1.0 - at.clear()) * at.rim.albedo(cosine),
+            PrincipledPart::Coat if is_inside => 0.0,
+            PrincipledPart::Coat => at.coat * self.albedo.coat(cosine),
+            PrincipledPart::Spread => self.spread_shares(&at, sighting).into_iter().sum(),
+            PrincipledPart::Facets => {
+                let outside = self.albedo.at(InterfaceSide::Outside, cosine);
                 let base = at.base.max();
                 let grazing = (1.0 - cosine).powi(5);
                 let metal = at.metallic * (base + (1.0 - base) * grazing) * outside.all;
@@ -480,13 +480,13 @@ impl Surface {
     }
 
     /// About what a part shows of what is around.
-    pub(super) fn shown(&self, part: Part, sighting: &Sighting) -> Channels {
+    pub(super) fn shown(&self, part: PrincipledPart, sighting: &ShadingContext) -> Channels {
         let at = self.at(sighting);
         let cosine = sighting.view.z.clamp(0.0, 1.0);
         match part {
-            Part::Coat if at.seen == Seen::Outside => self.beside_cloth(&at) * (at.coat * self.albedo.coat(cosine)),
-            Part::Facets => {
-                let Fresnel { ground, clear, .. } = self.fresnel(&at, sighting, cosine);
+            PrincipledPart::Coat if at.seen == InterfaceSide::Outside => self.beside_cloth(&at) * (at.coat * self.albedo.coat(cosine)),
+            PrincipledPart::Facets => {
+                let FacetFresnel { ground, clear, .. } = self.fresnel(&at, sighting, cosine);
                 (ground * (Channels::ONE - at.cloth) + clear) * self.under(&at, cosine)
             }
             _ => Channels::ZERO,
@@ -494,15 +494,15 @@ impl Surface {
     }
 
     /// The part of light from all around that is reflected alike to everywhere.
-    pub(super) fn diffuse(&self, part: Part, sighting: &Sighting) -> Channels {
-        if part != Part::Spread {
+    pub(super) fn diffuse(&self, part: PrincipledPart, sighting: &ShadingContext) -> Channels {
+        if part != PrincipledPart::Spread {
             return Channels::ZERO;
         }
         let at = self.at(sighting);
         let mean = self.mean_missing(&at, at.seen);
         let mut diffuse = at.base * (at.opaque() * mean.opaque);
         if at.metallic > 0.0 {
-            diffuse += at.further(self.albedo.mean(Seen::Outside).all) * (at.metallic * mean.metal);
+            diffuse += at.further(self.albedo.mean(InterfaceSide::Outside).all) * (at.metallic * mean.metal);
         }
         let ground = (1.0 - at.clear()) * (1.0 - at.rim.mean());
         diffuse * (Channels::ONE - at.cloth) + at.cloth * at.base * ground
@@ -515,6 +515,6 @@ fn over(value: f64, mean: f64) -> f64 {
 }
 
 /// By how much radiance falls as it leaves what is behind.
-fn thinned(sighting: &Sighting) -> f64 {
+fn thinned(sighting: &ShadingContext) -> f64 {
     (sighting.side.before.0[sighting.lane] / sighting.side.behind.0[sighting.lane]).powi(2)
 }

@@ -1,13 +1,13 @@
 //! Facts about the principled material: furnaces over all of its numbers, samples against densities, light to and fro.
 
-use super::super::shade::{Quantity, Shade};
-use super::super::sighting::Sighting;
+use super::super::shade::{PreparedNumber, PreparedPaint};
+use super::super::sighting::ShadingContext;
 use super::surface::*;
 use crate::color::Channels;
-use crate::color::Wavelengths;
-use crate::illumination::optics::Side;
+use crate::color::WavelengthSets;
+use crate::illumination::optics::InterfaceIndices;
 use crate::numeric::cubature::unit_square;
-use crate::numeric::sampling::{Stream, sphere};
+use crate::numeric::sampling::{RandomStream, sphere};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -40,10 +40,10 @@ const PLAIN: Numbers = Numbers {
     sheen_roughness: 0.3,
 };
 
-fn surface(numbers: &Numbers, base: f64) -> Surface {
-    let wavelengths = Wavelengths::bands();
+fn surface(numbers: &Numbers, base: f64) -> PrincipledSurface {
+    let wavelengths = WavelengthSets::bands();
     let slope = |roughness: f64| (roughness > 0.0).then_some(roughness * roughness);
-    let make = Make {
+    let make = PrincipledParameters {
         index: numbers.index,
         coat_index: 1.5,
         roughness: slope(numbers.roughness),
@@ -52,19 +52,19 @@ fn surface(numbers: &Numbers, base: f64) -> Surface {
         has_coat: numbers.coat > 0.0,
         transmits: numbers.transmission > 0.0,
     };
-    let colors = [base, numbers.sheen].map(|value| Shade::Plain(wavelengths.constant(value)));
+    let colors = [base, numbers.sheen].map(|value| PreparedPaint::Plain(wavelengths.constant(value)));
     let Numbers { metallic, specular, transmission, coat, sheen_roughness, .. } = *numbers;
-    let numbers = [metallic, specular, transmission, coat, sheen_roughness].map(Quantity::Constant);
-    Surface::new(&make, colors, numbers).expect("possible numbers")
+    let numbers = [metallic, specular, transmission, coat, sheen_roughness].map(PreparedNumber::Constant);
+    PrincipledSurface::new(&make, colors, numbers).expect("possible numbers")
 }
 
-fn sighting(numbers: &Numbers, view: DVec3, inside: bool) -> Sighting<'static> {
+fn sighting(numbers: &Numbers, view: DVec3, inside: bool) -> ShadingContext<'static> {
     let [air, body] = [1.0, if numbers.thin { 1.0 } else { numbers.index }].map(Channels::splat);
     let side = match inside {
-        false => Side { before: air, behind: body, inside },
-        true => Side { before: body, behind: air, inside },
+        false => InterfaceIndices { before: air, behind: body, inside },
+        true => InterfaceIndices { before: body, behind: air, inside },
     };
-    Sighting { view, comb: 0, side, lane: 0, painted: &[] }
+    ShadingContext { view, comb: 0, side, lane: 0, painted: &[] }
 }
 
 fn at(degrees: f64) -> DVec3 {
@@ -73,18 +73,18 @@ fn at(degrees: f64) -> DVec3 {
 }
 
 /// Light that comes to the viewer of a radiance of 1 from all around, times the square of the index where it is.
-fn furnace(surface: &Surface, sighting: &Sighting) -> f64 {
+fn furnace(surface: &PrincipledSurface, sighting: &ShadingContext) -> f64 {
     let grown = (sighting.side.behind.0[0] / sighting.side.before.0[0]).powi(2);
     let counted =
         |light: DVec3, weight: f64, straight: bool| if light.z < 0.0 && !straight { weight * grown } else { weight };
     let mut sum = 0.0;
-    for part in [Part::Coat, Part::Facets] {
+    for part in [PrincipledPart::Coat, PrincipledPart::Facets] {
         for onward in surface.mirrored(part, sighting).into_iter().flatten() {
             sum += counted(onward.light, onward.weight.0[0], onward.is_straight);
         }
     }
     let at = surface.at(sighting);
-    for part in [Part::Sheen, Part::Coat, Part::Facets, Part::Spread] {
+    for part in [PrincipledPart::Sheen, PrincipledPart::Coat, PrincipledPart::Facets, PrincipledPart::Spread] {
         if surface.is_mirror(part) {
             continue;
         }
@@ -93,7 +93,7 @@ fn furnace(surface: &Surface, sighting: &Sighting) -> f64 {
             let term = |point: [f64; 2]| {
                 let Some(light) = surface.sample(part, sighting, choice, point) else { return 0.0 };
                 let is_asked = match part {
-                    Part::Facets | Part::Spread => (light.z > 0.0) == (choice == 0.0),
+                    PrincipledPart::Facets | PrincipledPart::Spread => (light.z > 0.0) == (choice == 0.0),
                     _ => choice == 0.0,
                 };
                 let density = surface.density(part, sighting, light);
@@ -101,12 +101,12 @@ fn furnace(surface: &Surface, sighting: &Sighting) -> f64 {
                     return 0.0;
                 }
                 let chance = match part {
-                    Part::Facets => {
+                    PrincipledPart::Facets => {
                         let facet = surface.facet(sighting, light).map_or(1.0, |facet| facet.dot(sighting.view));
                         let above = surface.chance(&surface.fresnel(&at, sighting, facet));
                         if light.z > 0.0 { above } else { 1.0 - above }
                     }
-                    Part::Spread => {
+                    PrincipledPart::Spread => {
                         let [above, below] = surface.spread_shares(&at, sighting);
                         if light.z > 0.0 { above / (above + below) } else { below / (above + below) }
                     }
@@ -124,7 +124,7 @@ fn furnace(surface: &Surface, sighting: &Sighting) -> f64 {
 #[test]
 fn a_white_one_returns_all_light_whatever_its_numbers_are() {
     // Numbers at random, the ends of their ranges often; `PERIS_LONG` takes many more.
-    let mut stream = Stream::new(11, 3);
+    let mut stream = RandomStream::new(11, 3);
     let mut any = |ends: [f64; 2]| {
         let [pick, value] = stream.point();
         let at = if pick < 0.3 {
@@ -185,7 +185,7 @@ fn a_grey_one_never_gains() {
 
 #[test]
 fn light_to_and_fro_is_the_same() {
-    let mut stream = Stream::new(5, 5);
+    let mut stream = RandomStream::new(5, 5);
     for numbers in [
         Numbers { metallic: 0.4, coat: 0.7, coat_roughness: 0.3, sheen: 0.3, ..PLAIN },
         Numbers { transmission: 0.8, roughness: 0.6, coat: 0.5, coat_roughness: 0.5, ..PLAIN },
@@ -198,7 +198,7 @@ fn light_to_and_fro_is_the_same() {
             // From below, the surface is seen from inside, upside down.
             let turned = |v: DVec3| DVec3::new(v.x, v.y, -v.z);
             let [mut there, mut back] = [0.0; 2];
-            for part in [Part::Sheen, Part::Coat, Part::Facets, Part::Spread] {
+            for part in [PrincipledPart::Sheen, PrincipledPart::Coat, PrincipledPart::Facets, PrincipledPart::Spread] {
                 let of = sighting(&numbers, view, false);
                 there +=
                     surface.value(part, &of, light).0[0] * of.side.behind.0[0].powi(if light.z < 0.0 { 2 } else { 0 });
@@ -232,13 +232,13 @@ fn samples_follow_their_density_by_chi_squared() {
     ] {
         let surface = surface(&numbers, 0.8);
         let of = sighting(&numbers, at(50.0), inside);
-        for part in [Part::Sheen, Part::Coat, Part::Facets, Part::Spread] {
+        for part in [PrincipledPart::Sheen, PrincipledPart::Coat, PrincipledPart::Facets, PrincipledPart::Spread] {
             if surface.is_mirror(part) || surface.strength(part, &of) <= 0.0 {
                 continue;
             }
             let count = 30_000;
             let mut found = [0.0; ROWS * COLUMNS];
-            let mut stream = Stream::new(17, part as u64);
+            let mut stream = RandomStream::new(17, part as u64);
             for _ in 0..count {
                 if let Some(light) = surface.sample(part, &of, stream.uniform(), stream.point()) {
                     found[place(light)] += 1.0;
@@ -284,14 +284,14 @@ fn a_polished_one_is_the_limit_of_smooth_ones() {
         let [a, b] = [&polished, &smooth].map(|surface| furnace(surface, &of));
         assert!((a - b).abs() < 2e-3, "at {degrees}: {a} {b}");
         let light = at(20.0);
-        let [a, b] = [&polished, &smooth].map(|surface| surface.value(Part::Spread, &of, light).0[0]);
+        let [a, b] = [&polished, &smooth].map(|surface| surface.value(PrincipledPart::Spread, &of, light).0[0]);
         assert!((a / b - 1.0).abs() < 0.01, "at {degrees}: {a} {b}");
     }
 }
 
 #[test]
 fn nothing_is_infinite_at_the_ends() {
-    let mut stream = Stream::new(2, 9);
+    let mut stream = RandomStream::new(2, 9);
     for numbers in [
         Numbers { roughness: 1e-3, transmission: 0.5, ..PLAIN },
         Numbers { roughness: 1.0, index: 1.0, transmission: 1.0, ..PLAIN },
@@ -305,7 +305,7 @@ fn nothing_is_infinite_at_the_ends() {
             let grazing = if stream.uniform() < 0.3 { 1e-9 } else { 1.0 };
             let view = DVec3::new(view.x, view.y, view.z.abs() * grazing + 1e-12).normalize();
             let of = sighting(&numbers, view, false);
-            for part in [Part::Sheen, Part::Coat, Part::Facets, Part::Spread] {
+            for part in [PrincipledPart::Sheen, PrincipledPart::Coat, PrincipledPart::Facets, PrincipledPart::Spread] {
                 let strength = surface.strength(part, &of);
                 assert!(strength.is_finite() && strength >= 0.0, "{numbers:?} {part:?} {strength}");
                 let light = sphere(stream.point());
