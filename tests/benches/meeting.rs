@@ -98,7 +98,7 @@ fn curves(meeting: &Meeting, most: usize) {
     for &chord in CHORDS.iter().take(most) {
         let [one, two] = (meeting.bodies)().expect("the bodies are sound");
         let made = |body: Body| body.solid(Tolerance::new(chord, 45.0)).expect("the tolerance can be met");
-        let (one, two) = (made(one), made(two).placed(&meeting.at).expect("a rigid motion spoils nothing"));
+        let (one, two) = (made(one), made(two).transformed(&meeting.at).expect("a rigid motion spoils nothing"));
         let run = || intersect(ExactSheet::from(&one), ExactSheet::from(&two), &CurvePrecision::default());
         let (seconds, found) = best(run);
         let residual = prove(meeting, &found);

@@ -68,13 +68,13 @@ fn whole(mesh: &Mesh) {
         .collect();
     let corners = |triangle: u32| mesh.corners(triangle as usize);
     let count = |side: &dyn Fn(DVec3) -> Containment| points.iter().filter(|&&p| side(p) == Containment::Inside).count();
-    let (by_octree, by_sorted) = (count(&|p| octree.side(p)), count(&|p| sorted.side(p, corners)));
+    let (by_octree, by_sorted) = (count(&|p| octree.containment(p)), count(&|p| sorted.containment(p, corners)));
     assert_eq!(by_octree, by_sorted, "both structures say the same");
     let thousand = points.len() as f64 / 1e3;
     println!(
         "  inside test, microseconds a point, one thread: octree {:.2}, sorted {:.2}; {by_octree} of {} points inside\n",
-        least(|| count(&|p| octree.side(p))) / thousand,
-        least(|| count(&|p| sorted.side(p, corners))) / thousand,
+        least(|| count(&|p| octree.containment(p))) / thousand,
+        least(|| count(&|p| sorted.containment(p, corners))) / thousand,
         points.len()
     );
 }

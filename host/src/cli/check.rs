@@ -45,7 +45,7 @@ fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     if arguments.json {
         say::report(as_json(mesh, &loops, &verdict, repaired.as_ref()));
     } else {
-        tell(mesh, &loops);
+        report(mesh, &loops);
         if verdict.is_ok() {
             say!("a solid");
         }
@@ -55,7 +55,7 @@ fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     }
     let outcome = match (repaired, destination) {
         (Some(Ok((_, repair))), Some(destination)) if repair.is_nothing() => {
-            keep(&arguments.mesh, &grouped, &destination)?;
+            save(&arguments.mesh, &grouped, &destination)?;
             Ok(())
         }
         (Some(Ok((solid, _))), Some(destination)) => {
@@ -69,7 +69,7 @@ fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
 }
 
 /// Writes a mesh that is a solid already: the same bytes if the format is the same and the file stands alone.
-fn keep(path: &Path, grouped: &Grouped, destination: &Destination) -> Result<(), CommandFailure> {
+fn save(path: &Path, grouped: &Grouped, destination: &Destination) -> Result<(), CommandFailure> {
     let format = Format::of(path);
     if format != Format::of(destination.path()) || format == Some(Format::Gltf) {
         return Ok(mesh::write_grouped(grouped, destination)?);
@@ -78,7 +78,7 @@ fn keep(path: &Path, grouped: &Grouped, destination: &Destination) -> Result<(),
     Ok(destination.write_or_keep(|file| file.write_all(&bytes))?)
 }
 
-fn tell(mesh: &Mesh, loops: &[BoundaryLoop]) {
+fn report(mesh: &Mesh, loops: &[BoundaryLoop]) {
     let report = mesh.edge_report();
     say!("vertices                {}", report.vertices);
     say!("triangles               {}", report.triangles);

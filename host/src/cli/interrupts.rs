@@ -16,10 +16,10 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 /// How long a thread that wanted too much memory waits for the one that says so.
-const PATIENCE: Duration = Duration::from_secs(1);
+const REPORT_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// Bytes that were wanted beyond the limit; 0 before that.
-static WANTED: AtomicU64 = AtomicU64::new(0);
+static EXCESS_BYTES: AtomicU64 = AtomicU64::new(0);
 static STATE: Mutex<State> = Mutex::new(State { keepers: 0, kept: String::new() });
 
 struct State {
@@ -57,7 +57,7 @@ pub(super) fn begin(name: &str, most: Option<u64>) {
 
 fn serve(mut signals: Signals, name: &str) {
     for signal in signals.forever() {
-        let wanted = WANTED.load(Ordering::Relaxed);
+        let wanted = EXCESS_BYTES.load(Ordering::Relaxed);
         if signal == SIGUSR1 && wanted == 0 {
             continue;
         }
@@ -94,15 +94,15 @@ fn end(name: &str, event: &str, hint: &str, state: &State, exit: Exit) -> ! {
 ///
 /// The thread that wants it may hold any lock, so another one speaks.
 fn end_for_memory(wanted: u64) -> ! {
-    WANTED.store(wanted.max(1), Ordering::Relaxed);
+    EXCESS_BYTES.store(wanted.max(1), Ordering::Relaxed);
     if signal_hook::low_level::raise(SIGUSR1).is_ok() {
-        std::thread::sleep(PATIENCE);
+        std::thread::sleep(REPORT_TIMEOUT);
     }
     signal_hook::low_level::exit(Exit::Failed as i32)
 }
 
 /// What an interruption says from now on of what is kept already.
-pub(super) fn say_kept(what: impl Into<String>) {
+pub(super) fn note_saved(what: impl Into<String>) {
     state().kept = what.into();
 }
 

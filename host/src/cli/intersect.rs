@@ -2,7 +2,7 @@
 
 use super::{ScriptArguments, Exit, CommandFailure, SubcommandRow, SCRIPT_HELP, load, say};
 use crate::intersection::{Branch, Intersection, Mark, CurvePrecision, csv, obj};
-use crate::scene::meetings;
+use crate::scene::object_intersections;
 use clap::{Args, FromArgMatches};
 use files::Destination;
 use serde_json::{Value, json};
@@ -46,7 +46,7 @@ fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let scene = load(&arguments.script, &arguments.definitions)?.scene;
     let precision = CurvePrecision { newton: arguments.newton, chord: arguments.chord };
     let start = Instant::now();
-    let found = meetings(&scene, &precision)?;
+    let found = object_intersections(&scene, &precision)?;
     let seconds = start.elapsed().as_secs_f64();
     let named: Vec<([String; 2], &Intersection)> = found
         .iter()
@@ -62,7 +62,7 @@ fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
         let all: Vec<Value> = named.iter().map(|(names, intersection)| described(names, intersection)).collect();
         say::report(json!({ "seconds": seconds, "meetings": all }));
     } else {
-        named.iter().for_each(|(names, intersection)| tell(names, intersection));
+        named.iter().for_each(|(names, intersection)| report(names, intersection));
         say!("{} pairs of objects meet, found in {:.1} ms", named.len(), seconds * 1e3);
     }
     Ok(())
@@ -93,7 +93,7 @@ impl Summary {
     }
 }
 
-fn tell([one, two]: &[String; 2], intersection: &Intersection) {
+fn report([one, two]: &[String; 2], intersection: &Intersection) {
     say!("{one} and {two}: {} curves, {} points of touch", intersection.branches.len(), intersection.touching.len());
     if intersection.work.coincident > 0 {
         say!(

@@ -171,11 +171,11 @@ impl Job<'_> {
     fn perform(mut self) -> Result<(), CommandFailure> {
         let folder = self.common.output.clone().unwrap_or_else(|| self.folder.into());
         let folder = Folder::make(std::path::absolute(&folder)?)?;
-        interrupts::say_kept(format!("what was finished is in {}", folder.path().display()));
+        interrupts::note_saved(format!("what was finished is in {}", folder.path().display()));
         let mut contents = Contents { folder: &folder, lines: String::new(), names: Vec::new() };
         self.scene.settings.image.samples = self.common.samples.unwrap_or(self.scene.settings.image.samples);
         warn_of_emptiness(&self.scene);
-        let patience = self.common.waits.patience();
+        let patience = self.common.waits.timeouts();
         let (mut emulator, line) = match self.to {
             Some(line) => (None, line.clone()),
             None => {
@@ -204,7 +204,7 @@ impl Job<'_> {
         production.show_image(&picture)?;
         if let Some(emulator) = &mut emulator {
             let file = contents.file("raster.png", "the raster screen of the PS 340 with that image");
-            emulator.order(&format!("picture raster {}", file.display()))?;
+            emulator.operator_command(&format!("picture raster {}", file.display()))?;
         }
         if self.study {
             self.study(&mut contents)?;
@@ -233,15 +233,15 @@ impl Job<'_> {
 
     /// Takes a picture, turns the dials, and takes another.
     fn turn(&self, emulator: &mut Emulator, contents: &mut Contents<'_>) -> Result<(), CommandFailure> {
-        emulator.order("idle")?;
+        emulator.operator_command("idle")?;
         let file = contents.file("vector-before.png", "the vector screen of the PS 340 before a dial was turned");
-        emulator.order(&format!("picture vector {}", file.display()))?;
+        emulator.operator_command(&format!("picture vector {}", file.display()))?;
         for turn in self.dials {
-            emulator.order(&format!("dial {} {}", turn.dial, turn.turns))?;
+            emulator.operator_command(&format!("dial {} {}", turn.dial, turn.turns))?;
         }
-        emulator.order("idle")?;
+        emulator.operator_command("idle")?;
         let file = contents.file("vector-after.png", "the vector screen after the dials were turned");
-        emulator.order(&format!("picture vector {}", file.display()))?;
+        emulator.operator_command(&format!("picture vector {}", file.display()))?;
         Ok(())
     }
 

@@ -82,7 +82,7 @@ pub fn main() -> ExitCode {
     match ended {
         Ok(()) => Exit::Done.into(),
         Err(failure) => {
-            say::tell(&format!("peris {name}: {}", story(&failure.error)));
+            say::write_error(&format!("peris {name}: {}", story(&failure.error)));
             failure.exit.into()
         }
     }

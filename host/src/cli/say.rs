@@ -13,24 +13,24 @@ use std::{borrow::Cow, fmt::Arguments, io::Write};
 pub(super) fn write(text: Arguments<'_>) {
     progress::clear();
     let mut out = std::io::stdout().lock();
-    if out.write_all(harmless(&text.to_string()).as_bytes()).and_then(|()| out.flush()).is_err() {
+    if out.write_all(escaped(&text.to_string()).as_bytes()).and_then(|()| out.flush()).is_err() {
         std::process::exit(Exit::Done as i32);
     }
 }
 
 /// Writes a line to standard error.
-pub(super) fn tell(text: &str) {
+pub(super) fn write_error(text: &str) {
     progress::clear();
-    eprintln!("{}", harmless(text));
+    eprintln!("{}", escaped(text));
 }
 
 /// Says on standard error what is probably not meant.
 pub(super) fn warn(text: &str) {
-    tell(&format!("warning: {text}"));
+    write_error(&format!("warning: {text}"));
 }
 
 /// A text whose control characters are escapes, but for the ends of lines and tabulators.
-fn harmless(text: &str) -> Cow<'_, str> {
+fn escaped(text: &str) -> Cow<'_, str> {
     let is_control = |c: char| c.is_control() && c != '\n' && c != '\t';
     if !text.contains(is_control) {
         return text.into();
@@ -79,7 +79,7 @@ mod tests {
 
     #[test]
     fn what_would_command_a_terminal_is_shown_as_an_escape() {
-        assert_eq!(harmless("a\tb\nc ä"), "a\tb\nc ä");
-        assert_eq!(harmless("\x1b[2J\u{9b}31m\r\x07"), "\\u{1b}[2J\\u{9b}31m\\r\\u{7}");
+        assert_eq!(escaped("a\tb\nc ä"), "a\tb\nc ä");
+        assert_eq!(escaped("\x1b[2J\u{9b}31m\r\x07"), "\\u{1b}[2J\\u{9b}31m\\r\\u{7}");
     }
 }

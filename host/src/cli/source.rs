@@ -58,7 +58,7 @@ pub(super) fn lit(evaluated: Evaluated) -> Result<Evaluated, CommandFailure> {
     let is_lit_by_studio = evaluated.scene.studio == Some(Studio::Lit);
     let scene = evaluated.scene.lit()?;
     if scene.lights.len() > count && !is_lit_by_studio {
-        say::tell("the scene has no light of its own: it is lit as in a studio");
+        say::write_error("the scene has no light of its own: it is lit as in a studio");
     }
     Ok(Evaluated { scene, ..evaluated })
 }
@@ -92,7 +92,7 @@ pub fn load(name: &str, definitions: &ScriptArguments) -> Result<Evaluated, Comm
     let inputs = Inputs { definitions: definitions.given.clone(), allowed: definitions.allow.clone() };
     let evaluated = script::load(name, &inputs)?;
     progress::clear();
-    evaluated.printed.iter().for_each(|line| say::tell(line));
+    evaluated.printed.iter().for_each(|line| say::write_error(line));
     Ok(evaluated)
 }
 

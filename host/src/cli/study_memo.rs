@@ -14,6 +14,6 @@ pub(super) fn memo(folder: &Folder, name: &str, study: &str, resume: bool) -> Re
         let why = format!("{file} holds what an interrupted study has done; --resume goes on, remove it to begin anew");
         return Err(CommandFailure::new(Exit::Usage, anyhow::anyhow!(why)));
     }
-    interrupts::say_kept(format!("what is finished is kept in {file}; --resume goes on"));
+    interrupts::note_saved(format!("what is finished is kept in {file}; --resume goes on"));
     Ok(Memo::open(&path, crc32fast::hash(study.as_bytes()))?)
 }

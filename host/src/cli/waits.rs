@@ -14,7 +14,7 @@ pub(super) struct TimeoutArguments {
 
 impl TimeoutArguments {
     /// What the option says, or the default.
-    pub(super) fn patience(&self) -> Timeouts {
+    pub(super) fn timeouts(&self) -> Timeouts {
         self.patience.map_or_else(Timeouts::default, Timeouts::of)
     }
 }

@@ -26,7 +26,7 @@ impl Channels {
     /// One lane, drawn as often as the numbers times others tell, and that alone: it stands for all of them.
     ///
     /// - `uniform`: in 0..1, chooses.
-    pub fn drawn(self, weights: [f64; LANES], uniform: f64) -> Option<(usize, Channels)> {
+    pub fn sample_lane(self, weights: [f64; LANES], uniform: f64) -> Option<(usize, Channels)> {
         let weighted: [f64; LANES] = std::array::from_fn(|lane| self.0[lane].abs() * weights[lane]);
         let all: f64 = weighted.iter().sum();
         let mut below = 0.0;

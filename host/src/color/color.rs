@@ -72,7 +72,7 @@ impl Color {
     pub fn bands_of_reflectance(&self) -> DVec3 {
         match self {
             Color::Bands(bands) => *bands,
-            Color::Spectrum(spectrum) => observer::seen(spectrum, &shipped::D65).map_or(DVec3::ZERO, srgb::from_xyz),
+            Color::Spectrum(spectrum) => observer::surface_tristimulus(spectrum, &shipped::D65).map_or(DVec3::ZERO, srgb::from_xyz),
         }
     }
 

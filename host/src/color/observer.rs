@@ -24,7 +24,7 @@ pub fn tristimulus(light: &Spectrum) -> DVec3 {
 ///
 /// - `reflectance`: 0..=1. `light`: in any unit.
 /// - Returns none if the light cannot be seen.
-pub fn seen(reflectance: &Spectrum, light: &Spectrum) -> Option<DVec3> {
+pub fn surface_tristimulus(reflectance: &Spectrum, light: &Spectrum) -> Option<DVec3> {
     let [x, y, z] = functions();
     let white = integral(&[light, y], VISIBLE.0, VISIBLE.1);
     let sum = |function| integral(&[reflectance, light, function], VISIBLE.0, VISIBLE.1) / white;
@@ -58,7 +58,7 @@ mod tests {
         ];
         for (name, x, y) in table {
             let light = shipped::light(name).expect("a light");
-            let seen = seen(&white(), &light).expect("light");
+            let seen = surface_tristimulus(&white(), &light).expect("light");
             let found = chromaticity(seen).expect("not black");
             assert!((found - DVec2::new(x, y)).abs().max_element() < 1e-4, "{name}: {found}");
             assert!((seen.y - 1.0).abs() < 1e-12);
@@ -93,7 +93,7 @@ mod tests {
             };
             let values = (360..=830).map(|w| reflectance(f64::from(w))).collect();
             let spectrum = Spectrum::regular(360.0, 1.0, values, Extrapolation::Held).expect("a spectrum");
-            let seen = seen(&spectrum, &shipped::D65).expect("light");
+            let seen = surface_tristimulus(&spectrum, &shipped::D65).expect("light");
             let found = chromaticity(seen).expect("not black");
             assert!((found - DVec2::new(x, y)).abs().max_element() < 5e-5, "{name}: {found}");
             assert!((seen.y - luminance).abs() < 5e-5, "{name}: {}", seen.y);
@@ -124,7 +124,7 @@ mod tests {
         ];
         let light = daylight::spectrum(5000.0 * 1.4388 / 1.4380).expect("D50");
         for ((name, published), computed) in shipped::patches().iter().zip(published).zip(computed) {
-            let seen = seen(&shipped::reflectance(name).expect("a patch"), &light).expect("light");
+            let seen = surface_tristimulus(&shipped::reflectance(name).expect("a patch"), &light).expect("light");
             let found = chromaticity(seen).expect("not black").extend(seen.y);
             assert!((found - DVec3::from_array(published)).abs().max_element() < 0.015, "{name}: {found}");
             assert!((found - DVec3::from_array(computed)).abs().max_element() < 2e-4, "{name}: {found}");
@@ -134,6 +134,6 @@ mod tests {
     #[test]
     fn what_is_not_seen_has_no_colour() {
         let infrared = Spectrum::irregular(&[(900.0, 1.0), (1000.0, 1.0)], Extrapolation::Zero).expect("a spectrum");
-        assert_eq!((seen(&white(), &infrared), chromaticity(DVec3::ZERO)), (None, None));
+        assert_eq!((surface_tristimulus(&white(), &infrared), chromaticity(DVec3::ZERO)), (None, None));
     }
 }

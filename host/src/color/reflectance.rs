@@ -155,7 +155,7 @@ fn approach(start: DVec3, target: DVec3) -> (DVec3, f64) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::observer::seen;
+    use super::super::observer::surface_tristimulus;
     use super::*;
 
     #[test]
@@ -179,7 +179,7 @@ mod tests {
         for rgb in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(0.7, 0.2, 0.1), DVec3::new(0.0, 0.5, 1.0)] {
             let spectrum = SmoothReflectance::from_linear_srgb(rgb).expect("a fit").reflectance.spectrum();
             assert!(spectrum.samples().all(|(_, value)| (0.0..=1.0).contains(&value)));
-            let back = srgb::from_xyz(seen(&spectrum, &shipped::D65).expect("light"));
+            let back = srgb::from_xyz(surface_tristimulus(&spectrum, &shipped::D65).expect("light"));
             assert!((back - rgb).length() < 1e-9, "{rgb} {back}");
         }
     }
@@ -198,7 +198,7 @@ mod tests {
     fn colours_of_the_checker_get_reflectances_like_theirs() {
         for name in ["dark_skin", "foliage", "blue_sky", "neutral_5"] {
             let patch = shipped::reflectance(name).expect("a patch");
-            let fit = SmoothReflectance::from_xyz(seen(&patch, &shipped::D65).expect("light")).expect("a fit");
+            let fit = SmoothReflectance::from_xyz(surface_tristimulus(&patch, &shipped::D65).expect("light")).expect("a fit");
             let squares = (420..=680).map(|w| (fit.reflectance.at(f64::from(w)) - patch.at(f64::from(w))).powi(2));
             assert!((squares.sum::<f64>() / 261.0).sqrt() < 0.06, "{name}");
         }

@@ -250,7 +250,7 @@ mod tests {
     /// Chroma and hue, degrees, of CIE L*a*b* under D65.
     fn chroma_and_hue(name: &str) -> (f64, f64) {
         let white = observer::tristimulus(&D65);
-        let seen = observer::seen(&reflectance(name).expect("a reflectance"), &D65).expect("D65 is seen");
+        let seen = observer::surface_tristimulus(&reflectance(name).expect("a reflectance"), &D65).expect("D65 is seen");
         // X, Y and Z over those of white, as their cube roots; all here are above the linear part of L*a*b* but black.
         let root = |seen: f64, white: f64| (seen / (white / white_y(&D65))).cbrt();
         let (x, y, z) = (root(seen.x, white.x), root(seen.y, white.y), root(seen.z, white.z));
@@ -267,7 +267,7 @@ mod tests {
         // Munsell values 8 and 4 are Y = 0.576 and 0.117 under C, of a perfect reflector (Newhall and others 1943: of
         // magnesium oxide 0.591 and 0.120).
         for (name, published) in [("skin", 0.576), ("green_leaf", 0.117)] {
-            let y = observer::seen(&reflectance(name).expect("a reflectance"), &D65).expect("seen").y;
+            let y = observer::surface_tristimulus(&reflectance(name).expect("a reflectance"), &D65).expect("seen").y;
             assert!((y / published - 1.0).abs() < 0.04, "{name} {y}");
         }
     }
@@ -296,7 +296,7 @@ mod tests {
 
     #[test]
     fn white_things_are_brighter_than_grey_ones_and_those_than_black_ones() {
-        let y = |name| observer::seen(&reflectance(name).expect("a reflectance"), &D65).map_or(DVec3::ZERO, |s| s).y;
+        let y = |name| observer::surface_tristimulus(&reflectance(name).expect("a reflectance"), &D65).map_or(DVec3::ZERO, |s| s).y;
         let known = [
             "calcite",
             "zinc_white",

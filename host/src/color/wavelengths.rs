@@ -8,7 +8,7 @@ use super::{Bins, Channels, Color, LANES, Spectrum, color::WHITE, srgb};
 use glam::DVec3;
 
 /// Combs of wavelengths.
-const COMBS: usize = 64;
+const SETS: usize = 64;
 /// Wavelengths, nm, at which indices of refraction are taken for the three bands: about where each band has its middle.
 const OF_BANDS: [f64; 3] = [611.0, 549.0, 464.0];
 
@@ -68,11 +68,11 @@ impl WavelengthSets {
         let bins = bins();
         let weights = bins.weights();
         let middles: Vec<f64> = bins.ranges().map(|(from, to)| 0.5 * (from + to)).collect();
-        let of = |comb: usize| std::array::from_fn(|lane| lane * COMBS + comb);
-        let combs = || (0..COMBS).map(of);
+        let of = |comb: usize| std::array::from_fn(|lane| lane * SETS + comb);
+        let combs = || (0..SETS).map(of);
         WavelengthSets {
             at: combs().map(|bins: [usize; LANES]| bins.map(|bin| middles[bin])).collect(),
-            seen: combs().map(|bins| bins.map(|bin| srgb::from_xyz(weights[bin]) * COMBS as f64)).collect(),
+            seen: combs().map(|bins| bins.map(|bin| srgb::from_xyz(weights[bin]) * SETS as f64)).collect(),
             spectral: true,
         }
     }
@@ -88,12 +88,12 @@ impl WavelengthSets {
     }
 
     /// The comb for a number that is uniform in 0..1.
-    pub fn comb(&self, uniform: f64) -> usize {
+    pub fn set_at(&self, uniform: f64) -> usize {
         ((uniform * self.at.len() as f64) as usize).min(self.at.len() - 1)
     }
 
     /// How many combs there are.
-    pub fn combs(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.at.len()
     }
 
@@ -104,7 +104,7 @@ impl WavelengthSets {
 
     /// What light looks like: linear sRGB. Its mean over all combs is exact.
     #[inline]
-    pub fn seen(&self, comb: usize, light: Channels) -> DVec3 {
+    pub fn to_srgb(&self, comb: usize, light: Channels) -> DVec3 {
         if !self.spectral {
             return DVec3::new(light.0[0], light.0[1], light.0[2]);
         }
@@ -113,7 +113,7 @@ impl WavelengthSets {
     }
 
     /// About how much there is of long, middle and short wavelengths: no color, but nearly the same for all combs.
-    pub fn broad(&self, light: Channels) -> DVec3 {
+    pub fn broad_bands(&self, light: Channels) -> DVec3 {
         let light = light.0;
         match self.spectral {
             // The lanes from 419 to 477, 477 to 595 and 595 to 712 nm.
@@ -151,16 +151,16 @@ impl WavelengthSets {
         let [red, blue] = [DVec3::X, DVec3::Z].map(|axis| self.reflectance(&Color::Bands(axis)));
         // Where the other two overlap they share.
         let shared = |comb: usize| red.of(comb).0.iter().zip(blue.of(comb).0).map(|(r, b)| (r + b).max(1.0)).collect();
-        let shares: Vec<Vec<f64>> = (0..self.combs()).map(shared).collect();
+        let shares: Vec<Vec<f64>> = (0..self.count()).map(shared).collect();
         let part = |curve: &SpectralTable| {
-            SpectralTable::each(self.combs(), |comb| {
+            SpectralTable::each(self.count(), |comb| {
                 let own = curve.of(comb);
                 Channels(std::array::from_fn(|lane| own.0[lane] / shares[comb][lane]))
             })
         };
         let [red, blue] = [part(&red), part(&blue)];
         let green =
-            SpectralTable::each(self.combs(), |comb| (Channels::ONE - red.of(comb) - blue.of(comb)).map(|g| g.max(0.0)));
+            SpectralTable::each(self.count(), |comb| (Channels::ONE - red.of(comb) - blue.of(comb)).map(|g| g.max(0.0)));
         [red, green, blue]
     }
 
@@ -207,13 +207,13 @@ impl WavelengthSets {
     /// Means over the bins.
     fn means(&self, spectrum: &Spectrum) -> SpectralTable {
         let means = bins().means(spectrum);
-        SpectralTable((0..COMBS).map(|comb| Channels(std::array::from_fn(|lane| means[lane * COMBS + comb]))).collect())
+        SpectralTable((0..SETS).map(|comb| Channels(std::array::from_fn(|lane| means[lane * SETS + comb]))).collect())
     }
 }
 
 /// The bins of all combs.
 fn bins() -> Bins {
-    Bins::visible(COMBS * LANES).expect("there are bins")
+    Bins::visible(SETS * LANES).expect("there are bins")
 }
 
 fn in_bands(bands: DVec3) -> Channels {
@@ -225,9 +225,9 @@ mod tests {
     use super::super::shipped;
     use super::*;
 
-    fn seen(wavelengths: &WavelengthSets, light: &SpectralTable, reflectance: &SpectralTable) -> DVec3 {
+    fn srgb_of(wavelengths: &WavelengthSets, light: &SpectralTable, reflectance: &SpectralTable) -> DVec3 {
         let combs = wavelengths.at.len();
-        let sum: DVec3 = (0..combs).map(|c| wavelengths.seen(c, light.of(c) * reflectance.of(c))).sum();
+        let sum: DVec3 = (0..combs).map(|c| wavelengths.to_srgb(c, light.of(c) * reflectance.of(c))).sum();
         sum / combs as f64
     }
 
@@ -236,7 +236,7 @@ mod tests {
         for wavelengths in [WavelengthSets::bands(), WavelengthSets::spectral()] {
             let white = wavelengths.light(&Color::grey(2.0));
             let perfect = wavelengths.reflectance(&Color::grey(1.0));
-            let found = seen(&wavelengths, &white, &perfect);
+            let found = srgb_of(&wavelengths, &white, &perfect);
             assert!((found - DVec3::splat(2.0)).length() < 2e-5, "{found}");
         }
     }
@@ -247,11 +247,11 @@ mod tests {
         let white = wavelengths.light(&Color::grey(1.0));
         for bands in [DVec3::new(0.8, 0.3, 0.1), DVec3::new(0.05, 0.4, 0.9), DVec3::new(1.0, 0.0, 0.0)] {
             let reflectance = wavelengths.reflectance(&Color::Bands(bands));
-            let found = seen(&wavelengths, &white, &reflectance);
+            let found = srgb_of(&wavelengths, &white, &reflectance);
             assert!((found - bands).length() < 1e-3, "{bands} {found}");
             let light = wavelengths.light(&Color::Bands(bands * 7.0));
             let perfect = wavelengths.constant(1.0);
-            assert!((seen(&wavelengths, &light, &perfect) - bands * 7.0).length() < 7e-3, "{bands}");
+            assert!((srgb_of(&wavelengths, &light, &perfect) - bands * 7.0).length() < 7e-3, "{bands}");
         }
     }
 
@@ -261,13 +261,13 @@ mod tests {
             let primaries = wavelengths.primaries();
             let white = wavelengths.light(&Color::grey(1.0));
             for bands in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(0.2, 0.9, 0.4), DVec3::ONE] {
-                let mixture = SpectralTable::each(wavelengths.combs(), |comb| {
+                let mixture = SpectralTable::each(wavelengths.count(), |comb| {
                     let part = |band: usize| primaries[band].of(comb) * bands[band];
                     part(0) + part(1) + part(2)
                 });
-                let found = seen(&wavelengths, &white, &mixture);
+                let found = srgb_of(&wavelengths, &white, &mixture);
                 assert!((found - bands).length() < 1.2e-2, "{bands} {found}");
-                let lanes = (0..wavelengths.combs()).flat_map(|comb| mixture.of(comb).0);
+                let lanes = (0..wavelengths.count()).flat_map(|comb| mixture.of(comb).0);
                 assert!(lanes.into_iter().all(|part| (0.0..=1.0 + 1e-12).contains(&part)));
             }
         }
@@ -278,10 +278,10 @@ mod tests {
         let wavelengths = WavelengthSets::spectral();
         let red = Color::Spectrum(shipped::reflectance("red").expect("a patch"));
         let light = wavelengths.light(&Color::grey(1.0));
-        let found = seen(&wavelengths, &light, &wavelengths.reflectance(&red));
+        let found = srgb_of(&wavelengths, &light, &wavelengths.reflectance(&red));
         assert!((found - red.bands_of_reflectance()).length() < 1e-5);
         let lamp = Color::light_of(&shipped::light("F11").expect("a light"), 1.0).expect("visible");
-        let found = seen(&wavelengths, &wavelengths.light(&lamp), &wavelengths.constant(1.0));
+        let found = srgb_of(&wavelengths, &wavelengths.light(&lamp), &wavelengths.constant(1.0));
         assert!((found - lamp.bands_of_light()).length() < 1e-3, "{found} {}", lamp.bands_of_light());
     }
 
@@ -291,7 +291,7 @@ mod tests {
         let weights = [1.0, 4.0, 0.5, 1.0, 0.0, 2.0, 0.01, 3.0];
         let mut sum = Channels::ZERO;
         for i in 0..100_000 {
-            let (lane, alone) = light.drawn(weights, (f64::from(i) + 0.5) / 1e5).expect("something is seen");
+            let (lane, alone) = light.sample_lane(weights, (f64::from(i) + 0.5) / 1e5).expect("something is seen");
             assert!((0..LANES).all(|other| other == lane || alone.0[other] == 0.0));
             sum += alone * 1e-5;
         }
@@ -300,6 +300,6 @@ mod tests {
             let expected = if weights[lane] > 0.0 { light.0[lane] } else { 0.0 };
             assert!((mean - expected).abs() < 0.05, "{lane}: {mean}, not {expected}");
         }
-        assert_eq!(Channels::ZERO.drawn(weights, 0.5), None);
+        assert_eq!(Channels::ZERO.sample_lane(weights, 0.5), None);
     }
 }

@@ -305,7 +305,7 @@ impl Basis {
     }
 
     /// This spline, open, beginning and ending in its first and last control point.
-    pub(crate) fn passing_ends(&self) -> Result<Refinement, SplineError> {
+    pub(crate) fn clamped_at_ends(&self) -> Result<Refinement, SplineError> {
         let mut refined = self.unchanged();
         for end in [1, 0] {
             let t = refined.basis.domain()[end];
@@ -323,7 +323,7 @@ impl Basis {
     /// # Errors
     /// [`SplineError::Degree`] if it is too high.
     pub(crate) fn elevated(&self) -> Result<Refinement, SplineError> {
-        let open = if self.is_closed() { self.unchanged() } else { self.passing_ends()? };
+        let open = if self.is_closed() { self.unchanged() } else { self.clamped_at_ends()? };
         let open = match &open.basis.kind {
             Kind::Knots(_) => open,
             Kind::Bbb(_) => {

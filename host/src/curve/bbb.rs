@@ -102,7 +102,7 @@ impl Bbb {
     }
 
     /// The parts of the leg from control point `joint` to the next; their sum is not zero.
-    fn leg(&self, joint: usize) -> [f64; 3] {
+    fn polygon_edge(&self, joint: usize) -> [f64; 3] {
         [self.behind(joint, self.before(joint)), self.after(joint), self.ahead(joint + 1, self.after(joint + 1))]
     }
 
@@ -115,7 +115,7 @@ impl Bbb {
 
     /// The two inner Bezier points on a leg.
     fn inner(&self, joint: usize) -> [ControlCombination; 2] {
-        let [a, b, c] = self.leg(joint);
+        let [a, b, c] = self.polygon_edge(joint);
         let sum = a + b + c;
         let row = |low: f64, high: f64| ControlCombination::new(joint, &[low / sum, high / sum]);
         [row(b + c, a), row(c, a + b)]
@@ -129,7 +129,7 @@ impl Bbb {
         if left + right == 0.0 {
             return ControlCombination::one(joint % count);
         }
-        let ([a, b, c], [d, e, f]) = (self.leg(previous), self.leg(joint));
+        let ([a, b, c], [d, e, f]) = (self.polygon_edge(previous), self.polygon_edge(joint));
         let (left, right) = (left / (left + right) / (d + e + f), right / (left + right) / (a + b + c));
         ControlCombination::new(previous, &[right * c, right * (a + b) + left * (e + f), left * d])
     }
@@ -151,7 +151,7 @@ impl Bbb {
     }
 
     /// The span of a parameter as the joint at which it begins, the part of its interval before and that after.
-    fn place(&self, t: f64) -> (usize, [f64; 2]) {
+    fn locate(&self, t: f64) -> (usize, [f64; 2]) {
         let (spans, breaks) = (self.spans(), self.form().breaks);
         let span = breaks.partition_point(|at| *at <= t).clamp(1, spans.len()) - 1;
         let interval = self.after(spans[span]);
@@ -161,7 +161,7 @@ impl Bbb {
 
     /// How many joints lie at a parameter, 3 at most, and the one that is followed by or ends the span there.
     fn joints_at(&self, t: f64) -> Vec<usize> {
-        let (joint, [part, rest]) = self.place(t);
+        let (joint, [part, rest]) = self.locate(t);
         let count = self.control_count();
         if part > 0.0 && rest > 0.0 {
             return Vec::new();
@@ -183,19 +183,19 @@ impl Bbb {
 
     /// The control point in which the spline passes through the parameter, if three joints or the end of the polygon
     /// lie there.
-    fn passed_at(&self, t: f64) -> Option<usize> {
+    fn interpolated_at(&self, t: f64) -> Option<usize> {
         let joints = self.joints_at(t);
         joints.into_iter().find(|&joint| self.before(joint) == 0.0 && self.after(joint) == 0.0)
     }
 
     /// Whether no further joint can be inserted at a parameter.
     pub fn is_full(&self, t: f64) -> bool {
-        self.passed_at(t).is_some()
+        self.interpolated_at(t).is_some()
     }
 
     /// With another joint of bias 1 and tension 0 at `t`, which must not be full, and the control points of that.
     pub fn inserted(&self, t: f64) -> (Bbb, Vec<ControlCombination>) {
-        let (joint, [part, rest]) = self.place(t);
+        let (joint, [part, rest]) = self.locate(t);
         let count = self.control_count();
         let previous = (joint + count - 1) % count;
         let line = |first: usize, low: f64, high: f64| {
@@ -203,13 +203,13 @@ impl Bbb {
             ControlCombination::new(first % count, &[low / sum, high / sum])
         };
         let mut rows: Vec<ControlCombination> = (0..count).map(ControlCombination::one).collect();
-        let [a, b, c] = self.leg(previous);
+        let [a, b, c] = self.polygon_edge(previous);
         let ahead = self.ahead(joint, part);
         rows[joint] = line(previous, (c - ahead).max(0.0), a + b + ahead);
-        let [a, b, c] = self.leg(joint + 1);
+        let [a, b, c] = self.polygon_edge(joint + 1);
         let behind = self.behind(joint + 1, rest);
         rows[(joint + 1) % count] = line(joint + 1, behind + b + c, (a - behind).max(0.0));
-        let [a, _, c] = self.leg(joint);
+        let [a, _, c] = self.polygon_edge(joint);
         rows.insert(joint + 1, line(joint, rest + c, a + part));
         let mut finer = self.clone();
         finer.bias.insert(joint + 1, 1.0);
@@ -222,7 +222,7 @@ impl Bbb {
 
     /// The parts before and after `t`, which must be full; a closed spline becomes one open part.
     pub fn cut(&self, t: f64) -> Vec<(Bbb, Vec<ControlCombination>)> {
-        let Some(joint) = self.passed_at(t) else {
+        let Some(joint) = self.interpolated_at(t) else {
             return Vec::new();
         };
         let count = self.control_count();

@@ -139,7 +139,7 @@ impl Knots {
     }
 
     /// The last knot that is not above `x`.
-    fn place(&self, x: f64) -> isize {
+    fn span_of(&self, x: f64) -> isize {
         self.values.partition_point(|knot| *knot <= x) as isize - 1
     }
 
@@ -147,7 +147,7 @@ impl Knots {
     pub fn inserted(&self, x: f64) -> (Knots, Vec<ControlCombination>) {
         let [low, high] = self.domain();
         let x = if self.is_closed && x == high { low } else { x };
-        let k = self.place(x);
+        let k = self.span_of(x);
         let (p, count) = (self.degree as isize, self.control_count() as isize);
         let multiplicity = (0..=p).take_while(|back| (self.is_closed || *back <= k) && self.at(k - back) == x).count();
         let first = if self.is_closed { k - p + 1 } else { 0 };
@@ -186,7 +186,7 @@ impl Knots {
         if self.is_closed {
             let [low, high] = self.domain();
             let x = if x == high { low } else { x };
-            let (k, count) = (self.place(x), self.control_count() as isize);
+            let (k, count) = (self.span_of(x), self.control_count() as isize);
             let period = high - low;
             let inner = (k - p as isize + 1..=k + count).map(|j| self.at(j));
             let values = [x].into_iter().chain(inner).chain([x + period]).collect();

@@ -37,7 +37,7 @@ pub struct PhotonBlock {
 
 impl StoredPhotons {
     /// How many ways of light were followed.
-    pub fn ways(&self) -> u64 {
+    pub fn paths(&self) -> u64 {
         self.blocks.iter().map(|block| block.ways).fold(0, u64::saturating_add)
     }
 
@@ -58,7 +58,7 @@ impl StoredPhotons {
     }
 
     pub(super) fn summary(&self) -> String {
-        format!("{} caught of {} ways", self.len(), self.ways())
+        format!("{} caught of {} ways", self.len(), self.paths())
     }
 
     /// Checks every number; the problem in words.

@@ -62,7 +62,7 @@ impl Record {
             RecordContent::Material(material) => sheet.material = Some((**material).clone()),
             RecordContent::Light(light) => sheet.light = Some((**light).clone()),
             RecordContent::Spectrum(curves) => sheet.spectrum = Some(curves.clone()),
-            RecordContent::Geometry(_) | RecordContent::Texture(_) | RecordContent::CaughtLight(_) => return None,
+            RecordContent::Geometry(_) | RecordContent::Texture(_) | RecordContent::Photons(_) => return None,
         }
         serde_json::to_value(&sheet).ok()
     }
@@ -85,7 +85,7 @@ pub fn read(path: &Path, name: Option<&str>, quantity: Option<ColumnQuantity>) -
         }
         "png" | "exr" => vec![one(RecordContent::Texture(Box::new(Picture::read_finite(path)?)))],
         "txt" => of_columns(path, name, stem, quantity)?,
-        "json" => vec![of_sheet(path, name, stem)?],
+        "json" => vec![of_json(path, name, stem)?],
         _ => return Err(unknown_ending(path)),
     };
     records.iter().try_for_each(|record| check_name(&record.name))?;
@@ -106,7 +106,7 @@ pub fn write(record: &Record, destination: &Destination) -> Result<(), DatabaseE
         (RecordContent::Geometry(_), _) => return Err(failed("a mesh goes into .obj, .ply, .stl, .gltf, .glb or .cmesh")),
         (RecordContent::Texture(picture), "png" | "exr") => return Ok(picture.write(destination)?),
         (RecordContent::Texture(_), _) => return Err(failed("a texture goes into .png or .exr")),
-        (RecordContent::CaughtLight(_), _) => return Err(failed("caught light is of use in its database only")),
+        (RecordContent::Photons(_), _) => return Err(failed("caught light is of use in its database only")),
         (RecordContent::Spectrum(curves), "txt") => {
             let named = match curves {
                 Curves::Reflectance(spectrum) | Curves::Light(spectrum) => vec![(&*record.name, spectrum)],
@@ -179,7 +179,7 @@ fn of_columns(
     all.into_iter().map(record).collect()
 }
 
-fn of_sheet(path: &Path, name: Option<&str>, stem: &str) -> Result<Record, DatabaseError> {
+fn of_json(path: &Path, name: Option<&str>, stem: &str) -> Result<Record, DatabaseError> {
     let failed = |problem: String| DatabaseError::Exchange { path: path.into(), problem };
     let sheet: RecordJson = serde_json::from_str(&text_of(path)?).map_err(|error| failed(error.to_string()))?;
     let content = match (sheet.material, sheet.light, sheet.spectrum) {

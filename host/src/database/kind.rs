@@ -23,13 +23,13 @@ pub enum RecordKind {
     /// A quantity over the wavelength, or several.
     Spectrum,
     /// Light of a lamp that was caught on the surfaces of a scene.
-    CaughtLight,
+    Photons,
 }
 
 impl RecordKind {
     /// Every kind.
     pub const ALL: [RecordKind; 6] =
-        [RecordKind::Geometry, RecordKind::Texture, RecordKind::Material, RecordKind::Light, RecordKind::Spectrum, RecordKind::CaughtLight];
+        [RecordKind::Geometry, RecordKind::Texture, RecordKind::Material, RecordKind::Light, RecordKind::Spectrum, RecordKind::Photons];
 
     /// The kind in a word; the name of its table, too.
     pub fn word(self) -> &'static str {
@@ -39,7 +39,7 @@ impl RecordKind {
             RecordKind::Material => "material",
             RecordKind::Light => "light",
             RecordKind::Spectrum => "spectrum",
-            RecordKind::CaughtLight => "caught-light",
+            RecordKind::Photons => "caught-light",
         }
     }
 

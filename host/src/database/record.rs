@@ -43,7 +43,7 @@ pub enum RecordContent {
     /// A quantity over the wavelength, or several.
     Spectrum(Curves),
     /// Light of a lamp that was caught on surfaces.
-    CaughtLight(Box<StoredPhotons>),
+    Photons(Box<StoredPhotons>),
 }
 
 /// Quantities over the wavelength.
@@ -115,7 +115,7 @@ impl RecordContent {
             RecordContent::Material(_) => RecordKind::Material,
             RecordContent::Light(_) => RecordKind::Light,
             RecordContent::Spectrum(_) => RecordKind::Spectrum,
-            RecordContent::CaughtLight(_) => RecordKind::CaughtLight,
+            RecordContent::Photons(_) => RecordKind::Photons,
         }
     }
 
@@ -129,7 +129,7 @@ impl RecordContent {
             RecordContent::Material(material) => material.word().into(),
             RecordContent::Light(light) => light.words().into(),
             RecordContent::Spectrum(curves) => curves.summary(),
-            RecordContent::CaughtLight(caught) => caught.summary(),
+            RecordContent::Photons(caught) => caught.summary(),
         }
     }
 
@@ -154,7 +154,7 @@ impl RecordContent {
                 None => light.check().map_err(|error| error.to_string()),
             },
             RecordContent::Spectrum(curves) => curves.check(),
-            RecordContent::CaughtLight(caught) => caught.check(),
+            RecordContent::Photons(caught) => caught.check(),
         }
     }
 
@@ -169,7 +169,7 @@ impl RecordContent {
             RecordContent::Material(material) => encoded(material),
             RecordContent::Light(light) => encoded(light),
             RecordContent::Spectrum(curves) => encoded(curves),
-            RecordContent::CaughtLight(caught) => encoded(caught),
+            RecordContent::Photons(caught) => encoded(caught),
         }
     }
 
@@ -184,7 +184,7 @@ impl RecordContent {
             RecordKind::Material => RecordContent::Material(Box::new(decoded(bytes)?)),
             RecordKind::Light => RecordContent::Light(Box::new(decoded(bytes)?)),
             RecordKind::Spectrum => RecordContent::Spectrum(decoded(bytes)?),
-            RecordKind::CaughtLight => RecordContent::CaughtLight(Box::new(decoded(bytes)?)),
+            RecordKind::Photons => RecordContent::Photons(Box::new(decoded(bytes)?)),
         };
         content.check().map(|()| content)
     }

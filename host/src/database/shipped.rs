@@ -24,7 +24,7 @@ pub fn names(kind: RecordKind) -> Vec<&'static str> {
         RecordKind::Spectrum => {
             [shipped::lights(), shipped::metals(), shipped::reflectances(), shipped::functions()].concat()
         }
-        RecordKind::Texture | RecordKind::Light | RecordKind::CaughtLight => Vec::new(),
+        RecordKind::Texture | RecordKind::Light | RecordKind::Photons => Vec::new(),
     }
 }
 
@@ -65,7 +65,7 @@ pub fn find(kind: RecordKind, name: &str) -> Result<Option<Record>, DatabaseErro
         }
         RecordKind::Material => shipped::glass(name).map(|glass| clear(glass, 0)),
         RecordKind::Spectrum => curves(name).map(RecordContent::Spectrum),
-        RecordKind::Geometry | RecordKind::Texture | RecordKind::Light | RecordKind::CaughtLight => return Ok(None),
+        RecordKind::Geometry | RecordKind::Texture | RecordKind::Light | RecordKind::Photons => return Ok(None),
     };
     Ok(Some(Record { name: name.into(), origin, content: made.map_err(failed)? }))
 }

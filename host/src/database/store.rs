@@ -21,7 +21,7 @@ const FORM: u64 = 1;
 const ABOUT: TableDefinition<'_, &str, u64> = TableDefinition::new("peris");
 const FORM_KEY: &str = "form";
 /// How long to wait for another process that writes.
-const PATIENCE: Duration = if cfg!(test) { Duration::from_secs(1) } else { Duration::from_secs(5) };
+const LOCK_TIMEOUT: Duration = if cfg!(test) { Duration::from_secs(1) } else { Duration::from_secs(5) };
 const PAUSE: Duration = Duration::from_millis(20);
 /// Memory for pages that were read, bytes.
 const CACHE: usize = 64 << 20;
@@ -95,7 +95,7 @@ impl Store {
         let since = Instant::now();
         loop {
             match Store::open_once(path, |builder| builder.open(path)) {
-                Err(DatabaseError::Busy { .. }) if since.elapsed() < PATIENCE => std::thread::sleep(PAUSE),
+                Err(DatabaseError::Busy { .. }) if since.elapsed() < LOCK_TIMEOUT => std::thread::sleep(PAUSE),
                 other => return other,
             }
         }

@@ -85,7 +85,7 @@ fn many() -> Vec<Record> {
     let number = |index: usize, content| record(&format!("thing {index}"), content);
     all.extend(bodies.into_iter().enumerate().map(|(i, body)| number(i, RecordContent::Material(Box::new(body.into())))));
     all.extend(lights.into_iter().enumerate().map(|(i, light)| number(i, RecordContent::Light(Box::new(light)))));
-    all.push(record("beam", RecordContent::CaughtLight(Box::new(beam()))));
+    all.push(record("beam", RecordContent::Photons(Box::new(beam()))));
     all
 }
 
@@ -213,7 +213,7 @@ fn impossible_content_is_not_stored() {
         RecordContent::Geometry(Box::new(open)),
         RecordContent::Spectrum(Curves::Reflectance(bright)),
         RecordContent::Spectrum(Curves::Functions(Vec::new())),
-        RecordContent::CaughtLight(Box::new(StoredPhotons {
+        RecordContent::Photons(Box::new(StoredPhotons {
             blocks: vec![PhotonBlock { flux: vec![1.0], ..PhotonBlock::default() }],
             ..beam()
         })),
@@ -466,7 +466,7 @@ fn files_that_are_exported_come_back_to_the_last_bit() {
             RecordContent::Texture(_) => &["exr"],
             RecordContent::Spectrum(Curves::Functions(_)) => &["json"],
             RecordContent::Spectrum(_) => &["txt", "json"],
-            RecordContent::CaughtLight(_) => &[],
+            RecordContent::Photons(_) => &[],
             _ => &["json"],
         };
         if endings.is_empty() {

@@ -42,7 +42,7 @@ impl NewtonSolver<'_> {
         let mut smallest = f64::INFINITY;
         let mut found = None;
         for _ in 0..MOST_STEPS {
-            let look = self.look(&mut places, at, reach)?;
+            let look = self.step(&mut places, at, reach)?;
             let CriticalPoint { directions, curvatures, .. } = look.critical;
             let height = |k: usize| look.gradient.dot(directions[k]);
             let along = |k: usize| directions[k] * (-height(k) / curvatures[k]);
@@ -75,7 +75,7 @@ impl NewtonSolver<'_> {
     }
 
     /// The gradient of the distance on the first surface at the foot of a point, with what it would be to be critical.
-    fn look(&self, places: &mut [SheetCoordinates; 2], at: DVec3, reach: f64) -> Option<CriticalStep> {
+    fn step(&self, places: &mut [SheetCoordinates; 2], at: DVec3, reach: f64) -> Option<CriticalStep> {
         let (one, foot) = self.foot(0, places[0], at, reach);
         let (two, gradient, gap, other) = self.gradient(places[1], foot.point, foot.normal, reach)?;
         *places = [one, two];

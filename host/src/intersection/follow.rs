@@ -42,7 +42,7 @@ pub fn follow(
     while points.len() < MOST_STEPS {
         let most = longest(last.at);
         step = step.min(most);
-        let met = solver.meet(last.places, last.at + heading * step, Some(heading), step);
+        let met = solver.solve(last.places, last.at + heading * step, Some(heading), step);
         let tangent = met.tangent();
         let tangent = if tangent.dot(heading) < 0.0 { -tangent } else { tangent };
         if met.failure.is_some() || tangent.dot(heading) < SHARP {

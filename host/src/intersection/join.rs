@@ -157,7 +157,7 @@ impl Joiner<'_> {
     /// A curve that passes a critical point at some offset.
     fn closed_curve(&mut self, center: &CriticalPoint, offset: DVec3, step: f64, most: usize) {
         let along = center.directions[1];
-        let start = self.solver.meet(center.places, center.at + offset, Some(along), offset.length());
+        let start = self.solver.solve(center.places, center.at + offset, Some(along), offset.length());
         let mut points = vec![start.point(Mark::Regular)];
         let mut is_closed = false;
         if start.failure.is_none() {
@@ -192,7 +192,7 @@ impl Joiner<'_> {
             }
             let inwards = zone.center.at - start.position;
             let direction = if start.tangent.dot(inwards) < 0.0 { -start.tangent } else { start.tangent };
-            let from = self.solver.meet(start.places, start.position, Some(direction), zone.reach);
+            let from = self.solver.solve(start.places, start.position, Some(direction), zone.reach);
             let ends: Vec<DVec3> = open.iter().map(|&tip| self.tip(tip).position).collect();
             // It ends beside the first of the other ends that it passes.
             let mut last = start.position;
@@ -278,7 +278,7 @@ fn accurate(solver: &NewtonSolver<'_>, chain: &TrianglePolyline, index: usize) -
     let lines = chain.lines.len();
     let before = if index > 0 { Some(index - 1) } else { chain.is_closed.then(|| lines - 1) };
     let behind = Some(index).filter(|index| *index < lines);
-    let on = |line: usize| [0, 1].map(|side| solver.grounds[side].place(chain.lines[line][side], at));
+    let on = |line: usize| [0, 1].map(|side| solver.grounds[side].coordinates(chain.lines[line][side], at));
     let reach = |line: usize| solver.reach(chain.lines[line]);
     if let (Some(before), Some(behind)) = (before, behind) {
         let (first, second) = (on(before), on(behind));
@@ -296,5 +296,5 @@ fn accurate(solver: &NewtonSolver<'_>, chain: &TrianglePolyline, index: usize) -
             return vec![met.point(Mark::End)];
         }
     }
-    vec![solver.meet(on(line), at, None, reach(line)).point(Mark::Regular)]
+    vec![solver.solve(on(line), at, None, reach(line)).point(Mark::Regular)]
 }

@@ -88,7 +88,7 @@ impl<'a> NewtonSolver<'a> {
     ///
     /// - `across`: a direction in which the point stays level; without one, each step is the shortest.
     /// - `reach`: how far the point may be, model units.
-    pub fn meet(&self, places: [SheetCoordinates; 2], start: DVec3, across: Option<DVec3>, reach: f64) -> NewtonPoint {
+    pub fn solve(&self, places: [SheetCoordinates; 2], start: DVec3, across: Option<DVec3>, reach: f64) -> NewtonPoint {
         let met = self.iterate(places, start, across, reach);
         if met.failure != Some(Inaccuracy::Beyond) {
             return met;
@@ -130,17 +130,17 @@ impl<'a> NewtonSolver<'a> {
             let third = across.unwrap_or(n.cross(m).normalize_or_zero());
             let level = across.map_or(0.0, |across| across.dot(start - at));
             let heights = [n.dot(one.point - at), m.dot(two.point - at), level];
-            let Some(step) = meeting([n, m, third], heights) else { break };
+            let Some(step) = plane_intersection([n, m, third], heights) else { break };
             at += step.clamp_length_max(0.5 * reach);
             if !at.is_finite() {
                 break;
             }
         }
-        self.judged(best, places, start, reach, is_beside)
+        self.with_inaccuracy(best, places, start, reach, is_beside)
     }
 
     /// Says what is wrong with a point, if anything is.
-    fn judged(&self, best: Option<NewtonPoint>, places: [SheetCoordinates; 2], start: DVec3, reach: f64, is_beside: bool) -> NewtonPoint {
+    fn with_inaccuracy(&self, best: Option<NewtonPoint>, places: [SheetCoordinates; 2], start: DVec3, reach: f64, is_beside: bool) -> NewtonPoint {
         let nowhere = NewtonPoint { at: start, places, normals: [DVec3::ZERO; 2], residual: f64::MAX, failure: None };
         let mut met = best.filter(|met| met.residual.is_finite()).unwrap_or(nowhere);
         met.failure = if met.residual > self.tolerance {
@@ -177,7 +177,7 @@ impl<'a> NewtonSolver<'a> {
             if a.dot(b.cross(c)).abs() < INDEPENDENT {
                 return None;
             }
-            let step = meeting(normals, feet.map(|foot| foot.normal.dot(foot.point - at)))?;
+            let step = plane_intersection(normals, feet.map(|foot| foot.normal.dot(foot.point - at)))?;
             if step.length() >= smallest {
                 break;
             }
@@ -187,7 +187,7 @@ impl<'a> NewtonSolver<'a> {
                 return None;
             }
         }
-        let ends = [before, behind].map(|places| self.standing(places, at));
+        let ends = [before, behind].map(|places| self.unrefined(places, at));
         ends.iter().all(|met| met.failure.is_none()).then_some(ends)
     }
 
@@ -208,7 +208,7 @@ impl<'a> NewtonSolver<'a> {
             let (side, outwards) = outwards?;
             let [n, m] = feet.map(|foot| foot.normal);
             let heights = [n.dot(feet[0].point - at), m.dot(feet[1].point - at), outwards.dot(feet[side].point - at)];
-            let step = meeting([n, m, outwards], heights)?;
+            let step = plane_intersection([n, m, outwards], heights)?;
             if step.length() >= smallest {
                 break;
             }
@@ -218,11 +218,11 @@ impl<'a> NewtonSolver<'a> {
                 return None;
             }
         }
-        Some(self.standing(places, at)).filter(|met| met.failure.is_none())
+        Some(self.unrefined(places, at)).filter(|met| met.failure.is_none())
     }
 
     /// The point as it stands: how far its feet are apart.
-    fn standing(&self, places: [SheetCoordinates; 2], at: DVec3) -> NewtonPoint {
+    fn unrefined(&self, places: [SheetCoordinates; 2], at: DVec3) -> NewtonPoint {
         let feet = [0, 1].map(|side| self.grounds[side].foot(&places[side], at));
         let [one, two] = feet;
         let places = [SheetCoordinates { uv: one.uv, ..places[0] }, SheetCoordinates { uv: two.uv, ..places[1] }];
@@ -244,7 +244,7 @@ pub fn beside(foot: &Foot, at: DVec3) -> f64 {
 }
 
 /// The vector with given heights over three planes through the origin, of unit normals; none if they do not determine it.
-fn meeting([a, b, c]: [DVec3; 3], heights: [f64; 3]) -> Option<DVec3> {
+fn plane_intersection([a, b, c]: [DVec3; 3], heights: [f64; 3]) -> Option<DVec3> {
     let (bc, ca, ab) = (b.cross(c), c.cross(a), a.cross(b));
     let determinant = a.dot(bc);
     let step = (bc * heights[0] + ca * heights[1] + ab * heights[2]) / determinant;

@@ -73,7 +73,7 @@ pub fn find(grounds: &[PreparedSheet<'_>; 2]) -> TrianglePolylines {
             lines.push(Line { ends, triangles });
         }
     }
-    raw.chains = chains(&points, &lines);
+    raw.chains = polylines(&points, &lines);
     raw.near = touching(grounds, &pairs);
     raw
 }
@@ -188,7 +188,7 @@ fn part(over: f64, under: f64) -> f64 {
 }
 
 /// Lines as runs that end where other than two of them meet.
-fn chains(points: &[DVec3], lines: &[Line]) -> Vec<TrianglePolyline> {
+fn polylines(points: &[DVec3], lines: &[Line]) -> Vec<TrianglePolyline> {
     let mut at: Vec<Vec<u32>> = vec![Vec::new(); points.len()];
     for (line, index) in lines.iter().zip(0..) {
         line.ends.iter().for_each(|&end| at[end as usize].push(index));

@@ -142,7 +142,7 @@ fn divide(
     }
     let along = way / length;
     let places = if from.mark == Mark::Branching { to.places } else { from.places };
-    let met = solver.meet(places, from.position.midpoint(to.position), Some(along), length);
+    let met = solver.solve(places, from.position.midpoint(to.position), Some(along), length);
     if met.failure.is_some() {
         return 1;
     }

@@ -96,7 +96,7 @@ impl<'a> PreparedSheet<'a> {
     }
 
     /// Where a point near a triangle is taken to be on its surface.
-    pub fn place(&self, triangle: u32, at: DVec3) -> SheetCoordinates {
+    pub fn coordinates(&self, triangle: u32, at: DVec3) -> SheetCoordinates {
         let [a, b, c] = weights(self.sheet.mesh.corners(triangle as usize), at);
         match self.surface(triangle) {
             Some((surface, _)) => {
@@ -125,7 +125,7 @@ impl<'a> PreparedSheet<'a> {
         let ways = self.crossings.get(&place.surface?)?;
         let distance = |way: &Crossing| way.middle.distance_squared(at);
         let way = ways.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
-        Some(self.place(way.triangle, at))
+        Some(self.coordinates(way.triangle, at))
     }
 
     /// How far the surface may be from a triangle that stands for it; 0 where they are one.

@@ -12,7 +12,7 @@ use crate::solid::{Body, ExactSolid, Expression};
 use crate::surface::{Parallelogram, Surface, Tolerance, teapot, tessellate};
 
 fn solid(body: Body, chord: f64, placement: DAffine3) -> ExactSolid {
-    body.solid(Tolerance::new(chord, 45.0)).unwrap().placed(&placement).unwrap()
+    body.solid(Tolerance::new(chord, 45.0)).unwrap().transformed(&placement).unwrap()
 }
 
 fn moved(x: f64, y: f64, z: f64) -> DAffine3 {

@@ -98,11 +98,11 @@ impl CriticalPoint {
     pub fn point(&self, mark: Mark, tangent: DVec3, tolerance: f64) -> CurvePoint {
         let residual = self.gap.abs();
         let failure = (residual > tolerance).then_some(Inaccuracy::Parallel);
-        CurvePoint { tangent, ..NewtonPoint { failure, residual, ..self.met() }.point(mark) }
+        CurvePoint { tangent, ..NewtonPoint { failure, residual, ..self.newton_point() }.point(mark) }
     }
 
     /// As a beginning of other points.
-    pub fn met(&self) -> NewtonPoint {
+    pub fn newton_point(&self) -> NewtonPoint {
         NewtonPoint { at: self.at, places: self.places, normals: self.normals, residual: self.gap.abs(), failure: None }
     }
 
@@ -128,7 +128,7 @@ pub fn find(solver: &NewtonSolver<'_>, raw: &TrianglePolylines) -> Zones {
         let small = usize::from(one > two);
         let corners = solver.grounds[small].sheet.mesh.corners(pair[small] as usize);
         let start = corners.iter().sum::<DVec3>() / 3.0;
-        let places = [0, 1].map(|k| solver.grounds[k].place(pair[k], start));
+        let places = [0, 1].map(|k| solver.grounds[k].coordinates(pair[k], start));
         let (reach, error) =
             (3.0 * one.min(two), solver.grounds[0].sagitta(pair[0]) + solver.grounds[1].sagitta(pair[1]));
         let critical = solver.critical(places, start, reach)?;

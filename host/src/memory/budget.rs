@@ -55,7 +55,7 @@ pub fn left() -> u64 {
 ///
 /// # Errors
 /// [`Excess`] where fewer are left.
-pub fn ask(bytes: u64, what: impl FnOnce() -> String) -> Result<(), MemoryExceeded> {
+pub fn reserve(bytes: u64, what: impl FnOnce() -> String) -> Result<(), MemoryExceeded> {
     let left = left();
     if bytes <= left {
         return Ok(());
@@ -119,7 +119,7 @@ mod tests {
     #[test]
     fn without_a_limit_everything_is_granted() {
         assert_eq!((limit(), left()), (None, u64::MAX));
-        assert_eq!(ask(u64::MAX, || unreachable!("granted")), Ok(()));
+        assert_eq!(reserve(u64::MAX, || unreachable!("granted")), Ok(()));
     }
 
     #[test]

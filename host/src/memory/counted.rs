@@ -20,7 +20,7 @@ static EXCEEDED: OnceLock<fn(u64) -> !> = OnceLock::new();
 
 thread_local! {
     /// What the common count has not heard of.
-    static UNTOLD: Cell<i64> = const { Cell::new(0) };
+    static UNREPORTED: Cell<i64> = const { Cell::new(0) };
 }
 
 /// The system's allocator with a count of what is held, and a limit.
@@ -63,7 +63,7 @@ fn size_of_block(size: usize) -> i64 {
 }
 
 fn count(bytes: i64) {
-    let told = UNTOLD.try_with(|untold| {
+    let told = UNREPORTED.try_with(|untold| {
         let sum = untold.get().saturating_add(bytes);
         let is_much = sum.abs() >= BATCH;
         untold.set(if is_much { 0 } else { sum });

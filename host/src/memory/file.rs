@@ -1,6 +1,6 @@
 //! Files that are read as a whole, if there is memory for them.
 
-use super::ask;
+use super::reserve;
 use std::io;
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use std::path::Path;
 /// # Errors
 /// Those of [`files::read`], and [`super::Excess`] as another error.
 pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
-    ask_for(path, most)?;
+    reserve_for(path, most)?;
     files::read(path, most)
 }
 
@@ -22,12 +22,12 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// # Errors
 /// Those of [`files::read_text`], and [`super::Excess`] as another error.
 pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
-    ask_for(path, most)?;
+    reserve_for(path, most)?;
     files::read_text(path, most)
 }
 
 /// Asks for the memory of a file that is not too long anyway. What is no file is left to whoever opens it.
-fn ask_for(path: &Path, most: u64) -> io::Result<()> {
+fn reserve_for(path: &Path, most: u64) -> io::Result<()> {
     let length = std::fs::metadata(path).map_or(0, |found| found.len());
-    ask(length.min(most), || "its content".into()).map_err(io::Error::other)
+    reserve(length.min(most), || "its content".into()).map_err(io::Error::other)
 }

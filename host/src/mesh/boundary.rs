@@ -50,7 +50,7 @@ impl Mesh {
             // vertex as arrive there.
             let mut walk = vec![start];
             let mut place_of = BTreeMap::from([(start, 0)]);
-            while let Some(next) = walk.last().and_then(|here| take_onward(&mut onward, *here)) {
+            while let Some(next) = walk.last().and_then(|here| take_following(&mut onward, *here)) {
                 if let Some(first) = place_of.get(&next).copied() {
                     let closed: Vec<u32> = walk.drain(first..).collect();
                     closed.iter().for_each(|vertex| _ = place_of.remove(vertex));
@@ -64,7 +64,7 @@ impl Mesh {
     }
 }
 
-fn take_onward(onward: &mut BTreeMap<u32, Vec<u32>>, from: u32) -> Option<u32> {
+fn take_following(onward: &mut BTreeMap<u32, Vec<u32>>, from: u32) -> Option<u32> {
     let ends = onward.get_mut(&from)?;
     let next = ends.pop();
     if ends.is_empty() {

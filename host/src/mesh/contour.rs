@@ -16,8 +16,8 @@ pub(super) struct SmoothOutline {
 
 impl EdgeTable {
     /// Outlines within smooth parts.
-    pub(super) fn contour(&self, mesh: &Mesh, selection: &EdgeSelection) -> SmoothOutline {
-        selection.outline.map_or_else(SmoothOutline::default, |eye| contour(self, mesh, eye))
+    pub(super) fn smooth_outline(&self, mesh: &Mesh, selection: &EdgeSelection) -> SmoothOutline {
+        selection.outline.map_or_else(SmoothOutline::default, |eye| smooth_outline(self, mesh, eye))
     }
 }
 
@@ -27,7 +27,7 @@ impl EdgeTable {
 ///
 /// # Source
 /// Hertzmann and Zorin 2000, illustrating smooth surfaces.
-fn contour(table: &EdgeTable, mesh: &Mesh, eye: Viewer) -> SmoothOutline {
+fn smooth_outline(table: &EdgeTable, mesh: &Mesh, eye: Viewer) -> SmoothOutline {
     let mut contour = SmoothOutline::default();
     let mut known: FxHashMap<[u32; 2], u32> = FxHashMap::default();
     for (triangle, normals) in mesh.corner_normals.iter().enumerate() {

@@ -147,7 +147,7 @@ impl EdgeTable {
     /// Outlines within smooth parts are no edges and do not come.
     pub fn select<'a>(&'a self, mesh: &'a Mesh, selection: &'a EdgeSelection) -> impl Iterator<Item = &'a Edge> + 'a {
         let facing = selection.outline.map(|eye| facing(mesh, eye));
-        self.edges.iter().filter(move |edge| self.is_wanted(mesh, selection, facing.as_deref(), edge))
+        self.edges.iter().filter(move |edge| self.is_selected(mesh, selection, facing.as_deref(), edge))
     }
 
     pub(super) fn is_collapsed(&self, mesh: &Mesh, triangle: usize) -> bool {
@@ -155,7 +155,7 @@ impl EdgeTable {
         a == b || b == c || c == a
     }
 
-    fn is_wanted(&self, mesh: &Mesh, selection: &EdgeSelection, facing: Option<&[bool]>, edge: &Edge) -> bool {
+    fn is_selected(&self, mesh: &Mesh, selection: &EdgeSelection, facing: Option<&[bool]>, edge: &Edge) -> bool {
         let (a, b) = match self.uses(edge) {
             [_] => return selection.boundary,
             [a, b] => (a, b),

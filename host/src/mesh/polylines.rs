@@ -57,7 +57,7 @@ pub fn polylines_of_groups(mesh: &Mesh, selection: &EdgeSelection, group_of: &[u
         let last = table.uses(edge).iter().map(group).max().unwrap_or(0);
         edges[last].push(edge.ends);
     }
-    let contour = table.contour(mesh, selection);
+    let contour = table.smooth_outline(mesh, selection);
     let points: Vec<DVec3> = mesh.vertices.iter().copied().chain(contour.points).collect();
     for (ends, triangle) in contour.lines {
         let group = group_of.get(triangle as usize).map_or(0, |group| *group as usize);

@@ -186,7 +186,7 @@ impl Collapse {
 
     /// Whether a surface stays the surface it was: the ends have no neighbours in common but those across the edge,
     /// no two borders grow together, and what is left is more than one triangle or two back to back.
-    fn keeps_the_surface(&self, [a, b]: [u32; 2]) -> bool {
+    fn preserves_topology(&self, [a, b]: [u32; 2]) -> bool {
         let [near_a, near_b] = [a, b].map(|end| self.corners_around(end));
         let common = near_a.iter().filter(|corner| near_b.binary_search(corner).is_ok()).count();
         let triangles = |vertex: u32| self.around[vertex as usize].iter().map(|t| self.triangles[*t as usize]);
@@ -200,7 +200,7 @@ impl Collapse {
     }
 
     /// Whether no triangle at a vertex turns over when it moves, but those that go with the other end.
-    fn keeps_its_sides(&self, vertex: u32, other: u32, place: DVec3) -> bool {
+    fn preserves_orientation(&self, vertex: u32, other: u32, place: DVec3) -> bool {
         let triangles = self.around[vertex as usize].iter().map(|t| self.triangles[*t as usize]);
         let mut staying = triangles.filter(|t| *t != GONE && !t.contains(&other));
         staying.all(|t| {
@@ -216,9 +216,9 @@ impl Collapse {
         let (from, to) = (a as usize, b as usize);
         let is_old = [self.moves[from], self.moves[to]] != moves;
         if is_old
-            || !self.keeps_the_surface([a, b])
-            || !self.keeps_its_sides(a, b, place)
-            || !self.keeps_its_sides(b, a, place)
+            || !self.preserves_topology([a, b])
+            || !self.preserves_orientation(a, b, place)
+            || !self.preserves_orientation(b, a, place)
         {
             return;
         }

@@ -10,6 +10,6 @@ use super::edges::{EdgeTable, EdgeSelection};
 pub fn wire(mesh: &Mesh, selection: &EdgeSelection) -> Vec<[DVec3; 2]> {
     let table = EdgeTable::of(mesh);
     let edges = table.select(mesh, selection).map(|edge| edge.ends.map(|vertex| mesh.vertices[vertex as usize]));
-    let SmoothOutline { points, lines } = table.contour(mesh, selection);
+    let SmoothOutline { points, lines } = table.smooth_outline(mesh, selection);
     edges.chain(lines.iter().map(|(ends, _)| ends.map(|point| points[point as usize]))).collect()
 }

@@ -12,4 +12,4 @@ pub mod sampling;
 pub mod sequence;
 pub mod triangle;
 
-pub(crate) use print::print_of;
+pub(crate) use print::debug_hash;

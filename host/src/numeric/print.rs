@@ -6,7 +6,7 @@ use std::hash::Hasher;
 
 /// A number that values with the same text for programmers have in common, and others hardly ever: values that hold
 /// floating-point numbers are sorted by it before they are compared.
-pub(crate) fn print_of(value: &impl Debug) -> u64 {
+pub(crate) fn debug_hash(value: &impl Debug) -> u64 {
     struct Hashed(FxHasher);
     impl Write for Hashed {
         fn write_str(&mut self, text: &str) -> fmt::Result {
@@ -26,7 +26,7 @@ mod tests {
 
     #[test]
     fn equal_values_have_one_number_and_others_have_others() {
-        assert_eq!(print_of(&[0.1, 0.2]), print_of(&[0.1, 0.2]));
-        assert_ne!(print_of(&[0.1, 0.2]), print_of(&[0.1, 0.200_000_000_000_000_04]));
+        assert_eq!(debug_hash(&[0.1, 0.2]), debug_hash(&[0.1, 0.2]));
+        assert_ne!(debug_hash(&[0.1, 0.2]), debug_hash(&[0.1, 0.200_000_000_000_000_04]));
     }
 }

@@ -72,7 +72,7 @@ pub fn stratified(count: usize, stream: &mut RandomStream) -> Vec<[f64; 2]> {
 /// # Source
 /// Roberts 2018, "The unreasonable effectiveness of quasirandom sequences" (R2).
 #[inline]
-pub fn even(index: u32, shift: [f64; 2]) -> [f64; 2] {
+pub fn r2_point(index: u32, shift: [f64; 2]) -> [f64; 2] {
     const G: f64 = 1.324_717_957_244_746;
     let place = |step: f64, shift: f64| (f64::from(index) * step + shift).fract();
     [place(1.0 / G, shift[0]), place(1.0 / (G * G), shift[1])]
@@ -127,7 +127,7 @@ mod tests {
     /// Mean of a function over an even set of points.
     fn mean(f: impl Fn([f64; 2]) -> f64) -> f64 {
         const COUNT: u32 = 20_000;
-        (0..COUNT).map(|i| f(even(i, [0.5, 0.5]))).sum::<f64>() / f64::from(COUNT)
+        (0..COUNT).map(|i| f(r2_point(i, [0.5, 0.5]))).sum::<f64>() / f64::from(COUNT)
     }
 
     #[test]

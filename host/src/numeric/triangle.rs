@@ -126,7 +126,7 @@ impl Shear {
     /// Corners and edges belong to the triangle. A triangle that the ray sees exactly edge-on, and one without
     /// area, is not met: in a closed surface its neighbours are.
     #[inline(always)]
-    pub fn crossing(&self, [a, b, c]: [DVec3; 3]) -> Option<TriangleIntersection> {
+    pub fn intersection(&self, [a, b, c]: [DVec3; 3]) -> Option<TriangleIntersection> {
         let (a, b, c) = (self.place(a), self.place(b), self.place(c));
         let first = cross_sign([c[0], c[1]], [b[0], b[1]]);
         let second = cross_sign([a[0], a[1]], [c[0], c[1]]);
@@ -202,7 +202,7 @@ mod tests {
             let origin = sphere(stream.point()) * 3.0;
             let ray = Ray { origin, direction: (target - origin) * 0.25 };
             let edge = u.min(v).min(1.0 - u - v);
-            match Shear::new(&ray, 1.0).and_then(|shear| shear.crossing(corners)) {
+            match Shear::new(&ray, 1.0).and_then(|shear| shear.intersection(corners)) {
                 Some(crossing) => {
                     let area = (corners[1] - corners[0]).cross(corners[2] - corners[0]).length();
                     let tilt = (corners[1] - corners[0]).cross(corners[2] - corners[0]).dot(ray.direction).abs() / area;
@@ -219,16 +219,16 @@ mod tests {
         let [a, b, c, d] = [DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0), DVec3::X, DVec3::Z * 4.0];
         let ray = Ray { origin: DVec3::new(0.5, 1.0, 9.5), direction: DVec3::NEG_Z };
         let shear = Shear::new(&ray, 1.0).expect("a sound ray");
-        let one = shear.crossing([a, b, c]).expect("on the edge");
+        let one = shear.intersection([a, b, c]).expect("on the edge");
         assert_eq!((one.t, one.u, one.v), (8.0, 0.5, 0.0));
-        assert_eq!(shear.crossing([c, a, b]).map(|hit| hit.t), Some(8.0));
-        assert_eq!(shear.crossing([d, a, a]), None);
+        assert_eq!(shear.intersection([c, a, b]).map(|hit| hit.t), Some(8.0));
+        assert_eq!(shear.intersection([d, a, a]), None);
     }
 
     #[test]
     fn a_triangle_seen_edge_on_is_not_met() {
         let ray = Ray { origin: DVec3::new(-1.0, 0.25, 0.0), direction: DVec3::X };
         let shear = Shear::new(&ray, 1.0).expect("a sound ray");
-        assert_eq!(shear.crossing([DVec3::ZERO, DVec3::X, DVec3::Y]), None);
+        assert_eq!(shear.intersection([DVec3::ZERO, DVec3::X, DVec3::Y]), None);
     }
 }

@@ -120,9 +120,9 @@ impl OctreeBuilder<'_> {
     pub fn references_in(&self, cell: LocationalCode, triangles: &[u32]) -> Vec<TriangleReference> {
         let mut references: Vec<TriangleReference> = triangles.iter().filter_map(|&t| self.reference(t)).collect();
         for level in 0..cell.level() {
-            let eighths = self.distribute(cell.ancestor(level), &references);
+            let octants = self.distribute(cell.ancestor(level), &references);
             references =
-                cell.digit(level + 1).and_then(|digit| eighths.into_iter().nth(digit.into())).unwrap_or_default();
+                cell.digit(level + 1).and_then(|digit| octants.into_iter().nth(digit.into())).unwrap_or_default();
         }
         references
     }
@@ -197,27 +197,27 @@ impl OctreeBuilder<'_> {
             leaves.push(cell, references.iter().map(|r| r.triangle));
             return;
         }
-        let eighths = eighths(cell).zip(self.distribute(cell, &references));
+        let octants = octants(cell).zip(self.distribute(cell, &references));
         drop(references);
         if count > self.grain {
-            let parts: Vec<Leaves> = eighths
+            let parts: Vec<Leaves> = octants
                 .collect::<Vec<_>>()
                 .into_par_iter()
-                .map(|(eighth, references)| {
+                .map(|(octant, references)| {
                     let mut part = Leaves::default();
-                    self.divide(eighth, references, within(homes, eighth), &mut part);
+                    self.divide(octant, references, within(homes, octant), &mut part);
                     part
                 })
                 .collect();
             parts.iter().for_each(|part| leaves.append(part, 0..part.codes.len()));
         } else {
-            eighths.for_each(|(eighth, references)| self.divide(eighth, references, within(homes, eighth), leaves));
+            octants.for_each(|(octant, references)| self.divide(octant, references, within(homes, octant), leaves));
         }
     }
 
-    /// Gives the triangles of a cell to its eighths, each to all that it touches.
+    /// Gives the triangles of a cell to its octants, each to all that it touches.
     pub fn distribute(&self, cell: LocationalCode, references: &[TriangleReference]) -> [Vec<TriangleReference>; 8] {
-        let mut eighths: [Vec<TriangleReference>; 8] = Default::default();
+        let mut octants: [Vec<TriangleReference>; 8] = Default::default();
         let (low, half) = place(cell);
         let middle = low.map(|x| x + half);
         for reference in references {
@@ -229,21 +229,21 @@ impl OctreeBuilder<'_> {
                 above |= usize::from(f64::from(high) >= middle - FAT) << axis;
             }
             if below & above == 0 {
-                eighths[above].push(*reference);
+                octants[above].push(*reference);
                 continue;
             }
             let corners = self.corners(reference.triangle);
-            for (digit, eighth) in eighths.iter_mut().enumerate() {
+            for (digit, octant) in octants.iter_mut().enumerate() {
                 if (digit & !above) | (!digit & 7 & !below) != 0 {
                     continue;
                 }
                 let corner = [0, 1, 2].map(|axis| if digit >> axis & 1 == 1 { middle[axis] } else { low[axis] });
                 if let Some(bounds) = clipped_bounds(corners, corner, corner.map(|x| x + half)) {
-                    eighth.push(TriangleReference { triangle: reference.triangle, bounds });
+                    octant.push(TriangleReference { triangle: reference.triangle, bounds });
                 }
             }
         }
-        eighths
+        octants
     }
 
     /// Bounds of the part of a triangle in a cell; `None` if it does not touch the cell.
@@ -259,8 +259,8 @@ pub fn place(cell: LocationalCode) -> ([f64; 3], f64) {
     (cell.corner().map(|c| f64::from(c) * VOXEL), f64::from(cell.side()) * VOXEL * 0.5)
 }
 
-/// The eighths of a cell in order.
-pub fn eighths(cell: LocationalCode) -> impl Iterator<Item = LocationalCode> {
+/// The octants of a cell in order.
+pub fn octants(cell: LocationalCode) -> impl Iterator<Item = LocationalCode> {
     (0..8).filter_map(move |digit| cell.child(digit))
 }
 

@@ -301,7 +301,7 @@ impl Search<'_> {
         while lanes != 0 {
             let lane = lanes.trailing_zeros() as usize & (LANES - 1);
             lanes &= lanes - 1;
-            if self.crossed(packet.triangles[lane], self.corners(packet, lane)).is_some_and(&mut *enough) {
+            if self.intersection(packet.triangles[lane], self.corners(packet, lane)).is_some_and(&mut *enough) {
                 return true;
             }
         }

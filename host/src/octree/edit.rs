@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::build::{OctreeBuilder, Leaves, Nodes, TriangleReference, eighths, within};
+use super::build::{OctreeBuilder, Leaves, Nodes, TriangleReference, octants, within};
 use super::code::LocationalCode;
 use super::error::{MAX_TRIANGLES, OctreeError, check};
 use super::index::WideBvh;
@@ -119,7 +119,7 @@ impl Edit<'_> {
         // As many triangles as this or fewer touch the cell; they are counted only where their number might matter.
         let most = self.old.range(nodes.clone()).len() + added.len();
         if !is_whole && self.division.is_divided(cell, homes.len(), most) {
-            self.eighths(cell, nodes, homes, &added, leaves);
+            self.octants(cell, nodes, homes, &added, leaves);
             return;
         }
         let mut triangles = self.old.triangles[self.old.range(nodes.clone())].to_vec();
@@ -131,14 +131,14 @@ impl Edit<'_> {
             true if is_whole => {
                 self.division.divide(cell, self.division.references_in(cell, &triangles), homes, leaves);
             }
-            true => self.eighths(cell, nodes, homes, &added, leaves),
+            true => self.octants(cell, nodes, homes, &added, leaves),
             false if triangles.is_empty() => {}
             false => leaves.push(cell, triangles.into_iter()),
         }
     }
 
     /// Edits the eighths of a cell that was divided and stays so.
-    fn eighths(
+    fn octants(
         &self,
         cell: LocationalCode,
         nodes: Range<usize>,
@@ -146,7 +146,7 @@ impl Edit<'_> {
         added: &[TriangleReference],
         leaves: &mut Leaves,
     ) {
-        for (eighth, added) in eighths(cell).zip(self.division.distribute(cell, added)) {
+        for (eighth, added) in octants(cell).zip(self.division.distribute(cell, added)) {
             let nodes = self.old.within(eighth, nodes.clone());
             self.cell(eighth, nodes, within(homes, eighth), added, leaves);
         }

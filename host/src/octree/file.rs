@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::build::{OctreeBuilder, Leaves, Nodes, TriangleReference, eighths};
+use super::build::{OctreeBuilder, Leaves, Nodes, TriangleReference, octants};
 use super::code::{LocationalCode, MAX_DEPTH};
 use super::cube::Cube;
 use super::error::{OctreeError, check};
@@ -165,7 +165,7 @@ fn check_nodes(
     if nodes.is_empty() {
         return demand(references.is_empty(), "a triangle lies where there is no node");
     }
-    for (eighth, part) in eighths(cell).zip(division.distribute(cell, references)) {
+    for (eighth, part) in octants(cell).zip(division.distribute(cell, references)) {
         check_nodes(division, leaves, eighth, leaves.within(eighth, nodes.clone()), &part)?;
     }
     Ok(())

@@ -28,7 +28,7 @@ impl Octree {
     ///
     /// - Returns [`Side::Outside`] for a point that is not finite, and [`Side::Inside`] wherever the surface winds around
     ///   the point, however often and whichever way.
-    pub fn side(&self, point: DVec3) -> Containment {
+    pub fn containment(&self, point: DVec3) -> Containment {
         let Some(mut voxel) = self.cube.voxel(point) else { return Containment::Outside };
         let mut ahead = Vec::new();
         loop {
@@ -46,7 +46,7 @@ impl Octree {
         ahead.sort_unstable();
         ahead.dedup();
         let corners = |&triangle: &u32| self.triangles[triangle as usize].map(|i| self.vertices[i as usize]);
-        side(point, ahead.iter().map(corners), self.cube.side.recip())
+        containment(point, ahead.iter().map(corners), self.cube.side.recip())
     }
 }
 
@@ -54,7 +54,7 @@ impl TriangleBvh {
     /// Says on which side of the triangles a point lies, as [`Octree::side`] does.
     ///
     /// - `corners`: the corners of a triangle.
-    pub fn side(&self, point: DVec3, corners: impl Fn(u32) -> [DVec3; 3]) -> Containment {
+    pub fn containment(&self, point: DVec3, corners: impl Fn(u32) -> [DVec3; 3]) -> Containment {
         let bounds = self.bounds();
         if !bounds.touches(Bounds { min: point, max: point }) {
             return Containment::Outside;
@@ -63,14 +63,14 @@ impl TriangleBvh {
         self.touching(Bounds { min: point, max: point.with_x(f64::INFINITY) }, |triangle| {
             ahead.push(corners(triangle))
         });
-        side(point, ahead.into_iter(), Cube::around(bounds.min, bounds.max).side.recip())
+        containment(point, ahead.into_iter(), Cube::around(bounds.min, bounds.max).side.recip())
     }
 }
 
 /// On which side of a surface a point lies; `ahead` are all triangles, each once, that a ray along x may meet.
 ///
 /// - `scale`: a power of two that brings the surface to about size 1, so that no product leaves the range of numbers.
-fn side(point: DVec3, ahead: impl Iterator<Item = [DVec3; 3]>, scale: f64) -> Containment {
+fn containment(point: DVec3, ahead: impl Iterator<Item = [DVec3; 3]>, scale: f64) -> Containment {
     let point = point * scale;
     let mut winding = 0;
     for corners in ahead {
@@ -90,17 +90,17 @@ fn side(point: DVec3, ahead: impl Iterator<Item = [DVec3; 3]>, scale: f64) -> Co
 }
 
 /// A point seen along an axis, so that the other two turn from the next to the one after it.
-fn seen(point: DVec3, axis: usize) -> DVec2 {
+fn projected(point: DVec3, axis: usize) -> DVec2 {
     DVec2::new(point[(axis + 1) % 3], point[(axis + 2) % 3])
 }
 
 /// Whether a point of its plane lies in a triangle; its edges count, a triangle without area does not.
 fn is_in_plane_of([a, b, c]: [DVec3; 3], point: DVec3) -> bool {
-    let facing = |axis: &usize| turn(seen(a, *axis), seen(b, *axis), seen(c, *axis));
+    let facing = |axis: &usize| turn(projected(a, *axis), projected(b, *axis), projected(c, *axis));
     let Some((axis, facing)) = (0..3).map(|axis| (axis, facing(&axis))).find(|(_, facing)| *facing != 0.0) else {
         return false;
     };
-    let turns = |from, to| turn(seen(point, axis), seen(from, axis), seen(to, axis));
+    let turns = |from, to| turn(projected(point, axis), projected(from, axis), projected(to, axis));
     [(a, b), (b, c), (c, a)].into_iter().all(|(from, to)| turns(from, to) * facing.signum() >= 0.0)
 }
 
@@ -108,12 +108,12 @@ fn is_in_plane_of([a, b, c]: [DVec3; 3], point: DVec3) -> bool {
 ///
 /// - `height`: above the triangle, negative in front of it.
 fn passes([a, b, c]: [DVec3; 3], point: DVec3, height: f64) -> i32 {
-    let facing = turn(seen(a, 0), seen(b, 0), seen(c, 0));
+    let facing = turn(projected(a, 0), projected(b, 0), projected(c, 0));
     if facing == 0.0 {
         return 0;
     }
     for (from, to) in [(a, b), (b, c), (c, a)] {
-        let mut turns = turn(seen(point, 0), seen(from, 0), seen(to, 0));
+        let mut turns = turn(projected(point, 0), projected(from, 0), projected(to, 0));
         if turns == 0.0 {
             // The derivatives of the turn by y and by z.
             let by = [from.z - to.z, to.y - from.y];

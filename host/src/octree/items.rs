@@ -1,6 +1,6 @@
 //! What the index holds, in the order of locational codes: triangles, and pieces of large ones that are thin and slanted.
 
-use super::build::{OctreeBuilder, eighths, place};
+use super::build::{OctreeBuilder, octants, place};
 use super::clip::{LocalBounds, FAT};
 use super::code::{LocationalCode, MAX_DEPTH};
 use super::sorted::{DIGITS, radix_sorted};
@@ -183,5 +183,5 @@ fn collect(division: &OctreeBuilder<'_>, triangle: u32, cell: LocationalCode, le
             _ => f64::from(piece.high[axis]) >= low[axis] + half - FAT,
         })
     };
-    eighths(cell).filter(touches).for_each(|eighth| collect(division, triangle, eighth, level, pieces));
+    octants(cell).filter(touches).for_each(|eighth| collect(division, triangle, eighth, level, pieces));
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::build::eighths;
+use super::build::octants;
 use super::{LocationalCode, Octree};
 
 impl Octree {
@@ -39,7 +39,7 @@ impl Octree {
             found.push(cube);
             return;
         }
-        for (digit, eighth) in eighths(cube).enumerate() {
+        for (digit, eighth) in octants(cube).enumerate() {
             let reaches = |axis: usize| match towards[axis] {
                 1 => digit >> axis & 1 == 0,
                 -1 => digit >> axis & 1 == 1,

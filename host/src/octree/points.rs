@@ -95,7 +95,7 @@ impl SortedPoints {
     /// The points around a place: within a radius, or within a half, a quarter and so on of it, so that there are not many.
     ///
     /// - `most`: so many are not many.
-    pub fn around(&self, place: DVec3, radius: f64, most: usize) -> NearbyPoints {
+    pub fn nearby(&self, place: DVec3, radius: f64, most: usize) -> NearbyPoints {
         let local = self.cube.local(place);
         // Of a cube twice as wide as the radius and its three nearest neighbours along each axis.
         let mut level = (0.5 * self.cube.side / radius).log2().floor().clamp(0.0, f64::from(MAX_DEPTH)) as u32;
@@ -241,7 +241,7 @@ mod tests {
         }
         for centre in given.iter().step_by(997) {
             for (radius, most) in [(3.0, 100_000), (1.0, 300), (0.1, 50)] {
-                let around = points.around(*centre, radius, most);
+                let around = points.nearby(*centre, radius, most);
                 assert!(around.count <= most && around.reach <= radius);
                 let runs = around.runs.iter().flat_map(|run| run.clone());
                 let local = points.local(*centre);
@@ -260,15 +260,15 @@ mod tests {
                 assert_eq!(found, expected, "{radius} {most}");
             }
         }
-        let far = points.around(DVec3::splat(-1e6), 1.0, 10);
+        let far = points.nearby(DVec3::splat(-1e6), 1.0, 10);
         assert_eq!(far.count, 0);
     }
 
     #[test]
     fn points_at_one_place_and_no_points_are_no_trouble() {
         let (points, _) = SortedPoints::new(&vec![DVec3::splat(2.0); 1000]);
-        assert_eq!(points.around(DVec3::splat(2.0), 1.0, 10).count, 1000);
+        assert_eq!(points.nearby(DVec3::splat(2.0), 1.0, 10).count, 1000);
         let (none, _) = SortedPoints::new(&[DVec3::NAN]);
-        assert!(none.is_empty() && none.around(DVec3::ZERO, 1.0, 10).count == 0);
+        assert!(none.is_empty() && none.nearby(DVec3::ZERO, 1.0, 10).count == 0);
     }
 }

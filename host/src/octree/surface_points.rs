@@ -5,7 +5,7 @@
 //! where voxels are small beside what matters. Voxels that hold more than one surface, or one that bends, keep their
 //! triangles. Where a surface ends within a voxel, its point stands for it up to the voxel's sides.
 
-use super::build::{OctreeBuilder, Leaves, Nodes, PARALLEL_TRIANGLES, TriangleReference, eighths, place};
+use super::build::{OctreeBuilder, Leaves, Nodes, PARALLEL_TRIANGLES, TriangleReference, octants, place};
 use super::clip::clipped;
 use super::frame::PreparedRay;
 use super::index::WideBvh;
@@ -123,7 +123,7 @@ fn voxels(division: &OctreeBuilder<'_>, cell: LocationalCode, references: Vec<Tr
         leaves.push(cell, references.iter().map(|reference| reference.triangle));
         return leaves;
     }
-    let parts: Vec<_> = eighths(cell).zip(division.distribute(cell, &references)).collect();
+    let parts: Vec<_> = octants(cell).zip(division.distribute(cell, &references)).collect();
     drop(references);
     let divide = |(eighth, references)| voxels(division, eighth, references);
     let parts: Vec<Leaves> = match cell.level() < PARALLEL_LEVELS {

@@ -1,6 +1,6 @@
 //! Rays through the octree: down the index, or from cell to cell.
 
-use super::build::eighths;
+use super::build::octants;
 use super::clip::FAT;
 use super::code::{LocationalCode, MAX_DEPTH};
 use super::frame::PreparedRay;
@@ -72,8 +72,8 @@ impl Search<'_> {
 
     /// The hit of a triangle with given corners, decided in double precision.
     #[inline(always)]
-    pub(super) fn crossed(&self, triangle: u32, corners: [DVec3; 3]) -> Option<Hit> {
-        let crossing = self.line.shear.crossing(corners)?;
+    pub(super) fn intersection(&self, triangle: u32, corners: [DVec3; 3]) -> Option<Hit> {
+        let crossing = self.line.shear.intersection(corners)?;
         let is_within = crossing.t > self.t_min && crossing.t < self.t_max;
         is_within.then_some(Hit { t: crossing.t, triangle, u: crossing.u, v: crossing.v })
     }
@@ -81,7 +81,7 @@ impl Search<'_> {
     /// Decides in double precision whether a triangle with given corners is hit nearer than any before.
     #[inline(always)]
     pub(super) fn decide(&mut self, triangle: u32, corners: [DVec3; 3]) -> bool {
-        self.crossed(triangle, corners).is_some_and(|hit| self.offer(hit))
+        self.intersection(triangle, corners).is_some_and(|hit| self.offer(hit))
     }
 
     /// Takes a hit if it is nearer than any before; returns whether it is.
@@ -185,7 +185,7 @@ impl Search<'_> {
             }
             self.count.cells += 1;
             if leaves.codes[nodes.start] != cube {
-                cubes.extend(eighths(cube).map(|eighth| (eighth, leaves.within(eighth, nodes.clone()))));
+                cubes.extend(octants(cube).map(|eighth| (eighth, leaves.within(eighth, nodes.clone()))));
             } else if self.any_of_leaf(nodes.start) {
                 return;
             }

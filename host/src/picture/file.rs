@@ -83,7 +83,7 @@ impl Picture {
     pub(super) fn for_source(source: &PictureReader<'_>, path: &Path, bytes: usize) -> Result<Picture, PictureError> {
         let [width, height] = source.size();
         let bytes = Picture::pixels_of(width, height)? as u64 * bytes as u64;
-        memory::ask(bytes, || format!("{}: a picture of {width} x {height} pixels", path.display()))?;
+        memory::reserve(bytes, || format!("{}: a picture of {width} x {height} pixels", path.display()))?;
         Picture::new(width, height)
     }
 

@@ -91,7 +91,7 @@ impl Appearance {
             picture.pixels().par_iter().map(|pixel| opponent(DVec3::from_array(pixel.radiance.map(light)))).collect();
         let (width, height) = (picture.width() as usize, picture.height() as usize);
         let plane = |band: usize| Plane { width, height, values: opponents.iter().map(|o| o[band] as f32).collect() };
-        let filtered = [0, 1, 2].map(|band| plane(band).as_seen(&SENSITIVITY[band], density));
+        let filtered = [0, 1, 2].map(|band| plane(band).filtered(&SENSITIVITY[band], density));
         let color = |i: usize| {
             let seen = DVec3::from_array([0, 1, 2].map(|band| f64::from(filtered[band].values[i])));
             perceived(from_opponent(seen).clamp(DVec3::ZERO, DVec3::ONE))
@@ -156,7 +156,7 @@ struct Plane {
 
 impl Plane {
     /// Without the detail that is too fine to be seen.
-    fn as_seen(&self, gaussians: &[[f64; 2]; 2], density: f64) -> Plane {
+    fn filtered(&self, gaussians: &[[f64; 2]; 2], density: f64) -> Plane {
         let radius = (3.0 * (WIDEST / (2.0 * PI * PI)).sqrt() * density).ceil() as i64;
         let parts = gaussians.map(|[weight, width]| {
             let kernel = kernel(radius, |x| (-PI * PI * (x / density).powi(2) / width).exp());

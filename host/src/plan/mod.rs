@@ -120,12 +120,12 @@ impl Plan {
     }
 
     /// Whether an object, an index into [`objects`](crate::scene::Contents::objects), is kept.
-    pub fn keeps_object(&self, index: usize) -> bool {
+    pub fn includes_object(&self, index: usize) -> bool {
         self.objects.get(index).copied().unwrap_or(true)
     }
 
     /// Whether a light, an index into [`lights`](crate::scene::Contents::lights), is kept.
-    pub fn keeps_light(&self, index: usize) -> bool {
+    pub fn includes_light(&self, index: usize) -> bool {
         self.lights.get(index).copied().unwrap_or(true)
     }
 

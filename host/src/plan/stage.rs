@@ -32,7 +32,7 @@ pub enum Stage {
     /// What stands between the voxels of the scene and its lights, kept for rays towards them.
     LightBuffer,
     /// Light that is followed from lamps through mirrors and glass, and caught.
-    CaughtLight,
+    PhotonMap,
     /// Points of surfaces, one for each voxel, that rays meet instead of surfaces.
     SurfacePoints,
     /// Rays from mirrors, through glass, and from rough surfaces.
@@ -66,10 +66,10 @@ impl<'a> Facts<'a> {
     }
 
     fn count(&self, test: impl Fn(&Material) -> bool) -> usize {
-        self.kept().filter(|o| o.materials.iter().any(&test)).count()
+        self.included().filter(|o| o.materials.iter().any(&test)).count()
     }
 
-    fn kept(&self) -> impl Iterator<Item = &crate::scene::PreparedObject> {
+    fn included(&self) -> impl Iterator<Item = &crate::scene::PreparedObject> {
         self.prepared.objects.iter().zip(&self.kept).filter(|(o, kept)| **kept && o.count > 0).map(|(o, _)| o)
     }
 
@@ -79,7 +79,7 @@ impl<'a> Facts<'a> {
 
     /// Lights, and objects that emit.
     fn lights(&self) -> usize {
-        self.bright.iter().filter(|b| **b).count() + self.kept().filter(|object| self.emits(object)).count()
+        self.bright.iter().filter(|b| **b).count() + self.included().filter(|object| self.emits(object)).count()
     }
 
     /// Whether an object emits light.
@@ -157,7 +157,7 @@ impl Stage {
         Stage::Ambient,
         Stage::Shadows,
         Stage::LightBuffer,
-        Stage::CaughtLight,
+        Stage::PhotonMap,
         Stage::SurfacePoints,
         Stage::Reflection,
         Stage::Radiosity,
@@ -178,7 +178,7 @@ impl Stage {
             Stage::Ambient => "ambient term",
             Stage::Shadows => "shadows",
             Stage::LightBuffer => "light buffer",
-            Stage::CaughtLight => "caught light",
+            Stage::PhotonMap => "caught light",
             Stage::SurfacePoints => "points for surfaces",
             Stage::Reflection => "reflected and refracted rays",
             Stage::Radiosity => "radiosity",
@@ -189,7 +189,7 @@ impl Stage {
 
     /// Whether running it without need changes nothing.
     pub(super) fn is_forcible(self) -> bool {
-        !matches!(self, Stage::Spectra | Stage::CaughtLight | Stage::SurfacePoints | Stage::Radiosity)
+        !matches!(self, Stage::Spectra | Stage::PhotonMap | Stage::SurfacePoints | Stage::Radiosity)
     }
 
     pub(super) fn decide(self, facts: &Facts<'_>) -> Decision {
@@ -204,7 +204,7 @@ impl Stage {
             Stage::Ambient => ambient(facts),
             Stage::Shadows => facts.shadows(),
             Stage::LightBuffer => light_buffer(facts),
-            Stage::CaughtLight => caught_light(facts),
+            Stage::PhotonMap => photon_map(facts),
             Stage::SurfacePoints => surface_points(facts),
             Stage::Reflection => facts.reflection(),
             Stage::Radiosity => radiosity(facts),
@@ -230,7 +230,7 @@ fn light_buffer(facts: &Facts<'_>) -> Decision {
     if skies == facts.lights() {
         return Decision::new(false, "a sky is in all directions");
     }
-    let triangles = facts.kept().map(|o| u64::from(o.count)).sum::<u64>();
+    let triangles = facts.included().map(|o| u64::from(o.count)).sum::<u64>();
     if triangles < MANY_TRIANGLES {
         return Decision::new(false, "the octree finds its way as fast among so few triangles");
     }
@@ -238,8 +238,8 @@ fn light_buffer(facts: &Facts<'_>) -> Decision {
 }
 
 /// Caustics are more of the picture, not a better way to the same: forcing everything does not bring them.
-fn caught_light(facts: &Facts<'_>) -> Decision {
-    let (throwers, takers) = (facts.count(Material::may_throw), facts.count(|m| has_diffuse(m) || !m.may_throw()));
+fn photon_map(facts: &Facts<'_>) -> Decision {
+    let (throwers, takers) = (facts.count(Material::may_cast_caustics), facts.count(|m| has_diffuse(m) || !m.may_cast_caustics()));
     let lamps = facts.prepared.lights.iter().enumerate().filter(|(i, _)| facts.is_bright(*i));
     let even = lamps.filter(|(_, light)| light.is_even_sky()).count();
     let lamps = facts.lights() - even;
@@ -261,13 +261,13 @@ fn caught_light(facts: &Facts<'_>) -> Decision {
 fn surface_points(facts: &Facts<'_>) -> Decision {
     match facts.prepared.settings.photons.point_depth {
         None => Decision::new(false, "rays meet surfaces themselves, as the scene does not ask for points"),
-        Some(_) if !caught_light(facts).needed => Decision::new(false, "no light is followed from lamps"),
+        Some(_) if !photon_map(facts).needed => Decision::new(false, "no light is followed from lamps"),
         Some(depth) => Decision::new(true, format!("the scene asks for {} voxels a side", 1_u64 << depth)),
     }
 }
 
 fn radiosity(facts: &Facts<'_>) -> Decision {
-    let diffuse = facts.kept().filter(|object| object.materials.iter().any(has_diffuse));
+    let diffuse = facts.included().filter(|object| object.materials.iter().any(has_diffuse));
     let (objects, triangles) = diffuse.fold((0, 0), |(objects, all), object| (objects + 1, all + object.count));
     if facts.prepared.settings.light.interreflection != Interreflection::Solved {
         Decision::new(false, "the scene does not ask for it")
@@ -281,28 +281,28 @@ fn radiosity(facts: &Facts<'_>) -> Decision {
 }
 
 fn motion(facts: &Facts<'_>) -> Decision {
-    match facts.kept().filter(|o| o.motion.is_some()).count() {
+    match facts.included().filter(|o| o.motion.is_some()).count() {
         0 => Decision::new(false, "nothing moves while the shutter is open"),
         n => Decision::new(true, format!("{} in motion", counted(n, "object"))),
     }
 }
 
 fn octree(facts: &Facts<'_>) -> Decision {
-    match facts.kept().map(|o| u64::from(o.count)).sum::<u64>() {
+    match facts.included().map(|o| u64::from(o.count)).sum::<u64>() {
         0 => Decision::new(false, "no triangle can be seen: the picture is the background"),
         n => Decision::new(true, counted(n as usize, "triangle")),
     }
 }
 
 fn normals(facts: &Facts<'_>) -> Decision {
-    match facts.kept().filter(|o| o.is_curved()).count() {
+    match facts.included().filter(|o| o.is_curved()).count() {
         0 => Decision::new(false, "every object has flat faces"),
         n => Decision::new(true, format!("{} with curved surfaces", counted(n, "object"))),
     }
 }
 
 fn exact_surfaces(facts: &Facts<'_>) -> Decision {
-    match facts.kept().filter(|o| o.is_exact()).count() {
+    match facts.included().filter(|o| o.is_exact()).count() {
         0 if !facts.prepared.settings.geometry.exact_surfaces => Decision::new(false, "the scene asks for triangles"),
         0 => Decision::new(false, "no curved surface is known but by its triangles"),
         n => Decision::new(true, format!("{}, where rays meet them", counted(n, "object"))),
@@ -345,7 +345,7 @@ fn direct(facts: &Facts<'_>, what: &str, has: impl Fn(&Material) -> bool) -> Dec
 fn highlights(facts: &Facts<'_>) -> Decision {
     let mut decision = direct(facts, "highlight", has_highlight);
     let mut told = Vec::new();
-    for material in facts.kept().flat_map(|object| &object.materials) {
+    for material in facts.included().flat_map(|object| &object.materials) {
         let MaterialKind::Shaped(Distributed { form: DistributionForm::Facets(table), .. }) = &material.body else { continue };
         let TableError { greatest, mean, values } = table.error();
         let words = format!(

@@ -83,16 +83,16 @@ fn each_property_brings_its_stage() {
 
 #[test]
 fn an_object_out_of_view_is_kept_for_its_shadow_or_its_mirror_image_only() {
-    assert!(plan(&scene()).keeps_object(1), "it stands between the light and the cube in view");
+    assert!(plan(&scene()).includes_object(1), "it stands between the light and the cube in view");
     let mut lit_from_the_left = scene();
     lit_from_the_left.lights =
         vec![Light::Directional { direction: DVec3::new(1.0, 0.0, 0.0), irradiance: Color::grey(1.0) }];
-    assert!(!plan(&lit_from_the_left).keeps_object(1));
+    assert!(!plan(&lit_from_the_left).includes_object(1));
     let mut lamp = scene();
     lamp.lights = vec![Light::Point { at: DVec3::new(9.0, 9.0, 9.0), intensity: Color::grey(1.0) }];
-    assert!(!plan(&lamp).keeps_object(1), "beyond the lamp");
+    assert!(!plan(&lamp).includes_object(1), "beyond the lamp");
     material(&mut lamp).mirror = Paint::grey(0.5);
-    assert!(plan(&lamp).keeps_object(1), "a mirror may show it");
+    assert!(plan(&lamp).includes_object(1), "a mirror may show it");
 }
 
 #[test]
@@ -100,7 +100,7 @@ fn a_light_without_power_is_left_out() {
     let mut scene = scene();
     scene.lights.push(Light::Point { at: DVec3::Y, intensity: Color::BLACK });
     let plan = plan(&scene);
-    assert!(plan.keeps_light(0) && !plan.keeps_light(1));
+    assert!(plan.includes_light(0) && !plan.includes_light(1));
 }
 
 #[test]
@@ -110,7 +110,7 @@ fn a_forced_plan_leaves_nothing_out_and_says_so() {
     let prepared = Prepared::new(&scene).expect("a scene");
     let plan = Plan::everything(&prepared, &prepared.view());
     // Spectra, caustics and radiosity are another picture: they are not forced.
-    let others = [Stage::Spectra, Stage::CaughtLight, Stage::SurfacePoints, Stage::Radiosity];
+    let others = [Stage::Spectra, Stage::PhotonMap, Stage::SurfacePoints, Stage::Radiosity];
     let all = plan.entries.iter().filter(|e| others.iter().all(|stage| e.name != stage.word()));
     assert!(all.clone().count() + others.len() == plan.entries.len() && all.clone().all(|e| e.needed));
     assert!(Stage::ALL.into_iter().all(|s| plan.needs(s) != others.contains(&s)));

@@ -43,7 +43,7 @@ impl Outline {
         let mut ends = Vec::with_capacity(contours.len());
         let mut distinct = Vec::new();
         for contour in 0..contours.len() {
-            outline.keep(contour, &mut distinct, &mut kept)?;
+            outline.append_turning(contour, &mut distinct, &mut kept)?;
             ends.push(kept.len());
         }
         outline.rank(&kept, &ends);
@@ -66,7 +66,7 @@ impl Outline {
     }
 
     /// Appends the corners of a contour where it turns.
-    fn keep(&self, contour: usize, distinct: &mut Vec<u32>, kept: &mut Vec<u32>) -> Result<(), PolygonError> {
+    fn append_turning(&self, contour: usize, distinct: &mut Vec<u32>, kept: &mut Vec<u32>) -> Result<(), PolygonError> {
         let end = self.starts.get(contour + 1).copied().unwrap_or(self.corners.len());
         let at = |index: u32| self.corners[index as usize];
         distinct.clear();

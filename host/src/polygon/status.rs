@@ -106,7 +106,7 @@ impl Status {
 
     /// Adds an edge above the slot `below`.
     pub fn insert(&mut self, below: u32, slot: Slot) -> u32 {
-        let (mut block, mut position) = self.place_above(below);
+        let (mut block, mut position) = self.position_above(below);
         if self.blocks[block as usize].len == BLOCK {
             let upper = self.split(block);
             if position > BLOCK / 2 {
@@ -144,14 +144,14 @@ impl Status {
         block.slots.copy_within(position + 1..block.len, position);
         block.len -= 1;
         if block.len == 0 {
-            self.order.remove(place_of(&self.order, index));
+            self.order.remove(index_of(&self.order, index));
             self.free_blocks.push(index);
         }
         self.free.push(slot);
     }
 
     /// The block and the place in it for an edge above `below`.
-    fn place_above(&mut self, below: u32) -> (u32, usize) {
+    fn position_above(&mut self, below: u32) -> (u32, usize) {
         if below != OUTSIDE {
             let block = self[below].block;
             return (block, self.blocks[block as usize].position(below) + 1);
@@ -166,7 +166,7 @@ impl Status {
     /// Moves the upper half of a full block to a new one above it.
     fn split(&mut self, index: u32) -> u32 {
         let upper = self.new_block();
-        self.order.insert(place_of(&self.order, index) + 1, upper);
+        self.order.insert(index_of(&self.order, index) + 1, upper);
         let mut block = EMPTY;
         let full = &mut self.blocks[index as usize];
         block.slots[..BLOCK / 2].copy_from_slice(&full.slots[BLOCK / 2..]);
@@ -188,11 +188,11 @@ impl Status {
 
 impl Block {
     fn position(&self, slot: u32) -> usize {
-        place_of(&self.slots[..self.len], slot)
+        index_of(&self.slots[..self.len], slot)
     }
 }
 
 /// Where a list holds `value`. Every slot is listed in its block and every block in the order.
-fn place_of(list: &[u32], value: u32) -> usize {
+fn index_of(list: &[u32], value: u32) -> usize {
     list.iter().position(|&other| other == value).unwrap_or(list.len())
 }

@@ -201,7 +201,7 @@ impl Production {
         watch: &Watch<'_>,
     ) -> Result<RenderedView, ProductionError> {
         let view = View::Projection(self.projection(matrix));
-        progressive::shot(&self.prepared, &view, order, display, watch, None)
+        progressive::render_view(&self.prepared, &view, order, display, watch, None)
     }
 
     /// Begins to ray-trace the view of a matrix that was read back, beside whatever else is done.
@@ -250,7 +250,7 @@ impl Production {
     ///
     /// # Errors
     /// [`ProductionError::Workstation`].
-    pub fn say(&mut self, text: &str) -> Result<(), ProductionError> {
+    pub fn show_message(&mut self, text: &str) -> Result<(), ProductionError> {
         Ok(self.session.commands(&[network::message(text)])?)
     }
 

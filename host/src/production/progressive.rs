@@ -69,7 +69,7 @@ impl Progressive {
             };
             let watch = Watch { cancelled: &cancelled, stage: &stage, progress: &progress, memo: None };
             let mut part = |part: RenderingEvent| tell(part);
-            tell(RenderingEvent::End(shot(&prepared, &view, &order, &display, &watch, Some(&mut part)).map(Box::new)));
+            tell(RenderingEvent::End(render_view(&prepared, &view, &order, &display, &watch, Some(&mut part)).map(Box::new)));
         };
         let thread = std::thread::Builder::new().name("rendering".into());
         thread.spawn(work).map_err(|error| ProductionError::Thread(error.to_string()))?;
@@ -77,7 +77,7 @@ impl Progressive {
     }
 
     /// What is new, oldest first; of parts and amounts that follow each other, the last one only.
-    pub fn news(&self) -> Vec<RenderingEvent> {
+    pub fn events(&self) -> Vec<RenderingEvent> {
         let mut all: Vec<RenderingEvent> = Vec::new();
         loop {
             match self.news.try_recv() {
@@ -117,7 +117,7 @@ impl Drop for Progressive {
 /// Ray-traces a view.
 ///
 /// - `parts`: told of parts of the image while it grows, if anybody is.
-pub(super) fn shot(
+pub(super) fn render_view(
     prepared: &Prepared,
     view: &View,
     order: &RenderOrder,
@@ -148,9 +148,9 @@ pub(super) fn shot(
                 Ok(())
             };
             let checkpoints = Checkpoints { every: EVERY, keep: &mut keep };
-            tracer.go_on(film, view, order, watch, Some(checkpoints))?
+            tracer.resume(film, view, order, watch, Some(checkpoints))?
         }
-        None => tracer.go_on(film, view, order, watch, None)?,
+        None => tracer.resume(film, view, order, watch, None)?,
     };
     let shown = shown(&rendering.picture).map_err(RenderError::from)?;
     Ok(RenderedView { rendering, octree_bytes, build_seconds, shown, stops })

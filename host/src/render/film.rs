@@ -37,7 +37,7 @@ impl AdaptiveSampling {
     /// Begins a pass, unless one has begun already: pixels that are uncertain get more samples.
     ///
     /// - `samples`: of a pixel after the pass. `most`: of them in this pass.
-    pub(super) fn aim(&mut self, film: &Film, samples: u32, most: u32) {
+    pub(super) fn begin_pass(&mut self, film: &Film, samples: u32, most: u32) {
         if self.goals.is_empty() {
             let goal = |(tally, is_uncertain): (&Tally, bool)| match is_uncertain {
                 true => tally.count.max(samples.min(tally.count.saturating_add(most))),
@@ -48,7 +48,7 @@ impl AdaptiveSampling {
     }
 
     /// Ends a pass.
-    pub(super) fn pass(&mut self, samples: u32) {
+    pub(super) fn end_pass(&mut self, samples: u32) {
         self.passed = samples;
         self.goals.clear();
     }
@@ -107,7 +107,7 @@ impl Film {
     }
 
     /// This film, which keeps what a denoiser needs from now on; it has to be asked for before the first sample.
-    pub fn with_guides(mut self) -> Film {
+    pub fn with_features(mut self) -> Film {
         self.guides = bytemuck::zeroed_vec(self.tallies.len());
         prefer_large_pages(&mut self.guides);
         // See [`Film::untouched`] for why they are written.
@@ -172,13 +172,13 @@ impl Film {
     }
 
     /// What guides a denoiser, pixel by pixel; none unless it is kept.
-    pub fn guides(&self) -> &[PixelFeatures] {
+    pub fn features(&self) -> &[PixelFeatures] {
         &self.guides
     }
 
     /// What guides a denoiser, pixel by pixel; none unless it is kept.
     #[cfg(test)]
-    pub(super) fn guides_mut(&mut self) -> &mut [PixelFeatures] {
+    pub(super) fn features_mut(&mut self) -> &mut [PixelFeatures] {
         &mut self.guides
     }
 

@@ -56,10 +56,10 @@ impl Film {
         });
         let of_albedo = |(name, band): (&'static str, usize)| {
             let value = |(guide, tally): (&PixelFeatures, &Tally)| guide.albedo[band] / tally.count.max(1) as f32;
-            AnyChannel::new(name, FlatSamples::F32(self.guides().iter().zip(tallies).map(value).collect()))
+            AnyChannel::new(name, FlatSamples::F32(self.features().iter().zip(tallies).map(value).collect()))
         };
         let albedo = [("albedo.R", 0), ("albedo.G", 1), ("albedo.B", 2)].into_iter();
-        let albedo = albedo.filter(|_| !self.guides().is_empty()).map(of_albedo);
+        let albedo = albedo.filter(|_| !self.features().is_empty()).map(of_albedo);
         let of_class = |class: PathClass| {
             let value = move |axis: usize| {
                 let pixels = self.classes().iter().zip(tallies);

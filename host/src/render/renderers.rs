@@ -220,7 +220,7 @@ pub fn ray_tracer_watched<'a>(task: &Task<'a>) -> Result<(RayTracer<'a>, Option<
     }
     (watch.stage)("while solving for radiosity");
     let solution = {
-        let caught = tracer.caught(&watch);
+        let caught = tracer.photon_estimator(&watch);
         let sent = caught.as_ref().map(|caught| |triangle, outside, at| caught.exitance(triangle, outside, at));
         let exitance: Option<Exitance<'_>> = sent.as_ref().map(|sent| sent as Exitance<'_>);
         Radiosity::new(tracer.world(), plan, &prepared.settings.radiosity, exitance, &watch)?

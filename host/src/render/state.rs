@@ -33,8 +33,8 @@ pub(super) fn after(every: Duration, begin: Instant) -> Instant {
 /// What such a file begins with; the version follows.
 const MAGIC: [u8; 7] = *b"PERISF\x00";
 /// The versions of films without and with guides of a denoiser.
-const PLAIN: u8 = 4;
-const GUIDED: u8 = 5;
+const WITHOUT_FEATURES: u8 = 4;
+const WITH_FEATURES: u8 = 5;
 
 /// Bytes that are written at a time.
 const PIECE: usize = 1 << 20;
@@ -205,10 +205,10 @@ impl Film {
             // Checksums of large pieces are found many times faster than those of small ones.
             let mut pieces = BufWriter::with_capacity(PIECE, Summed::new(file));
             pieces.write_all(&MAGIC)?;
-            pieces.write_all(&[if self.guides().is_empty() { PLAIN } else { GUIDED }])?;
+            pieces.write_all(&[if self.features().is_empty() { WITHOUT_FEATURES } else { WITH_FEATURES }])?;
             encode(&head, &mut pieces)?;
             self.tallies().iter().try_for_each(|tally| encode(tally, &mut pieces))?;
-            self.guides().iter().try_for_each(|guide| encode(guide, &mut pieces))?;
+            self.features().iter().try_for_each(|guide| encode(guide, &mut pieces))?;
             goals.iter().try_for_each(|goal| encode(goal, &mut pieces))?;
             let Summed { inner, sum } = pieces.into_inner().map_err(io::IntoInnerError::into_error)?;
             inner.write_all(&sum.finalize().to_le_bytes())
@@ -229,10 +229,10 @@ impl RenderState {
         let mut magic = [0; 8];
         file.read_exact(&mut magic).map_err(|_| damaged("it is no state of a rendering"))?;
         let is_guided = match magic.strip_prefix(&MAGIC) {
-            Some([PLAIN]) => false,
-            Some([GUIDED]) => true,
+            Some([WITHOUT_FEATURES]) => false,
+            Some([WITH_FEATURES]) => true,
             Some([version]) => {
-                return Err(damaged(&format!("version {version} is not known; {PLAIN} and {GUIDED} are")));
+                return Err(damaged(&format!("version {version} is not known; {WITHOUT_FEATURES} and {WITH_FEATURES} are")));
             }
             _ => return Err(damaged("it is no state of a rendering")),
         };
@@ -318,17 +318,17 @@ mod tests {
     }
 
     #[test]
-    fn what_guides_a_denoiser_comes_back_and_is_asked_for() {
+    fn features_of_a_denoiser_come_back_and_are_asked_for() {
         let folder = tempfile::tempdir().expect("a folder");
         let destination = Destination::of(folder.path().join("a.state")).expect("a destination");
         let own = fingerprint(16, 1, 0.5);
-        let mut guided = Film::new(3, 2).expect("small").with_guides();
+        let mut guided = Film::new(3, 2).expect("small").with_features();
         let sample = PixelSample { radiance: DVec3::ONE, albedo: DVec3::X, normal: DVec3::Y, ..PixelSample::default() };
         guided.rows_mut()[1].add(2, &sample, &Default::default());
         guided.write_state(&destination, own, 0).expect("written");
         for denoise in [false, true] {
             let state = RenderState::read(destination.path(), &RenderOrder { denoise, ..order() }, own).expect("read");
-            assert_eq!((state.film.guides(), state.film.guides()[5].albedo[0]), (guided.guides(), 1.0));
+            assert_eq!((state.film.features(), state.film.features()[5].albedo[0]), (guided.features(), 1.0));
         }
         film().write_state(&destination, own, 0).expect("written");
         let error = RenderState::read(destination.path(), &RenderOrder { denoise: true, ..order() }, own).expect_err("no guides");

@@ -67,7 +67,7 @@ impl AccelerationCache {
     }
 
     /// Keeps octrees that were built in the place of those before.
-    pub(super) fn keep(&self, kept: AccelerationKey, acceleration: &Arc<Acceleration>) {
+    pub(super) fn store(&self, kept: AccelerationKey, acceleration: &Arc<Acceleration>) {
         self.times.fetch_add(1, Ordering::Relaxed);
         *self.last() = Some((kept, acceleration.clone()));
     }

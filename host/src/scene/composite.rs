@@ -31,7 +31,7 @@ impl Composite {
     ///
     /// # Errors
     /// [`ShapeError`] if an operand has no triangles, or bounds no solid, or if the result has no end or crosses itself.
-    pub fn made(&self, tolerance: Tolerance) -> Result<ShapeMesh, ShapeError> {
+    pub fn tessellate(&self, tolerance: Tolerance) -> Result<ShapeMesh, ShapeError> {
         let mut leaves = Vec::new();
         let expression = self.collect(&DMat4::IDENTITY, None, tolerance.chord, &mut leaves);
         let finite = |leaf: &LeafOperand| if leaf.is_half_space() { Ok(None) } else { leaf.solid(tolerance.angle).map(Some) };
@@ -131,7 +131,7 @@ impl LeafOperand<'_> {
 
     fn solid(&self, angle: f64) -> Result<ExactSolid, ShapeError> {
         let tolerance = Tolerance::new(self.chord / largest_stretch(&self.to_whole), angle);
-        let ShapeMesh { mesh, surfaces, .. } = self.object.shape.made(tolerance)?;
+        let ShapeMesh { mesh, surfaces, .. } = self.object.shape.tessellate(tolerance)?;
         ExactSolid::new_at(mesh, surfaces, &self.placement()).map_err(|source| self.failed(source))
     }
 
@@ -182,7 +182,7 @@ mod tests {
         let inner = object(Shape::Composite(Box::new(inner)), mirrored);
         let operands = vec![inner, cube(-2.0), solid(Primitive::Sphere { radius: 0.25 })];
         let mesh =
-            Composite { operation: Operation::Difference, operands, nesting: 2 }.made(within(1e-3)).unwrap().mesh;
+            Composite { operation: Operation::Difference, operands, nesting: 2 }.tessellate(within(1e-3)).unwrap().mesh;
         // The bar reaches from -2 to 1, the cube takes all below -1.5, the ball its inscribed triangles.
         let rest = 2.5 - mesh.signed_volume();
         let ball = 4.0 / 3.0 * PI / 64.0;
@@ -198,7 +198,7 @@ mod tests {
     #[cfg_attr(not(feature = "bunny"), ignore = "needs the feature `bunny`")]
     fn an_open_shape_is_named() {
         let operands = vec![object(Shape::Teapot, DMat4::IDENTITY), object(Shape::Bunny, DMat4::IDENTITY)];
-        let error = composite(Operation::Union, operands).made(within(0.01)).err().unwrap();
+        let error = composite(Operation::Union, operands).tessellate(within(0.01)).err().unwrap();
         assert!(error.to_string().starts_with("teapot bounds no solid"), "{error}");
     }
 
@@ -209,7 +209,7 @@ mod tests {
             ..solid(Primitive::Cylinder { radius: 0.4, height: 4.0 })
         };
         let made = composite(Operation::Difference, vec![solid(Primitive::Sphere { radius: 1.0 }), drill]);
-        let ShapeMesh { mesh, surfaces, operand_of, .. } = made.made(within(1e-3)).unwrap();
+        let ShapeMesh { mesh, surfaces, operand_of, .. } = made.tessellate(within(1e-3)).unwrap();
         assert_eq!((surfaces.len(), operand_of.len()), (4, mesh.triangles.len()));
         for triangle in 0..mesh.triangles.len() {
             let surface = surfaces[mesh.surfaces[triangle] as usize].as_ref().unwrap();
@@ -230,14 +230,14 @@ mod tests {
     fn half_spaces_cut_and_do_not_make_endless_solids() {
         let half = || object(Shape::HalfSpace { normal: DVec3::Y, at: DVec3::Y * 0.25 }, DMat4::IDENTITY);
         let ball = || solid(Primitive::Sphere { radius: 1.0 });
-        let cap = |operation| Ok::<_, ShapeError>(composite(operation, vec![ball(), half()]).made(within(1e-4))?.mesh);
+        let cap = |operation| Ok::<_, ShapeError>(composite(operation, vec![ball(), half()]).tessellate(within(1e-4))?.mesh);
         let (below, above) = (cap(Operation::Intersection).unwrap(), cap(Operation::Difference).unwrap());
         assert!((above.signed_volume() - PI * 0.75_f64.powi(2) * 2.25 / 3.0).abs() < 1e-3);
         assert!((below.signed_volume() + above.signed_volume() - 4.0 / 3.0 * PI).abs() < 1e-3);
         assert!(below.bounds().unwrap().max.y == 0.25 && above.bounds().unwrap().min.y == 0.25);
         assert!(cap(Operation::Union).unwrap_err().to_string().starts_with("a half-space has no end"));
-        assert!(half().shape.made(within(1.0)).is_err());
-        assert!(composite(Operation::Union, vec![half(), half()]).made(within(1.0)).is_err());
+        assert!(half().shape.tessellate(within(1.0)).is_err());
+        assert!(composite(Operation::Union, vec![half(), half()]).tessellate(within(1.0)).is_err());
     }
 
     #[test]

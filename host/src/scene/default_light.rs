@@ -23,7 +23,7 @@ const SKY: [RgbPower; 3] = [DVec3::new(0.18, 0.20, 0.23), DVec3::new(0.30, 0.31,
 /// Irradiance by a light at the eye of what the camera looks at, W/m², and ambient radiance, W/(m² sr), where lamps around
 /// the scene may be behind walls.
 const HEADLIGHT: f64 = 0.8;
-const INDOORS: RgbPower = DVec3::splat(0.3);
+const INDOOR_AMBIENT: RgbPower = DVec3::splat(0.3);
 /// Rows of the picture of the sky: so many that steps from row to row are not seen.
 const ROWS: u32 = 2048;
 
@@ -34,8 +34,8 @@ struct LampPlacement {
     side: f64,
 }
 
-const KEY_STAND: LampPlacement = LampPlacement { place: DVec3::new(-2.4, 2.8, 2.4), side: 2.0 };
-const BOUNCE_STAND: LampPlacement = LampPlacement { place: DVec3::new(2.0, -2.2, 1.0), side: 2.4 };
+const KEY_PLACEMENT: LampPlacement = LampPlacement { place: DVec3::new(-2.4, 2.8, 2.4), side: 2.0 };
+const BOUNCE_PLACEMENT: LampPlacement = LampPlacement { place: DVec3::new(2.0, -2.2, 1.0), side: 2.4 };
 
 impl Scene {
     /// The scene as it is looked at: in its studio, and lit.
@@ -65,7 +65,7 @@ impl Scene {
                 let intensity =
                     HEADLIGHT * camera.from.distance_squared(camera.at).max(bounds.diagonal().powi(2) / 100.0);
                 self.lights = vec![Light::Point { at: camera.from, intensity: Color::grey(intensity) }];
-                self.ambient = INDOORS;
+                self.ambient = INDOOR_AMBIENT;
             } else {
                 self.lights = default_lights(&camera, &bounds, self.background)?;
             }
@@ -85,7 +85,7 @@ fn default_lights(camera: &Camera, bounds: &Bounds, background: RgbPower) -> Res
         let place = (right * stand.place.x + up * stand.place.y - forward * stand.place.z) * half;
         soft_box(center + place, center, stand.side * half, irradiance)
     };
-    Ok(vec![lamp(&KEY_STAND, RgbPower::splat(KEY)), lamp(&BOUNCE_STAND, BOUNCE), sky])
+    Ok(vec![lamp(&KEY_PLACEMENT, RgbPower::splat(KEY)), lamp(&BOUNCE_PLACEMENT, BOUNCE), sky])
 }
 
 /// A sky that goes from the horizon smoothly up and down.
@@ -122,7 +122,7 @@ mod tests {
             let &LightShape::Rectangle { corner, across, up } = patch else { panic!("{patch:?}") };
             assert!(across.cross(up).dot(at - corner) > 0.0, "it shines on what is there");
             let half = size * 3.0_f64.sqrt() / 2.0;
-            let solid_angle = patch.area() / (KEY_STAND.place.length() * half).powi(2);
+            let solid_angle = patch.area() / (KEY_PLACEMENT.place.length() * half).powi(2);
             let irradiance = solid_angle * radiance.bands_of_light().x;
             assert!((irradiance / KEY - 1.0).abs() < 1e-12, "{irradiance}");
         }

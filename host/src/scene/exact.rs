@@ -12,7 +12,7 @@ pub(super) const FLAT_SINE: f64 = 1e-6;
 /// Stands for no surface.
 const NONE: u32 = u32::MAX;
 /// Is added where the outside of a body is the inside of a surface.
-const TURNED: u32 = 1 << 31;
+const REVERSED: u32 = 1 << 31;
 
 /// Curved surfaces, each in the coordinates of its object, and which of them triangles belong to.
 #[derive(Clone, Default)]
@@ -54,7 +54,7 @@ impl ExactSurfaces {
             let (normals, parameters) = (mesh.corner_normals[triangle], mesh.corner_parameters[triangle]);
             let along = |k: usize| surface.map_or(0.0, |surface| surface.normal(parameters[k]).dot(normals[k]));
             let is_turned = along(0) + along(1) + along(2) < 0.0;
-            (*number != NONE).then_some(if is_turned { number | TURNED } else { *number })
+            (*number != NONE).then_some(if is_turned { number | REVERSED } else { *number })
         };
         self.surface_of.extend(mesh.surfaces.iter().enumerate().map(|triangle| of(triangle).unwrap_or(NONE)));
         Some(from)
@@ -63,8 +63,8 @@ impl ExactSurfaces {
     /// The surface of a triangle, counted among those that have any, and whether the outside of its body is its inside.
     pub(super) fn surface(&self, triangle: u32) -> Option<(&Arc<dyn Surface>, bool)> {
         let number = self.surface_of[triangle as usize];
-        let surface = self.surfaces.get((number & !TURNED) as usize).filter(|_| number != NONE)?;
-        Some((surface, number & TURNED != 0))
+        let surface = self.surfaces.get((number & !REVERSED) as usize).filter(|_| number != NONE)?;
+        Some((surface, number & REVERSED != 0))
     }
 
     /// Bytes that the numbers take.

@@ -23,11 +23,11 @@ pub struct ObjectIntersection {
 ///
 /// # Errors
 /// [`SceneError`] if an object has no triangles.
-pub fn meetings(scene: &Scene, precision: &CurvePrecision) -> Result<Vec<ObjectIntersection>, SceneError> {
+pub fn object_intersections(scene: &Scene, precision: &CurvePrecision) -> Result<Vec<ObjectIntersection>, SceneError> {
     scene.check()?;
     let placed = |object: &Object| {
-        let made = object.made(scene.settings.geometry.tolerance, scene.settings.geometry.angle)?;
-        Ok(object.placed(made))
+        let made = object.tessellate(scene.settings.geometry.tolerance, scene.settings.geometry.angle)?;
+        Ok(object.in_place(made))
     };
     let placed: Vec<ShapeMesh> = scene.objects.iter().map(placed).collect::<Result<_, SceneError>>()?;
     let bounds: Vec<Bounds> = placed.iter().map(|made| made.mesh.bounds().unwrap_or(Bounds::EMPTY)).collect();
@@ -44,14 +44,14 @@ pub fn meetings(scene: &Scene, precision: &CurvePrecision) -> Result<Vec<ObjectI
 /// The curves in which two objects meet, in the coordinates that the objects are placed in.
 ///
 /// - `tolerance`: of the triangles, in these coordinates.
-pub(super) fn meet(
+pub(super) fn intersect_shapes(
     objects: [&Object; 2],
     tolerance: Tolerance,
     precision: &CurvePrecision,
 ) -> Result<Intersection, ShapeError> {
     let made = |object: &Object| {
         let chord = object.tolerance.unwrap_or(tolerance.chord) / largest_stretch(&object.transform);
-        Ok::<_, ShapeError>(object.placed(object.shape.made(Tolerance { chord, ..tolerance })?))
+        Ok::<_, ShapeError>(object.in_place(object.shape.tessellate(Tolerance { chord, ..tolerance })?))
     };
     let [one, two] = objects;
     Ok(between(&made(one)?, &made(two)?, precision))
@@ -64,7 +64,7 @@ fn between(one: &ShapeMesh, two: &ShapeMesh, precision: &CurvePrecision) -> Inte
 
 impl Object {
     /// What its shape was made of, where it is placed.
-    pub(super) fn placed(&self, made: ShapeMesh) -> ShapeMesh {
+    pub(super) fn in_place(&self, made: ShapeMesh) -> ShapeMesh {
         let (mesh, surfaces) = moved(&made.mesh, &made.surfaces, &DAffine3::from_mat4(self.transform));
         ShapeMesh { mesh, surfaces, ..made }
     }

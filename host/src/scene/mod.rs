@@ -35,7 +35,7 @@ pub use acceleration::{Acceleration, AccelerationKey, SceneOctree};
 pub use cage::{Cage, Sharp, Sharpening};
 pub use error::{SceneError, ShapeError};
 pub use made::ShapeMesh;
-pub use meeting::{ObjectIntersection, meetings};
+pub use meeting::{ObjectIntersection, object_intersections};
 pub use motion::{Motion, Displacement};
 pub use object::{Composite, MAX_NESTING, Object, Operation, RoundedSolid, Shape};
 pub use piercing::SurfacePoint;

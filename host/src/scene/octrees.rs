@@ -22,7 +22,7 @@ impl Contents {
         let still = self.still(&kept)?;
         let moving = if kept.motions { self.moving(&kept)? } else { Vec::new() };
         let acceleration = Arc::new(Acceleration { still, moving, build: start.elapsed() });
-        self.built.keep(kept, &acceleration);
+        self.built.store(kept, &acceleration);
         Ok(acceleration)
     }
 

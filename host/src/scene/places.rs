@@ -31,7 +31,7 @@ impl PartialEq for ShapeOrigins {
 
 impl ShapeOrigins {
     /// An error with the place where the object that it names got its shape, if that is known.
-    pub(super) fn placed(&self, error: SceneError) -> SceneError {
+    pub(super) fn located(&self, error: SceneError) -> SceneError {
         let position = match &error {
             SceneError::Object { object, .. } | SceneError::Shape { object, .. } => self.of.get(object),
             _ => None,

@@ -27,7 +27,7 @@ impl Contents {
     /// Where a point of a triangle is, and what of it is looked at.
     ///
     /// - `weights`: of the corners of the triangle. `sides`: tangents, scene units.
-    pub fn place(&self, triangle: u32, weights: [f64; 3], sides: Footprint) -> TextureFootprint {
+    pub fn texture_place(&self, triangle: u32, weights: [f64; 3], sides: Footprint) -> TextureFootprint {
         let [p, q, r] = self.corners(triangle);
         let to_own = &self.object(triangle).to_own;
         let own = to_own.transform_point3(p * weights[0] + q * weights[1] + r * weights[2]);
@@ -85,7 +85,7 @@ mod tests {
             let [a, b, c] = prepared.corners(triangle);
             let normal = (b - a).cross(c - a).normalize();
             let sides = footprint(normal, normal, 0.01);
-            let place = prepared.place(triangle, third, sides);
+            let place = prepared.texture_place(triangle, third, sides);
             assert!((place.own.length() - 2.0).abs() < 0.02);
             seen = [seen[0].min(place.uv), seen[1].max(place.uv)];
             for side in place.sides {
@@ -104,7 +104,7 @@ mod tests {
     fn a_mesh_without_parameters_has_those_of_its_faces() {
         let prepared = textured(Shape::Bunny, DMat4::IDENTITY);
         for triangle in (0..prepared.triangles.len() as u32).step_by(97) {
-            let place = prepared.place(triangle, [0.2, 0.3, 0.5], [DVec3::X * 0.1, DVec3::Y * 0.1]);
+            let place = prepared.texture_place(triangle, [0.2, 0.3, 0.5], [DVec3::X * 0.1, DVec3::Y * 0.1]);
             let own = place.own;
             let pairs = [DVec2::new(own.z, own.y), DVec2::new(own.x, own.z), DVec2::new(own.x, own.y)];
             assert!(pairs.iter().any(|uv| (*uv - place.uv).length() < 1e-12));

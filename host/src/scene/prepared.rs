@@ -114,7 +114,7 @@ impl Prepared {
     /// # Errors
     /// [`SceneError`], for a value out of range or a mesh that cannot be made or read.
     pub fn new(scene: &Scene) -> Result<Prepared, SceneError> {
-        let contents = Contents::new(scene).map_err(|error| scene.places.placed(error))?;
+        let contents = Contents::new(scene).map_err(|error| scene.places.located(error))?;
         Ok(Prepared { contents: Arc::new(contents), settings: scene.settings })
     }
 }
@@ -153,7 +153,7 @@ impl Contents {
             false => FxHashMap::default(),
         };
         for (object, index) in scene.objects.iter().zip(0u32..) {
-            let (made, chord) = (shared.made(scene, index)?, shared.chord(index));
+            let (made, chord) = (shared.mesh_of(scene, index)?, shared.chord(index));
             contents.add(object, &made, chord, motions.get(&index).copied(), &scene.settings.geometry)?;
         }
         contents.camera = scene.camera.unwrap_or_else(|| Camera::framing(&contents.subject()));

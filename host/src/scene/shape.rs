@@ -1,7 +1,7 @@
 //! Shapes in their own coordinates: whether their measures are sound, their sizes, and their triangles.
 
 use super::made::ShapeMesh;
-use super::meeting::meet;
+use super::meeting::intersect_shapes;
 use super::object::{MAX_NESTING, Object, RoundedSolid, Shape};
 use super::settings::check_tolerance;
 use super::stretch::largest_stretch;
@@ -77,7 +77,7 @@ impl Shape {
             Shape::Curve(objects) => objects.iter().filter_map(Object::extent).reduce(f64::max),
             Shape::Rounded(rounded) => {
                 let extent =
-                    || Some(rounded.object.shape.made(Tolerance::new(f64::MAX, 180.0)).ok()?.mesh.bounds()?.diagonal());
+                    || Some(rounded.object.shape.tessellate(Tolerance::new(f64::MAX, 180.0)).ok()?.mesh.bounds()?.diagonal());
                 rounded.object.extent().or_else(|| Some(extent()? * largest_stretch(&rounded.object.transform)))
             }
             Shape::HalfSpace { .. } | Shape::Ground { .. } | Shape::Bunny => None,
@@ -90,13 +90,13 @@ impl Shape {
     ///
     /// # Errors
     /// [`ShapeError`] if the file cannot be read, the tolerance asks for too many triangles, or there is no such solid.
-    pub fn made(&self, tolerance: Tolerance) -> Result<ShapeMesh, ShapeError> {
+    pub fn tessellate(&self, tolerance: Tolerance) -> Result<ShapeMesh, ShapeError> {
         let known = |mesh: Mesh, surfaces: Vec<Arc<dyn Surface>>| {
             let surfaces = surfaces.into_iter().map(Some).collect();
             ShapeMesh { mesh, surfaces, ..ShapeMesh::default() }
         };
         match self {
-            Shape::Composite(composite) => composite.made(tolerance),
+            Shape::Composite(composite) => composite.tessellate(tolerance),
             Shape::Sculpture(sculpture) => {
                 let (mesh, surfaces) = sculpture.tessellated(tolerance)?;
                 Ok(ShapeMesh { mesh, surfaces: surfaces.into_iter().map(Some).collect(), ..ShapeMesh::default() })
@@ -107,10 +107,10 @@ impl Shape {
             }
             Shape::Curve(objects) => {
                 let precision = CurvePrecision { chord: Some(tolerance.chord), ..CurvePrecision::default() };
-                let lines = meet([&objects[0], &objects[1]], tolerance, &precision)?.polylines();
+                let lines = intersect_shapes([&objects[0], &objects[1]], tolerance, &precision)?.polylines();
                 Ok(ShapeMesh { lines, ..ShapeMesh::default() })
             }
-            Shape::Rounded(rounded) => rounded.made(tolerance),
+            Shape::Rounded(rounded) => rounded.tessellate(tolerance),
             Shape::Bunny => Ok(ShapeMesh { mesh: mesh::bunny()?, ..ShapeMesh::default() }),
             Shape::Mesh { path } => Ok(ShapeMesh { mesh: mesh_of(path)?, ..ShapeMesh::default() }),
             Shape::Stored { database, name } => {
@@ -143,7 +143,7 @@ impl Shape {
     /// # Errors
     /// As [`Shape::made`].
     pub(super) fn chord_error(&self, tolerance: Tolerance) -> Result<f64, ShapeError> {
-        let ShapeMesh { mesh, surfaces, .. } = self.made(tolerance)?;
+        let ShapeMesh { mesh, surfaces, .. } = self.tessellate(tolerance)?;
         match self {
             Shape::Subdivision(cage) => Ok(cage.polyhedron()?.distance(&mesh, tolerance.chord)?),
             Shape::Rounded(rounded) => rounded.distance(&mesh, tolerance),
@@ -203,7 +203,7 @@ impl Object {
 }
 
 impl RoundedSolid {
-    fn made(&self, tolerance: Tolerance) -> Result<ShapeMesh, ShapeError> {
+    fn tessellate(&self, tolerance: Tolerance) -> Result<ShapeMesh, ShapeError> {
         let (solid, operands) = self.solid(tolerance)?;
         let rounded = solid.rounded(&self.choice(), self.radius, tolerance.chord).map_err(|e| self.failed(e))?;
         let (mesh, surfaces) = rounded.into_parts();
@@ -223,7 +223,7 @@ impl RoundedSolid {
         let object = &self.object;
         let chord = tolerance.chord / largest_stretch(&object.transform);
         let ShapeMesh { mesh, surfaces, operand_of, .. } =
-            object.placed(object.shape.made(Tolerance { chord, ..tolerance })?);
+            object.in_place(object.shape.tessellate(Tolerance { chord, ..tolerance })?);
         let operands: HashMap<u32, u32> = mesh.surfaces.iter().copied().zip(operand_of).collect();
         let solid = ExactSolid::new(mesh, surfaces)
             .map_err(|source| ShapeError::Solid { object: object.name.clone(), source })?;

@@ -3,7 +3,7 @@
 use super::made::ShapeMesh;
 use super::{Scene, SceneError};
 use crate::memory;
-use crate::numeric::print_of;
+use crate::numeric::debug_hash;
 use rustc_hash::FxHashMap;
 use std::rc::Rc;
 
@@ -36,7 +36,7 @@ impl SharedMeshes {
             (Vec::with_capacity(count), Vec::with_capacity(count), vec![0; count]);
         let mut known: FxHashMap<u64, Vec<First>> = FxHashMap::default();
         for (object, index) in scene.objects.iter().zip(0u32..) {
-            let alike = known.entry(print_of(&object.shape)).or_default();
+            let alike = known.entry(debug_hash(&object.shape)).or_default();
             let is_alike = |other: &&First| scene.objects[other.index as usize].shape == object.shape;
             let extent = alike.iter().find(is_alike).map_or_else(|| object.shape.extent(), |other| other.extent);
             let chord = extent.map_or(0.0, |extent| object.chord_of(extent, scene.settings.geometry.tolerance));
@@ -62,16 +62,16 @@ impl SharedMeshes {
     ///
     /// # Errors
     /// [`SceneError`] if they cannot be made, or if all objects that need them would take more memory than there is.
-    pub(super) fn made(&mut self, scene: &Scene, index: u32) -> Result<Rc<ShapeMesh>, SceneError> {
+    pub(super) fn mesh_of(&mut self, scene: &Scene, index: u32) -> Result<Rc<ShapeMesh>, SceneError> {
         let (first, object) = (self.first[index as usize], &scene.objects[index as usize]);
         let needed = &mut self.needed[first as usize];
         let made = match self.made.get(&first) {
             Some(made) => Rc::clone(made),
             None => {
-                let made = object.made(scene.settings.geometry.tolerance, scene.settings.geometry.angle)?;
+                let made = object.tessellate(scene.settings.geometry.tolerance, scene.settings.geometry.angle)?;
                 let (count, triangles) = (u64::from(*needed), made.mesh.triangles.len() as u64);
                 let objects = if count == 1 { String::new() } else { format!(" and {} more", count - 1) };
-                memory::ask(count * triangles * BYTES, || format!("{}{objects} of {triangles} triangles", object.name))
+                memory::reserve(count * triangles * BYTES, || format!("{}{objects} of {triangles} triangles", object.name))
                     .map_err(|excess| SceneError::Object {
                         object: object.name.clone(),
                         problem: excess.to_string(),

@@ -16,9 +16,9 @@ impl Object {
     }
 
     /// The triangles in own coordinates.
-    pub(super) fn made(&self, scene_tolerance: Option<f64>, angle: f64) -> Result<ShapeMesh, SceneError> {
+    pub(super) fn tessellate(&self, scene_tolerance: Option<f64>, angle: f64) -> Result<ShapeMesh, SceneError> {
         let tolerance = self.own_tolerance(scene_tolerance, angle);
-        self.shape.made(tolerance).map_err(|source| self.failed(source))
+        self.shape.tessellate(tolerance).map_err(|source| self.failed(source))
     }
 
     /// The tolerance in own coordinates; none for flat shapes.

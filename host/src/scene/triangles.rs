@@ -19,7 +19,7 @@ impl Scene {
     pub fn tessellated(&self) -> Result<Grouped, SceneError> {
         self.check()?;
         let settings = &self.settings;
-        let made = |object: &Object| object.made(settings.geometry.tolerance, settings.geometry.angle);
+        let made = |object: &Object| object.tessellate(settings.geometry.tolerance, settings.geometry.angle);
         let all = self.objects.par_iter().map(made).collect::<Result<Vec<ShapeMesh>, SceneError>>()?;
         let mut whole = Grouped::default();
         for (object, ShapeMesh { mut mesh, operand_of, .. }) in self.objects.iter().zip(all) {
@@ -40,9 +40,9 @@ impl Scene {
             let name = |k: usize| if count == 1 { object.name.clone() } else { format!("{}/{k}", object.name) };
             whole.names.extend((0..count).map(name));
             let (materials, of_triangles) = object.materials(&operand_of);
-            let mut looks = vec![look(&materials[0]); count];
+            let mut looks = vec![metallic_roughness(&materials[0]); count];
             for (surface, material) in placed.surfaces.iter().zip(of_triangles) {
-                looks[*surface as usize] = look(&materials[material as usize]);
+                looks[*surface as usize] = metallic_roughness(&materials[material as usize]);
             }
             whole.looks.extend(looks.into_iter().map(Some));
         }
@@ -75,13 +75,13 @@ impl Scene {
 /// # Source
 /// The exponent n of a highlight belongs to facets of the roughness a with n = 2 / a^2 - 2 (Walter et al. 2007), and a is the
 /// square of the number that glTF wants.
-fn look(material: &Material) -> MetallicRoughness {
+fn metallic_roughness(material: &Material) -> MetallicRoughness {
     if let MaterialKind::Principled(principled) = &material.body {
         let base = principled.base_color.mean_bands().clamp(DVec3::ZERO, DVec3::ONE);
         return MetallicRoughness { base, metallic: principled.metallic.mean(), roughness: principled.roughness.mean() };
     }
     let sum = |bands: DVec3| bands.element_sum();
-    let MaterialPreview { diffuse, specular, exponent, mirror } = material.appearance();
+    let MaterialPreview { diffuse, specular, exponent, mirror } = material.preview();
     // The highlight of a body without another color is its color.
     let shine = if diffuse == DVec3::ZERO { specular } else { DVec3::ZERO };
     let base = (diffuse + mirror + shine).min(DVec3::ONE);

@@ -34,9 +34,9 @@ const MAX_CALLS: usize = 64;
 /// Deepest nesting of expressions, outside and inside functions.
 const MAX_NESTING: (usize, usize) = (64, 48);
 /// How many of the operations look at the memory: one of so many.
-const LOOKS_AT_MEMORY: u64 = 64;
+const MEMORY_CHECK_INTERVAL: u64 = 64;
 /// Part of the memory that is kept for what is made of the scene, when a script is refused: one of so many.
-const KEPT: u64 = 16;
+const RESERVED_FRACTION: u64 = 16;
 /// Words that scripts may not use: they run text and load other files.
 const FORBIDDEN: [&str; 2] = ["eval", "import"];
 
@@ -85,7 +85,7 @@ pub fn evaluate(text: &str, name: &str, folder: &Path, inputs: &Inputs) -> Resul
     }
     let outcome = engine.run(text);
     drop(engine);
-    outcome.map_err(|e| error::place(&e, text, name))?;
+    outcome.map_err(|e| error::locate(&e, text, name))?;
     if let Some(ParameterAssignment { name: parameter, value }) = state.borrow().definitions.unknown() {
         let (parameter, value, known) = (parameter.clone(), value.clone(), state.borrow().definitions.list());
         return Err(ScriptError::Definition { file: name.to_owned(), parameter, value, known });
@@ -110,8 +110,8 @@ fn limited() -> Engine {
         .set_max_modules(0)
         .set_module_resolver(DummyModuleResolver::new());
     engine.on_progress(|operations| {
-        let is_short = || memory::limit().is_some_and(|limit| memory::left() < limit / KEPT);
-        let ends = operations.is_multiple_of(LOOKS_AT_MEMORY) && is_short();
+        let is_short = || memory::limit().is_some_and(|limit| memory::left() < limit / RESERVED_FRACTION);
+        let ends = operations.is_multiple_of(MEMORY_CHECK_INTERVAL) && is_short();
         ends.then(|| Dynamic::from(OutOfMemory))
     });
     for symbol in FORBIDDEN {

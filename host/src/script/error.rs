@@ -38,7 +38,7 @@ pub enum ScriptError {
     },
     /// The script is wrong at a place.
     #[error("{0}")]
-    Place(Box<ScriptFault>),
+    Fault(Box<ScriptFault>),
     /// A value was given for a parameter that the script does not ask for.
     #[error("-D {parameter}={value}: {file} has no parameter {parameter}; {known}")]
     Definition {
@@ -97,12 +97,12 @@ impl fmt::Display for ScriptFault {
 pub(super) struct OutOfMemory;
 
 /// Turns an error of the interpreter into ours, with its place in the script.
-pub(super) fn place(error: &EvalAltResult, script: &str, file: &str) -> ScriptError {
+pub(super) fn locate(error: &EvalAltResult, script: &str, file: &str) -> ScriptError {
     let (message, position) = describe(error);
     let line = position.line().unwrap_or(0);
     let column = if line == 0 { 0 } else { position.position().unwrap_or(1) };
     let text = line.checked_sub(1).and_then(|l| script.lines().nth(l)).unwrap_or_default().to_owned();
-    ScriptError::Place(Box::new(ScriptFault { file: file.to_owned(), line, column, message, text }))
+    ScriptError::Fault(Box::new(ScriptFault { file: file.to_owned(), line, column, message, text }))
 }
 
 pub(super) fn describe(error: &EvalAltResult) -> (String, Position) {

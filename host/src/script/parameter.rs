@@ -133,7 +133,7 @@ pub(super) const fn optional<K: ParameterKind + Copy>(kind: K, otherwise: &'stat
 /// A parameter that changes a setting.
 ///
 /// - `default`: that of a scene where the setting was never changed.
-pub(super) const fn kept<K>(kind: K, default: K::Default, help: &'static str) -> WithFallback<K, K::Default>
+pub(super) const fn with_fallback<K>(kind: K, default: K::Default, help: &'static str) -> WithFallback<K, K::Default>
 where
     K: HasDefault + Copy,
 {

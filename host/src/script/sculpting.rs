@@ -45,7 +45,7 @@ fn report(joint: &Joint) -> Dynamic {
 
 impl Builder {
     /// The sheets of an object, placed as it is.
-    fn placed_sheets(&mut self, handle: Handle) -> Result<Vec<SurfaceSheet>, String> {
+    fn transformed_sheets(&mut self, handle: Handle) -> Result<Vec<SurfaceSheet>, String> {
         let object = self.object(handle)?;
         let Shape::Sculpture(sculpture) = &object.shape else {
             return Err(format!("{} is no surface", object.name));
@@ -58,7 +58,7 @@ impl Builder {
 
     /// The only spline surface of an object, placed as it is.
     pub(super) fn spline_surface(&mut self, handle: Handle) -> Result<SplineSurface, String> {
-        match self.placed_sheets(handle)?.pop() {
+        match self.transformed_sheets(handle)?.pop() {
             Some(SurfaceSheet::Spline { surface, .. }) if self.sheet_count(handle)? == 1 => Ok(*surface),
             _ => Err(format!("{} is not one surface over a mesh of control points", self.object(handle)?.name)),
         }
@@ -92,7 +92,7 @@ impl Builder {
         if self.sheet_count(handle)? > 1 {
             return Err("an object of several surfaces cannot be trimmed; trim them before".into());
         }
-        let sheet = self.placed_sheets(handle)?.pop().ok_or("there is no surface")?;
+        let sheet = self.transformed_sheets(handle)?.pop().ok_or("there is no surface")?;
         self.set_sheet(handle, sheet.trimmed(loops, holes)?)?;
         Ok(Dynamic::from(handle))
     }
@@ -103,7 +103,7 @@ impl Builder {
             return Err("a surface cannot be joined to itself".into());
         }
         for handle in handles {
-            if self.placed_sheets(handle)?.iter().any(|s| matches!(s, SurfaceSheet::Spline { loops, .. } if !loops.is_empty()))
+            if self.transformed_sheets(handle)?.iter().any(|s| matches!(s, SurfaceSheet::Spline { loops, .. } if !loops.is_empty()))
             {
                 return Err(format!("{} is trimmed; join surfaces before", self.object(handle)?.name));
             }
@@ -124,7 +124,7 @@ impl Builder {
     pub(super) fn continuity(&mut self, handles: impl IntoIterator<Item = Handle>) -> CallResult {
         let mut sheets = Vec::new();
         for handle in handles {
-            sheets.extend(self.placed_sheets(handle)?);
+            sheets.extend(self.transformed_sheets(handle)?);
         }
         let joints = Sculpture { sheets }.joints(SAMPLES).map_err(|error| error.to_string())?;
         Ok(Dynamic::from_array(joints.iter().map(report).collect::<Array>()))
@@ -158,7 +158,7 @@ impl Builder {
             if handles[..k].contains(handle) {
                 return Err("a surface is named twice".into());
             }
-            sheets.extend(self.placed_sheets(*handle)?);
+            sheets.extend(self.transformed_sheets(*handle)?);
         }
         let Some(first) = handles.first() else { return Err("there are no surfaces".into()) };
         let (material, tolerance) = {

@@ -103,7 +103,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         )
         "Adds a hyperboloid of one sheet between two discs, its axis along y, around the origin."
         "let tower = hyperboloid(0.6, 1, 3);"
-        |builder| add(builder, Primitive::Hyperboloid { waist, radius, height }, tolerance)
+        |builder| add(builder, Primitive::HyperboloidOfOneSheet { waist, radius, height }, tolerance)
     },
     function! {
         bowls(
@@ -114,7 +114,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         )
         "Adds a hyperboloid of two sheets, closed by discs: two bowls with their tips towards each other."
         "let lenses = bowls(0.5, 1, 2);"
-        |builder| add(builder, Primitive::Bowls { gap, radius, height }, tolerance)
+        |builder| add(builder, Primitive::HyperboloidOfTwoSheets { gap, radius, height }, tolerance)
     },
     function! {
         torus(
@@ -140,7 +140,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         )
         "Adds a polygon of the plane of x and y, with x not below 0, that turned about the y axis from the z axis on towards the x axis."
         "let slice = turning([[0, 0], [2, 0], [2, 1], [0, 1]], 60);"
-        |builder| add(builder, Primitive::Turning { contours: flat(contours), turn: angle / 360.0 }, tolerance)
+        |builder| add(builder, Primitive::RevolvedPolygon { contours: flat(contours), turn: angle / 360.0 }, tolerance)
     },
     function! {
         revolution(
@@ -161,7 +161,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         )
         "Adds the solid of a smooth profile that turned about the y axis: the cubic B-spline of some points, closed over the axis."
         "let vase = lathe([[1, 0], [1.4, 1], [0.3, 2], [0.8, 3]]);"
-        |builder| add(builder, Primitive::Lathe { profile: flat([profile]).concat() }, tolerance)
+        |builder| add(builder, Primitive::SmoothRevolution { profile: flat([profile]).concat() }, tolerance)
     },
     function! {
         sweep(

@@ -80,7 +80,7 @@ fn subdivide(builder: &mut Builder, handle: Handle, coarse: Option<f64>) -> Call
     let angle = builder.scene.settings.geometry.angle;
     let object = builder.object(handle)?;
     let chord = coarse.unwrap_or(COARSE * object.shape.extent().unwrap_or(1.0));
-    let made = object.shape.made(Tolerance::new(chord, angle)).map_err(|error| error.to_string())?;
+    let made = object.shape.tessellate(Tolerance::new(chord, angle)).map_err(|error| error.to_string())?;
     let mesh = made.mesh.welded();
     let faces = mesh.triangles.iter().map(|corners| corners.to_vec()).collect();
     let cage = Cage { points: mesh.vertices, faces, sharpenings: Vec::new() };

@@ -18,7 +18,7 @@ const NET: &str = "
 fn mesh(script: &str) -> Mesh {
     let made = run(script);
     let shape = &made.scene.objects.last().expect("an object").shape;
-    shape.made(Tolerance::new(0.003, 30.0)).unwrap_or_else(|error| panic!("{error}")).mesh
+    shape.tessellate(Tolerance::new(0.003, 30.0)).unwrap_or_else(|error| panic!("{error}")).mesh
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::function::{Function, function};
 use super::kinds::{
     ANY_NUMBER, AxisKind, Factors, Flag, Integer, Length, NamedAxis, NumberKind, PointsKind, ScalarKind, TextKind, Vector, Word,
 };
-use super::parameter::{Defaulted, kept, optional, required, with_default};
+use super::parameter::{Defaulted, with_fallback, optional, required, with_default};
 use super::shared::{OBJECT, TOLERANCE};
 use crate::illumination::optics::Interreflection;
 use crate::octree::MAX_POINT_DEPTH;
@@ -265,22 +265,22 @@ pub(super) const FUNCTIONS: &[Function] = &[
     function! {
         radiosity(
             on: with_default(Flag, true, "whether ray tracing does"),
-            error: kept(
+            error: with_fallback(
                 NumberKind(1e-6, 10.0),
                 RadiositySettings::DEFAULT.error,
                 "of the light that one pair of patches brings, as a part of the mean irradiance",
             ),
-            finest: kept(
+            finest: with_fallback(
                 NumberKind(1e-5, 1.0),
                 RadiositySettings::DEFAULT.finest,
                 "shortest edge of a patch that is divided, as a part of the diagonal of the scene",
             ),
-            directions: kept(
+            directions: with_fallback(
                 Integer(1, 4096),
                 RadiositySettings::DEFAULT.directions,
                 "in which each patch looks around",
             ),
-            tolerance: kept(
+            tolerance: with_fallback(
                 NumberKind(1e-12, 1.0),
                 RadiositySettings::DEFAULT.tolerance,
                 "error of the solver, as a part of the greatest irradiance",
@@ -321,7 +321,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     },
     function! {
         two_way(
-            photons: kept(
+            photons: with_fallback(
                 Integer(1, MAX_PHOTONS),
                 PhotonSettings::DEFAULT.count,
                 "how many ways of light are followed for eight samples of each pixel",
@@ -386,7 +386,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     function! {
         tolerance(
             length: required(Length, "largest distance, scene units"),
-            angle: kept(
+            angle: with_fallback(
                 NumberKind(0.01, 180.0),
                 GeometrySettings::DEFAULT.angle,
                 "largest turn of the normal along a triangle, degrees",

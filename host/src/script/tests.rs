@@ -18,7 +18,7 @@ pub(super) fn run(text: &str) -> Evaluated {
 
 pub(super) fn problem(text: &str) -> (usize, usize, String) {
     match evaluate(text, "test.rhai", Path::new(""), &Inputs::default()) {
-        Err(ScriptError::Place(place)) => (place.line, place.column, place.message),
+        Err(ScriptError::Fault(place)) => (place.line, place.column, place.message),
         other => panic!("{text}: no error with a place, but {other:?}"),
     }
 }
@@ -40,7 +40,7 @@ fn a_script_builds_what_it_says() {
     assert_eq!(scene.objects[0].name, "ball");
     assert_eq!(scene.objects[0].shape, Shape::from(Primitive::Sphere { radius: 2.0 }));
     assert_eq!(scene.objects[0].transform.transform_point3(DVec3::ZERO), DVec3::new(1.0, 2.0, 3.0));
-    assert_eq!(scene.objects[0].material.clone().unwrap().appearance().mirror, DVec3::splat(0.25));
+    assert_eq!(scene.objects[0].material.clone().unwrap().preview().mirror, DVec3::splat(0.25));
     assert_eq!(scene.objects[1].shape, Shape::from(Primitive::Box { size: DVec3::new(4.0, 1.0, 2.0) }));
     assert_eq!(scene.lights[0], Light::Point { at: DVec3::new(0.0, 5.0, 0.0), intensity: Color::grey(1.0) });
     assert_eq!(scene.settings.image.width, 32);
@@ -128,7 +128,7 @@ fn a_function_of_a_script_becomes_a_distribution_or_an_error_with_its_place() {
     ] {
         let script = format!("\nuser_distribution({area});");
         let error = evaluate(&script, "a", Path::new(""), &Inputs::default()).expect_err(area);
-        let ScriptError::Place(place) = &error else { panic!("{area}: {error}") };
+        let ScriptError::Fault(place) = &error else { panic!("{area}: {error}") };
         assert!(place.line == 2 && place.message.contains(problem), "{area}: {error}");
         assert!(column == 0 || place.column == column, "{area}: {error}");
     }
@@ -312,7 +312,7 @@ fn parameters_take_the_kind_of_their_default() {
 fn meetings_are_lines_and_bound_nothing() {
     let made = run("let a = sphere(1); let b = box(4, 1, 4); a.meeting(b).translate(0, 0, 7).name(\"edge\");");
     let edge = &made.scene.objects[2];
-    let made = edge.shape.made(Tolerance::new(1e-3, 90.0)).unwrap();
+    let made = edge.shape.tessellate(Tolerance::new(1e-3, 90.0)).unwrap();
     assert!(made.mesh.triangles.is_empty() && made.lines.starts.len() == 2);
     let off = |p: &DVec3| (p.length() - 1.0).abs().max((p.y.abs() - 0.5).abs());
     assert!(made.lines.points.iter().all(|p| off(p) < 1e-14));
@@ -326,7 +326,7 @@ fn meetings_are_lines_and_bound_nothing() {
 fn rounded_objects_stay_where_they_are_and_lose_their_corners() {
     let made = run("cube(2).translate(5, 0, 0).round_edges(0.2, #{ tolerance: 0.01 }).rotate(\"z\", 90);");
     let object = &made.scene.objects[0];
-    let mesh = object.shape.made(Tolerance::new(0.01, 90.0)).unwrap().mesh;
+    let mesh = object.shape.tessellate(Tolerance::new(0.01, 90.0)).unwrap().mesh;
     let bounds = mesh.bounds().unwrap();
     assert!(
         (bounds.center() - DVec3::X * 5.0).length() < 1e-12 && (bounds.size() - DVec3::splat(2.0)).length() < 1e-12
@@ -346,7 +346,7 @@ fn rounded_objects_stay_where_they_are_and_lose_their_corners() {
     assert!(part > 0.01 && (part / whole - 1.0).abs() < 0.02, "{part} {whole}");
     assert_eq!(error("cube(2) - cube(1).translate(1, 1, 1);"), 0.0);
     let wide = run("cube(2).round_edges(0.6);");
-    let error = wide.scene.objects[0].shape.made(Tolerance::new(0.01, 90.0)).err().unwrap().to_string();
+    let error = wide.scene.objects[0].shape.tessellate(Tolerance::new(0.01, 90.0)).err().unwrap().to_string();
     assert!(
         error.starts_with("cube cannot be rounded: radius 0.6 is too large") || error.starts_with("box"),
         "{error}"

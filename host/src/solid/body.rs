@@ -85,7 +85,7 @@ impl Body {
     }
 
     /// The body moved by an affine map that is not singular.
-    pub fn placed(self, placement: DAffine3) -> Body {
+    pub fn transformed(self, placement: DAffine3) -> Body {
         let moved = |surface| Arc::new(TransformedSurface::new(surface, placement)) as Arc<dyn Surface>;
         let is_mirrored = placement.matrix3.determinant() < 0.0;
         let face = |face: Face| {

@@ -1,6 +1,6 @@
 //! Solids as closed surfaces, with what operations find out about them.
 
-use super::boolean::{Operand, mates};
+use super::boolean::{Operand, quad_partners};
 use crate::mesh::Mesh;
 use crate::octree::TriangleBvh;
 use std::sync::{Arc, OnceLock};
@@ -53,7 +53,7 @@ impl Solid {
     }
 
     pub(super) fn operand(&self) -> Operand<'_> {
-        let mates = self.mates.get_or_init(|| Arc::new(mates(&self.mesh)));
+        let mates = self.mates.get_or_init(|| Arc::new(quad_partners(&self.mesh)));
         Operand { mesh: &self.mesh, sorted: self.sorted(), mates, overlaps: &[] }
     }
 }

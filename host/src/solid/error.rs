@@ -61,7 +61,7 @@ pub enum SolidError {
          moving its points by up to {most} units in the last place does not mend it; moving an operand by a millionth of its \
          size may help"
     )]
-    Unsettled {
+    SelfIntersecting {
         /// Pairs of triangles that have more in common than corners and edges.
         overlaps: usize,
         /// A corner of the first.
@@ -71,7 +71,7 @@ pub enum SolidError {
     },
     /// The surface crosses itself so often that it is not put right, nor told how.
     #[error("the surface crosses itself too often to be taken for one: more than {most} {what}")]
-    Tangled {
+    TooManyIntersections {
         /// Of what there are too many.
         what: &'static str,
         /// How many there may be.

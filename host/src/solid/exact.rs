@@ -79,7 +79,7 @@ impl ExactSolid {
     ///
     /// # Errors
     /// [`SolidError`] if rounding spoils it there.
-    pub fn placed(self, placement: &DAffine3) -> Result<ExactSolid, SolidError> {
+    pub fn transformed(self, placement: &DAffine3) -> Result<ExactSolid, SolidError> {
         if *placement == DAffine3::IDENTITY {
             return Ok(self);
         }
@@ -169,7 +169,7 @@ mod tests {
     use crate::surface::Tolerance;
 
     fn exact(body: Body, placement: DAffine3) -> ExactSolid {
-        body.solid(Tolerance::new(2e-3, 30.0)).unwrap().placed(&placement).unwrap()
+        body.solid(Tolerance::new(2e-3, 30.0)).unwrap().transformed(&placement).unwrap()
     }
 
     /// Which surfaces the result has, and how far its normals are from closed forms.

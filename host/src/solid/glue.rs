@@ -132,7 +132,7 @@ mod tests {
 
     fn exact(body: Result<Body, PrimitiveError>, at: DVec3) -> ExactSolid {
         let solid = body.unwrap().solid(Tolerance::new(1e-3, 30.0)).unwrap();
-        solid.placed(&DAffine3::from_translation(at)).unwrap()
+        solid.transformed(&DAffine3::from_translation(at)).unwrap()
     }
 
     #[test]

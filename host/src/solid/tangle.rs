@@ -16,7 +16,7 @@ const MOST_PAIRS: usize = 500_000;
 /// [`SolidError::Tangled`] where there are too many, or three of them cross each other too often.
 pub(super) fn overlaps(mesh: &Mesh, sorted: &TriangleBvh) -> Result<Vec<[u32; 2]>, SolidError> {
     let pairs = overlapping_up_to(mesh, sorted, MOST_PAIRS);
-    let too_many = |what, count, most| if count > most { Err(SolidError::Tangled { what, most }) } else { Ok(()) };
+    let too_many = |what, count, most| if count > most { Err(SolidError::TooManyIntersections { what, most }) } else { Ok(()) };
     too_many("pairs of triangles cross", pairs.len(), MOST_PAIRS)?;
     too_many("places are where three triangles cross", triples(&pairs, MOST_TRIPLES), MOST_TRIPLES)?;
     Ok(pairs)

@@ -49,7 +49,7 @@ impl Knob for Composites<'_> {
     fn run(&self, setting: f64, _: &Watch<'_>) -> Result<Trial<Vec<Mesh>>, StudyError> {
         let start = Instant::now();
         let made: Result<Vec<Mesh>, StudyError> =
-            self.shapes.iter().map(|s| Ok(s.made(Tolerance::new(setting, self.angle))?.mesh)).collect();
+            self.shapes.iter().map(|s| Ok(s.tessellate(Tolerance::new(setting, self.angle))?.mesh)).collect();
         let (answer, seconds) = (made?, start.elapsed().as_secs_f64());
         let triangles = answer.iter().map(|mesh| mesh.triangles.len()).sum::<usize>() as f64;
         Ok(Trial { answer, seconds, counts: vec![("triangles", triangles)] })

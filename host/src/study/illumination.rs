@@ -5,9 +5,9 @@
 use super::StudyError;
 use super::plot::{Axis, Plot, PlotPoint, Series};
 use super::sweep::short;
-use crate::illumination::distribution::measure::{emitted_share, light_at, reciprocity_residual, seen_share};
+use crate::illumination::distribution::measure::{emitted_share, light_at, reciprocity_residual, received_share};
 use crate::illumination::distribution::{Distribution, FAMILY};
-use crate::numeric::sampling::{RandomStream, even};
+use crate::numeric::sampling::{RandomStream, r2_point};
 use crate::render::{Progress, Memo, Watch};
 use serde::{Deserialize, Serialize};
 use std::hint::black_box;
@@ -25,7 +25,7 @@ const SEED: u64 = 7;
 /// Less than this, and the residual is that of rounding.
 const RECIPROCAL: f64 = 1e-6;
 /// What follows the name of a member for what a viewer sees of it.
-const SEEN: &str = ", seen";
+const VIEWED: &str = ", seen";
 /// Width of the names in a table.
 const NAMES: usize = 22;
 /// Calls that are timed.
@@ -89,9 +89,9 @@ fn row(name: &str, roughness: f64, distribution: &dyn Distribution) -> Illuminat
         INCIDENCES.map(|d| emitted_share(distribution, light_at(d.to_radians()), TOLERANCE, MOST_EVALUATIONS));
     let reciprocity = reciprocity_residual(distribution, PAIRS, SEED);
     let seen = (reciprocity > RECIPROCAL)
-        .then(|| INCIDENCES.map(|d| seen_share(distribution, light_at(d.to_radians()), TOLERANCE, MOST_EVALUATIONS)));
+        .then(|| INCIDENCES.map(|d| received_share(distribution, light_at(d.to_radians()), TOLERANCE, MOST_EVALUATIONS)));
     let light = light_at(0.5);
-    let views: Vec<_> = (0..TIMED).filter_map(|index| distribution.sample(light, even(index, [0.3, 0.7]))).collect();
+    let views: Vec<_> = (0..TIMED).filter_map(|index| distribution.sample(light, r2_point(index, [0.3, 0.7]))).collect();
     let start = Instant::now();
     let sum: f64 = views.iter().map(|view| distribution.density(black_box(light), *view)).sum();
     black_box(sum);
@@ -123,7 +123,7 @@ impl IlluminationStudy {
 
     /// Names and numbers of the lines of a row: of the emitted shares, and of the seen ones where these differ.
     fn lines(row: &IlluminationRow) -> Vec<(String, Vec<f64>)> {
-        let sides = [(row.name.clone(), Some(&row.shares)), (format!("{}{SEEN}", row.name), row.seen.as_ref())];
+        let sides = [(row.name.clone(), Some(&row.shares)), (format!("{}{VIEWED}", row.name), row.seen.as_ref())];
         let rest = [row.error, row.reciprocity, row.evaluation, row.sample];
         let cells = |shares: &Vec<f64>| [row.roughness].into_iter().chain(shares.iter().copied()).chain(rest).collect();
         sides.into_iter().filter_map(|(name, shares)| Some((name, cells(shares?)))).collect()
@@ -180,7 +180,7 @@ impl IlluminationStudy {
                     .collect(),
             };
             let of_row = |row: &IlluminationRow| {
-                let seen = row.seen.as_ref().map(|seen| of_shares(format!("{}{SEEN}", row.name), seen));
+                let seen = row.seen.as_ref().map(|seen| of_shares(format!("{}{VIEWED}", row.name), seen));
                 std::iter::once(of_shares(row.name.clone(), &row.shares)).chain(seen).collect::<Vec<_>>()
             };
             Plot {

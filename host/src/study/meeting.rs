@@ -4,7 +4,7 @@
 use super::{Knob, Options, Study, StudyError, Trial, sweep};
 use crate::intersection::{Intersection, CurvePrecision};
 use crate::render::Watch;
-use crate::scene::{Prepared, Scene, meetings};
+use crate::scene::{Prepared, Scene, object_intersections};
 use glam::DVec3;
 use std::time::Instant;
 
@@ -47,7 +47,7 @@ pub(super) fn newton(scene: &Scene, options: &Options, watch: &Watch<'_>) -> Res
 fn study(scene: &Scene, options: &Options, watch: &Watch<'_>, what: IntersectionParameter) -> Result<Study, StudyError> {
     let mut scene = scene.clone();
     scene.objects.iter_mut().for_each(|object| object.tolerance = None);
-    if meetings(&scene, &CurvePrecision::default())?.iter().all(|m| m.intersection.branches.is_empty()) {
+    if object_intersections(&scene, &CurvePrecision::default())?.iter().all(|m| m.intersection.branches.is_empty()) {
         return Err(StudyError::Nothing("no two objects of the scene meet in a curve"));
     }
     let diagonal = Prepared::new(&scene)?.bounds.diagonal();
@@ -81,7 +81,7 @@ impl Knob for IntersectionStudy {
         };
         scene.settings.geometry.tolerance = Some(tolerance);
         let start = Instant::now();
-        let found = meetings(&scene, &CurvePrecision { newton, chord: None })?;
+        let found = object_intersections(&scene, &CurvePrecision { newton, chord: None })?;
         let seconds = start.elapsed().as_secs_f64();
         let answer: Vec<Intersection> = found.into_iter().map(|meeting| meeting.intersection).collect();
         let count = |of: fn(&Intersection) -> usize| answer.iter().map(of).sum::<usize>() as f64;

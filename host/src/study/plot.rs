@@ -55,7 +55,7 @@ pub enum Axis {
 
 impl Axis {
     /// Where a number stands on the axis.
-    fn place(self, number: f64) -> f64 {
+    fn position(self, number: f64) -> f64 {
         if self == Axis::Linear { number } else { number.log10() }
     }
 
@@ -194,14 +194,14 @@ impl Plot {
     }
 
     /// Whether a point has a place on the axes.
-    fn has_place(&self, point: &PlotPoint) -> bool {
+    fn is_plottable(&self, point: &PlotPoint) -> bool {
         let has_place = |axis: Axis, x: f64| x.is_finite() && (axis == Axis::Linear || x > 0.0);
         has_place(self.x_axis, point.x) && has_place(self.y_axis, point.y)
     }
 
     /// The points that have a place on the axes.
     fn visible<'a>(&self, series: &'a Series) -> impl Iterator<Item = &'a PlotPoint> {
-        series.points.iter().filter(|point| self.has_place(point))
+        series.points.iter().filter(|point| self.is_plottable(point))
     }
 
     /// Least and greatest place on an axis, with a small margin; on a logarithmic one at least a factor of four apart.
@@ -214,7 +214,7 @@ impl Plot {
         match axis {
             Axis::Logarithmic => {
                 let middle = (low * high).sqrt();
-                let [low, high] = [low.min(middle / 2.0), high.max(middle * 2.0)].map(|number| axis.place(number));
+                let [low, high] = [low.min(middle / 2.0), high.max(middle * 2.0)].map(|number| axis.position(number));
                 Some((low - MARGIN * (high - low), high + MARGIN * (high - low)))
             }
             Axis::Linear => {
@@ -240,7 +240,7 @@ impl Plot {
         let points = |n: u32| f64::from(n * scale);
         let (x_ticks, y_ticks) = (self.x_axis.ticks(x0, x1), self.y_axis.ticks(y0, y1));
         let (x_axis, y_axis) = (self.x_axis, self.y_axis);
-        let place = |p: &PlotPoint| (x_axis.place(p.x), y_axis.place(p.y));
+        let place = |p: &PlotPoint| (x_axis.position(p.x), y_axis.position(p.y));
         area.fill(&WHITE).map_err(|e| failed(&e))?;
         let (head, body) = area.split_vertically(54 * scale);
         let dark = RGBColor(30, 30, 30);
@@ -280,7 +280,7 @@ impl Plot {
             let style = color.stroke_width(2 * scale);
             // Many points are a curve.
             let dot = if self.visible(series).count() > CURVE { 1 } else { 4 };
-            for run in series.points.split(|point| !self.has_place(point)) {
+            for run in series.points.split(|point| !self.is_plottable(point)) {
                 let line = || run.iter().map(place);
                 let drawn = match strokes {
                     (_, 0) => chart.draw_series(LineSeries::new(line(), style)).map(drop),

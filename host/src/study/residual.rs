@@ -72,7 +72,7 @@ fn whole(shape: &Shape, tolerance: Tolerance) -> Result<Option<Surfaces>, StudyE
             _ => None,
         },
         Shape::Sculpture(sculpture) if sculpture.is_trimmed() => return Ok(None),
-        Shape::Sculpture(_) | Shape::Teapot => return Ok(shape.made(tolerance)?.surfaces.into_iter().collect()),
+        Shape::Sculpture(_) | Shape::Teapot => return Ok(shape.tessellate(tolerance)?.surfaces.into_iter().collect()),
         _ => None,
     };
     let patches =
@@ -100,7 +100,7 @@ impl Knob for Residual<'_> {
         let triangles = |exact: &ExactShape<'_>| match &exact.whole {
             Some(whole) => Ok((tessellate_adaptively(whole, Tolerance::new(setting, 180.0))?, whole.clone())),
             None => {
-                let made = exact.shape.made(Tolerance::new(setting, self.angle))?;
+                let made = exact.shape.tessellate(Tolerance::new(setting, self.angle))?;
                 Ok((made.mesh, made.surfaces.into_iter().flatten().collect()))
             }
         };
@@ -109,7 +109,7 @@ impl Knob for Residual<'_> {
         let count = answer.iter().map(|(mesh, _)| mesh.triangles.len()).sum::<usize>();
         let mut of_scene = 0;
         for exact in &self.shapes {
-            of_scene += exact.shape.made(Tolerance::new(setting, self.angle))?.mesh.triangles.len();
+            of_scene += exact.shape.tessellate(Tolerance::new(setting, self.angle))?.mesh.triangles.len();
         }
         let counts = vec![("triangles", count as f64), ("triangles of the scene", of_scene as f64)];
         Ok(Trial { answer, seconds, counts })

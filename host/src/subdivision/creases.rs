@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::polyhedron::{NONE, Polyhedron};
 use super::rings::by_face;
-use super::weights::{Pinning, held, hold, step};
+use super::weights::{Pinning, held, pinning, step};
 
 /// What a polyhedron looks like to one step of the sharp rules.
 pub(super) struct Creases<'a> {
@@ -31,12 +31,12 @@ struct Sector {
 impl<'a> Creases<'a> {
     pub fn of(mesh: &'a Polyhedron) -> Creases<'a> {
         let vertex_hold = (0..mesh.points.len())
-            .map(|vertex| mesh.vertex_sharpness.get(vertex).map_or(0.0, |sharpness| hold(*sharpness)))
+            .map(|vertex| mesh.vertex_sharpness.get(vertex).map_or(0.0, |sharpness| pinning(*sharpness)))
             .collect();
         let mut creases =
             Creases { mesh, last: mesh.last(), sectors: Vec::new(), ring: Vec::new(), vertex_hold, cut: Vec::new() };
         creases.find_sectors();
-        creases.hold_corners();
+        creases.pin_corners();
         creases
     }
 
@@ -75,11 +75,11 @@ impl<'a> Creases<'a> {
 
     /// Where three creases meet, and where a border has one face only, the surface has a corner. Where one face fills the
     /// angle of a crease, it is cut, unless the other side has one face, too.
-    fn hold_corners(&mut self) {
+    fn pin_corners(&mut self) {
         // How much the three sharpest edges at each vertex hold, the third first.
         let mut sharpest = vec![[0.0_f64; 3]; self.mesh.points.len()];
         for side in 0..self.mesh.corners.len() as u32 {
-            let hold = hold(self.mesh.sharpness(side));
+            let hold = pinning(self.mesh.sharpness(side));
             // An edge of two faces is seen from both, at either end once.
             let ends = [side, self.mesh.next[side as usize]].map(|h| self.mesh.corners[h as usize] as usize);
             let seen = if self.mesh.twins[side as usize] == NONE { 2 } else { 1 };
@@ -108,7 +108,7 @@ impl<'a> Creases<'a> {
     }
 
     /// How a corner of a face is held.
-    pub fn held(&self, corner: u32) -> Pinning {
+    pub fn pinning_of(&self, corner: u32) -> Pinning {
         let next = self.mesh.next[corner as usize];
         let last = self.last[corner as usize];
         let before_last = self.last[last as usize];
@@ -125,7 +125,7 @@ impl<'a> Creases<'a> {
             let corners: Vec<DVec3> = self.mesh.face_points(face).collect();
             step(&corners, new);
             for (k, side) in sides.enumerate() {
-                new[k] = held(&corners, k, self.held(side), new[k]);
+                new[k] = held(&corners, k, self.pinning_of(side), new[k]);
             }
         })
     }
@@ -205,7 +205,7 @@ impl<'a> Creases<'a> {
     }
 
     /// What becomes of the creases: their ends as old corners, and their sharpness.
-    pub fn heirs(&self) -> Vec<([u32; 2], f64)> {
+    pub fn child_creases(&self) -> Vec<([u32; 2], f64)> {
         let mut heirs = Vec::new();
         for side in 0..self.mesh.corners.len() as u32 {
             if self.mesh.twins[side as usize] != NONE && self.is_crease(side) {

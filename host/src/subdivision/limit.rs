@@ -14,7 +14,7 @@ use super::weights::{Pinning, held, step, waves};
 use crate::mesh::Mesh;
 
 /// So many steps bring the corners of a face that is held in several places to the limit within rounding.
-const HELD_STEPS: usize = 80;
+const PINNED_STEPS: usize = 80;
 
 /// A limit point and a vector along the surface normal there.
 #[derive(Clone, Copy, Debug, Default)]
@@ -211,7 +211,7 @@ impl SharpRim {
             return;
         }
         let mut settled = corners.to_vec();
-        (0..HELD_STEPS).for_each(|_| settled = self.step(&settled));
+        (0..PINNED_STEPS).for_each(|_| settled = self.step(&settled));
         for (k, target) in self.attractors().targets.into_iter().enumerate() {
             limits[k] = target.limit(corners);
             if target == Target::Free {

@@ -72,7 +72,7 @@ fn inherit(creases: &Creases<'_>, names: &[u32], refined: &mut Polyhedron) {
         }
     }
     let mut sharp: HashMap<[u32; 2], f64> = HashMap::new();
-    for (ends, sharpness) in creases.heirs() {
+    for (ends, sharpness) in creases.child_creases() {
         let [a, b] = ends.map(|corner| names[corner as usize]);
         if a != b {
             sharp.insert([a.min(b), a.max(b)], sharpness);

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 /// How much a sharpness below 1 holds what would be cut: half as much as is cut elsewhere as it comes near 1, where a step
 /// of sharp rules gives the same. From 1 on, all is held.
-pub(super) fn hold(sharpness: f64) -> f64 {
+pub(super) fn pinning(sharpness: f64) -> f64 {
     if sharpness >= 1.0 { 1.0 } else { 1.0 - (-sharpness).exp2() }
 }
 
@@ -42,7 +42,7 @@ impl Pinning {
         let [before_last, last, here, next] = sides;
         let along = |side: f64, vertex: f64, other: f64| {
             // Between two sides that are nearly creases the corner is nearly cut: half as much is held.
-            if side >= 1.0 { vertex } else { vertex.max(hold(other) * (1.0 - 0.5 * side)) }
+            if side >= 1.0 { vertex } else { vertex.max(pinning(other) * (1.0 - 0.5 * side)) }
         };
         Pinning {
             here_forward: along(here, vertices[1], last),

@@ -40,8 +40,8 @@ fn turned() -> Vec<(&'static str, Box<dyn Surface>)> {
         ("dome", Profile::Arc { center: DVec2::Y, radius: 2.0, turns: [0.1, 0.25] }),
         ("torus of revolution", torus.clone()),
         ("paraboloid", Profile::Parabola { apex: 1.0, rise: 0.4, reach: [0.0, 1.5] }),
-        ("hyperboloid of one sheet", Profile::Waist { across: 0.8, along: 1.2, reach: [-1.0, 1.0] }),
-        ("hyperboloid of two sheets", Profile::Bowl { across: 0.8, along: 1.2, reach: [0.0, 1.0] }),
+        ("hyperboloid of one sheet", Profile::HyperbolaOneSheet { across: 0.8, along: 1.2, reach: [-1.0, 1.0] }),
+        ("hyperboloid of two sheets", Profile::HyperbolaTwoSheets { across: 0.8, along: 1.2, reach: [0.0, 1.0] }),
         ("vase", Profile::Spline(curve)),
     ];
     let mut members: Vec<(&'static str, Box<dyn Surface>)> = Vec::new();
@@ -183,8 +183,8 @@ fn second_derivatives_agree_with_differences_of_first_ones() {
         Box::new(Sphere::new(DVec3::ONE, 2.0)),
         Box::new(TransformedSurface::new(Sphere::new(DVec3::ONE, 2.0), mirror)),
         Box::new(SurfaceOfRevolution::whole(arc)),
-        Box::new(SurfaceOfRevolution::whole(Profile::Waist { across: 0.8, along: 1.2, reach: [-1.0, 1.0] })),
-        Box::new(SurfaceOfRevolution::whole(Profile::Bowl { across: 0.8, along: 1.2, reach: [-1.0, 1.0] })),
+        Box::new(SurfaceOfRevolution::whole(Profile::HyperbolaOneSheet { across: 0.8, along: 1.2, reach: [-1.0, 1.0] })),
+        Box::new(SurfaceOfRevolution::whole(Profile::HyperbolaTwoSheets { across: 0.8, along: 1.2, reach: [-1.0, 1.0] })),
         Box::new(SurfaceOfRevolution::whole(Profile::Parabola { apex: 1.0, rise: 0.4, reach: [0.0, 1.5] })),
         Box::new(Parallelogram::new(DVec3::ONE, DVec3::X, DVec3::Y)),
         Box::new(teapot()[7].clone()),

@@ -47,14 +47,14 @@ pub struct PiercingLine {
 pub fn pierced<S: Surface + ?Sized>(surface: &S, line: &PiercingLine, guess: DVec2, reach: f64) -> Option<PiercingPoint> {
     let [low, high] = surface.domain();
     let guess = guess.clamp(low, high);
-    settled(surface, line, guess, reach).or_else(|| {
+    newton(surface, line, guess, reach).or_else(|| {
         // Close to an outline, steps from within may find the other end of a chord.
         let way = if line.outward { 0.5 } else { -0.5 } * reach / line.direction.length();
-        settled(surface, line, surface.nearest(line.from + line.direction * way, guess), reach)
+        newton(surface, line, surface.nearest(line.from + line.direction * way, guess), reach)
     })
 }
 
-fn settled<S: Surface + ?Sized>(surface: &S, line: &PiercingLine, mut uv: DVec2, reach: f64) -> Option<PiercingPoint> {
+fn newton<S: Surface + ?Sized>(surface: &S, line: &PiercingLine, mut uv: DVec2, reach: f64) -> Option<PiercingPoint> {
     let PiercingLine { from, direction, outward } = *line;
     let domain = surface.domain();
     for _ in 0..MAX_STEPS {
@@ -70,7 +70,7 @@ fn settled<S: Surface + ?Sized>(surface: &S, line: &PiercingLine, mut uv: DVec2,
         }
         let at = from + direction * t;
         let offset = at - point;
-        let next = if spans { held([du, dv], across, offset, uv, domain) } else { surface.nearest(at, uv) };
+        let next = if spans { clamped_step([du, dv], across, offset, uv, domain) } else { surface.nearest(at, uv) };
         let step = du * (next.x - uv.x) + dv * (next.y - uv.y);
         let is_last = step.length() <= LAST * reach;
         uv = next;
@@ -102,7 +102,7 @@ fn normal_at<S: Surface + ?Sized>(surface: &S, uv: DVec2) -> DVec3 {
 }
 
 /// The parameters of the point of the tangent plane at `offset`, as far as the domain goes.
-fn held([du, dv]: [DVec3; 2], across: DVec3, offset: DVec3, uv: DVec2, [low, high]: [DVec2; 2]) -> DVec2 {
+fn clamped_step([du, dv]: [DVec3; 2], across: DVec3, offset: DVec3, uv: DVec2, [low, high]: [DVec2; 2]) -> DVec2 {
     let square = across.length_squared();
     let step = DVec2::new(offset.cross(dv).dot(across), du.cross(offset).dot(across)) / square;
     let next = (uv + step).clamp(low, high);

@@ -44,7 +44,7 @@ pub enum Profile {
         reach: [f64; 2],
     },
     /// A piece of a hyperbola that turns its side to the axis, (across cosh t, along sinh t): it never meets the axis.
-    Waist {
+    HyperbolaOneSheet {
         /// Its least distance from the axis.
         across: f64,
         /// Its half axis along the axis of revolution.
@@ -53,7 +53,7 @@ pub enum Profile {
         reach: [f64; 2],
     },
     /// A piece of a hyperbola that meets the axis, (across sinh t, along cosh t).
-    Bowl {
+    HyperbolaTwoSheets {
         /// Its half axis across the axis of revolution.
         across: f64,
         /// Where it meets the axis.
@@ -78,8 +78,8 @@ impl Profile {
             Profile::Line { from, to } => Profile::Line { from: to, to: from },
             Profile::Arc { center, radius, turns } => Profile::Arc { center, radius, turns: turned(turns) },
             Profile::Parabola { apex, rise, reach } => Profile::Parabola { apex, rise, reach: turned(reach) },
-            Profile::Waist { across, along, reach } => Profile::Waist { across, along, reach: turned(reach) },
-            Profile::Bowl { across, along, reach } => Profile::Bowl { across, along, reach: turned(reach) },
+            Profile::HyperbolaOneSheet { across, along, reach } => Profile::HyperbolaOneSheet { across, along, reach: turned(reach) },
+            Profile::HyperbolaTwoSheets { across, along, reach } => Profile::HyperbolaTwoSheets { across, along, reach: turned(reach) },
             Profile::Spline(curve) => Profile::Spline(curve.reversed()),
         }
     }
@@ -125,7 +125,7 @@ impl Profile {
                 return [DVec2::new(at(0), at(1)), *to - *from, DVec2::ZERO];
             }
             Profile::Arc { turns, .. } => (*turns, Profile::arc),
-            Profile::Parabola { reach, .. } | Profile::Waist { reach, .. } | Profile::Bowl { reach, .. } => {
+            Profile::Parabola { reach, .. } | Profile::HyperbolaOneSheet { reach, .. } | Profile::HyperbolaTwoSheets { reach, .. } => {
                 (*reach, Profile::conic)
             }
             Profile::Spline(curve) => (curve.domain(), Profile::spline),
@@ -146,11 +146,11 @@ impl Profile {
             Profile::Parabola { apex, rise, .. } => {
                 [DVec2::new(t, apex + rise * t * t), DVec2::new(1.0, 2.0 * rise * t), DVec2::new(0.0, 2.0 * rise)]
             }
-            Profile::Waist { across, along, .. } => {
+            Profile::HyperbolaOneSheet { across, along, .. } => {
                 let point = DVec2::new(across * t.cosh(), along * t.sinh());
                 [point, DVec2::new(across * t.sinh(), along * t.cosh()), point]
             }
-            Profile::Bowl { across, along, .. } => {
+            Profile::HyperbolaTwoSheets { across, along, .. } => {
                 let point = DVec2::new(across * t.sinh(), along * t.cosh());
                 [point, DVec2::new(across * t.cosh(), along * t.sinh()), point]
             }
@@ -247,8 +247,8 @@ mod tests {
             Profile::Arc { center: DVec2::new(3.0, 1.0), radius: 2.0, turns: [-0.2, 0.6] },
             Profile::Arc { center: DVec2::new(3.0, 1.0), radius: 1.0, turns: [1.5, 0.9] },
             Profile::Parabola { apex: 1.0, rise: -3.0, reach: [0.0, 2.0] },
-            Profile::Waist { across: 0.5, along: 2.0, reach: [-1.5, 1.0] },
-            Profile::Bowl { across: 0.5, along: -2.0, reach: [1.5, 0.0] },
+            Profile::HyperbolaOneSheet { across: 0.5, along: 2.0, reach: [-1.5, 1.0] },
+            Profile::HyperbolaTwoSheets { across: 0.5, along: -2.0, reach: [1.5, 0.0] },
             Profile::Spline(SplineCurve::new(Basis::clamped(3, 4).unwrap(), &points, &[1.0, 2.0, 1.0, 3.0]).unwrap()),
         ]
     }

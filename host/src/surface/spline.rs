@@ -177,7 +177,7 @@ impl SplineSurface {
     /// # Errors
     /// [`SplineError`] if the ends of the domain cannot take the joints.
     pub fn with_passing_sides(&self, direction: Direction) -> Result<SplineSurface, SplineError> {
-        Ok(self.refined(direction, self.basis(direction).passing_ends()?))
+        Ok(self.refined(direction, self.basis(direction).clamped_at_ends()?))
     }
 
     /// These points with one direction reversed, and so with the other side outside.

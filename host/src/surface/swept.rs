@@ -77,12 +77,12 @@ impl Spine {
     }
 
     /// The point of the section `point` at the parameter `t`.
-    pub fn place(&self, point: DVec2, widening: TwistAndTaper, t: f64) -> DVec3 {
+    pub fn point_at(&self, point: DVec2, widening: TwistAndTaper, t: f64) -> DVec3 {
         self.jet(point, widening, t)[0]
     }
 
     /// The curvature of the curve at `t` as a vector of the section, 1 / model unit: towards the inside of the bend.
-    pub fn bend(&self, widening: TwistAndTaper, t: f64) -> DVec2 {
+    pub fn curvature_in_section(&self, widening: TwistAndTaper, t: f64) -> DVec2 {
         let bend = self.bend_in_space(t);
         let [x, y] = self.axes(widening, t);
         DVec2::new(bend.dot(x), bend.dot(y))
@@ -191,7 +191,7 @@ impl Surface for Swept {
     }
 
     fn point(&self, uv: DVec2) -> DVec3 {
-        self.spine.place(self.section(uv.x), self.widening, uv.y)
+        self.spine.point_at(self.section(uv.x), self.widening, uv.y)
     }
 
     fn derivatives(&self, uv: DVec2) -> [DVec3; 2] {

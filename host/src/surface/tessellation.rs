@@ -19,8 +19,8 @@ const MAX_SEGMENTS: usize = 1 << 13;
 /// The most triangles of a mesh.
 const MAX_TRIANGLES: usize = 1 << 24;
 /// Segments and lines of the first look at a surface.
-const LOOK_SEGMENTS: usize = 16;
-const LOOK_LINES: usize = 9;
+const ESTIMATE_SEGMENTS: usize = 16;
+const ESTIMATE_LINES: usize = 9;
 /// The points where a triangle is measured, as weights of its corners: an error that is quadratic over the triangle is
 /// largest in one of them, or little larger elsewhere, for which the part of the tolerance leaves room.
 const MEASURED_AT: [[f64; 3]; 4] =
@@ -139,13 +139,13 @@ impl SegmentEstimate {
 
 /// The segments that the directions u and v of a surface take by a first look, not rounded; `None` if a point is not
 /// finite.
-pub(super) fn wanted_segments<S: Surface>(surface: &S, tolerance: Tolerance) -> Option<[f64; 2]> {
-    look(surface).map(|looks| looks.map(|look| look.segments(tolerance)))
+pub(super) fn estimated_segments<S: Surface>(surface: &S, tolerance: Tolerance) -> Option<[f64; 2]> {
+    estimate(surface).map(|looks| looks.map(|look| look.segments(tolerance)))
 }
 
 impl Grids {
     fn fitted<S: Surface>(surfaces: &[S], borders: &SharedCurves, tolerance: Tolerance) -> Result<Grids, TessellationError> {
-        let looks: Vec<Option<[SegmentEstimate; 2]>> = surfaces.par_iter().map(look).collect();
+        let looks: Vec<Option<[SegmentEstimate; 2]>> = surfaces.par_iter().map(estimate).collect();
         if let Some(surface) = looks.iter().position(Option::is_none) {
             return Err(TessellationError::NotFinite { surface });
         }
@@ -225,22 +225,22 @@ fn grid_uv([low, high]: [DVec2; 2], counts: [usize; 2], i: usize, j: usize) -> D
 }
 
 /// A first look at both directions; `None` if a point is not finite.
-fn look<S: Surface>(surface: &S) -> Option<[SegmentEstimate; 2]> {
+fn estimate<S: Surface>(surface: &S) -> Option<[SegmentEstimate; 2]> {
     let domain = surface.domain();
     let mut looks = [SegmentEstimate { sagitta: 0.0, turn: 0.0 }; 2];
     for (axis, look) in looks.iter_mut().enumerate() {
-        for line in 0..LOOK_LINES {
+        for line in 0..ESTIMATE_LINES {
             // Points at the ends and middles of the segments of one parameter line.
             let sample = |k: usize| {
-                let (along, across) = (2 * LOOK_SEGMENTS, LOOK_LINES - 1);
+                let (along, across) = (2 * ESTIMATE_SEGMENTS, ESTIMATE_LINES - 1);
                 let uv = match axis {
                     0 => grid_uv(domain, [along, across], k, line),
                     _ => grid_uv(domain, [across, along], line, k),
                 };
                 (surface.point(uv), surface.normal(uv))
             };
-            let samples: Vec<(DVec3, DVec3)> = (0..=2 * LOOK_SEGMENTS).map(sample).collect();
-            let is_side = line == 0 || line == LOOK_LINES - 1;
+            let samples: Vec<(DVec3, DVec3)> = (0..=2 * ESTIMATE_SEGMENTS).map(sample).collect();
+            let is_side = line == 0 || line == ESTIMATE_LINES - 1;
             for segment in samples.windows(3).step_by(2) {
                 let [(a, from), (middle, normal), (b, to)] = [segment[0], segment[1], segment[2]];
                 let offset = middle - (a + b) * 0.5;
@@ -251,9 +251,9 @@ fn look<S: Surface>(surface: &S) -> Option<[SegmentEstimate; 2]> {
                 let along = (b - a).normalize_or_zero();
                 let across = offset - along * offset.dot(along);
                 let sagitta = if is_side { across.length() } else { offset.dot(normal).abs() };
-                look.sagitta = look.sagitta.max(sagitta * (LOOK_SEGMENTS * LOOK_SEGMENTS) as f64);
+                look.sagitta = look.sagitta.max(sagitta * (ESTIMATE_SEGMENTS * ESTIMATE_SEGMENTS) as f64);
                 let turn = from.cross(to).length().atan2(from.dot(to)).to_degrees();
-                look.turn = look.turn.max(turn * LOOK_SEGMENTS as f64);
+                look.turn = look.turn.max(turn * ESTIMATE_SEGMENTS as f64);
             }
         }
     }

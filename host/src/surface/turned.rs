@@ -35,14 +35,14 @@ impl SurfaceOfRevolution {
     }
 
     /// Where a point of the half plane comes to at an angle, turns.
-    pub fn turned(point: DVec2, turns: f64) -> DVec3 {
+    pub fn revolve(point: DVec2, turns: f64) -> DVec3 {
         let [sine, cosine] = sine_and_cosine(turns);
         DVec3::new(point.x * sine, point.y, point.x * cosine)
     }
 }
 
 /// The direction in which u grows.
-fn ahead(turns: f64) -> DVec3 {
+fn azimuthal(turns: f64) -> DVec3 {
     let [sine, cosine] = sine_and_cosine(turns);
     DVec3::new(cosine, 0.0, -sine)
 }
@@ -53,12 +53,12 @@ impl Surface for SurfaceOfRevolution {
     }
 
     fn point(&self, uv: DVec2) -> DVec3 {
-        SurfaceOfRevolution::turned(self.profile.point(uv.y), uv.x)
+        SurfaceOfRevolution::revolve(self.profile.point(uv.y), uv.x)
     }
 
     fn derivatives(&self, uv: DVec2) -> [DVec3; 2] {
         let radius = self.profile.point(uv.y).x;
-        [ahead(uv.x) * (TAU * radius), SurfaceOfRevolution::turned(self.profile.derivatives(uv.y)[0], uv.x)]
+        [azimuthal(uv.x) * (TAU * radius), SurfaceOfRevolution::revolve(self.profile.derivatives(uv.y)[0], uv.x)]
     }
 
     fn point_and_derivatives(&self, uv: DVec2) -> [DVec3; 3] {
@@ -71,7 +71,7 @@ impl Surface for SurfaceOfRevolution {
     /// Also on the axis, where every angle has its own limit.
     fn normal(&self, uv: DVec2) -> DVec3 {
         let along = self.profile.direction(uv.y);
-        SurfaceOfRevolution::turned(DVec2::new(along.y, -along.x), uv.x)
+        SurfaceOfRevolution::revolve(DVec2::new(along.y, -along.x), uv.x)
     }
 
     fn nearest(&self, point: DVec3, guess: DVec2) -> DVec2 {
@@ -98,8 +98,8 @@ impl Curved for SurfaceOfRevolution {
     fn second_derivatives(&self, uv: DVec2) -> [DVec3; 3] {
         let radius = self.profile.point(uv.y).x;
         let [first, second] = self.profile.derivatives(uv.y);
-        let out = SurfaceOfRevolution::turned(DVec2::X, uv.x);
-        [out * (-TAU * TAU * radius), ahead(uv.x) * (TAU * first.x), SurfaceOfRevolution::turned(second, uv.x)]
+        let out = SurfaceOfRevolution::revolve(DVec2::X, uv.x);
+        [out * (-TAU * TAU * radius), azimuthal(uv.x) * (TAU * first.x), SurfaceOfRevolution::revolve(second, uv.x)]
     }
 }
 
@@ -147,10 +147,10 @@ mod tests {
         on(Profile::Parabola { apex: 1.0, rise: 0.5, reach: [0.0, 2.0] }, |p| {
             1.0 + 0.5 * (p.x * p.x + p.z * p.z) - p.y
         });
-        on(Profile::Waist { across: 0.5, along: 2.0, reach: [-1.0, 1.5] }, |p| {
+        on(Profile::HyperbolaOneSheet { across: 0.5, along: 2.0, reach: [-1.0, 1.5] }, |p| {
             4.0 * (p.x * p.x + p.z * p.z) - p.y * p.y / 4.0 - 1.0
         });
-        on(Profile::Bowl { across: 0.5, along: 2.0, reach: [0.0, 1.0] }, |p| {
+        on(Profile::HyperbolaTwoSheets { across: 0.5, along: 2.0, reach: [0.0, 1.0] }, |p| {
             p.y * p.y / 4.0 - 4.0 * (p.x * p.x + p.z * p.z) - 1.0
         });
     }

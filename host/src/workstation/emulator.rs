@@ -101,14 +101,14 @@ impl Emulator {
     /// # Errors
     /// [`WorkstationError::Order`] if the order is refused, [`WorkstationError::Silent`] if there is no reply within
     /// [`Patience::order`], [`WorkstationError::Ended`] if the process is gone.
-    pub fn order(&mut self, order: &str) -> Result<String, WorkstationError> {
-        self.give(order)?;
+    pub fn operator_command(&mut self, order: &str) -> Result<String, WorkstationError> {
+        self.send_operator_command(order)?;
         match self.replies.recv_timeout(self.patience.order) {
             Ok(reply) => understood(order, &reply),
             Err(mpsc::RecvTimeoutError::Disconnected) => Err(WorkstationError::Ended),
             Err(mpsc::RecvTimeoutError::Timeout) => {
                 let seconds = self.patience.order.as_secs();
-                Err(WorkstationError::Silent { what: format!("the reply to '{order}'"), seconds })
+                Err(WorkstationError::Timeout { what: format!("the reply to '{order}'"), seconds })
             }
         }
     }
@@ -117,7 +117,7 @@ impl Emulator {
     ///
     /// # Errors
     /// [`WorkstationError::Ended`] if the process is gone.
-    pub fn give(&mut self, order: &str) -> Result<(), WorkstationError> {
+    pub fn send_operator_command(&mut self, order: &str) -> Result<(), WorkstationError> {
         self.orders.send(order.into()).map_err(|_| WorkstationError::Ended)
     }
 
@@ -159,7 +159,7 @@ fn understood(order: &str, reply: &str) -> Result<String, WorkstationError> {
         Some(text) => Ok(text.trim_start().to_string()),
         None => {
             let reason = reply.strip_prefix("error ").unwrap_or(reply).to_string();
-            Err(WorkstationError::Order { order: order.to_string(), reason })
+            Err(WorkstationError::OperatorCommand { order: order.to_string(), reason })
         }
     }
 }

@@ -30,7 +30,7 @@ pub enum WorkstationError {
     },
     /// No answer in time.
     #[error("the workstation did not answer within {seconds} s; waited for {what} (--patience gives it more time)")]
-    Silent {
+    Timeout {
         /// What was waited for.
         what: String,
         /// How long.
@@ -49,7 +49,7 @@ pub enum WorkstationError {
     Ended,
     /// An order to the operator line was refused.
     #[error("the workstation's operator line refused '{order}': {reason}")]
-    Order {
+    OperatorCommand {
         /// The order, as it was sent.
         order: String,
         /// What is wrong, in words.

@@ -73,7 +73,7 @@ pub fn polygons(
 
 /// The color by which a material is known, linear light: its body's, or without one that of what it reflects.
 pub fn main_color(material: &Material) -> RgbPower {
-    let MaterialPreview { diffuse, specular, mirror, .. } = material.appearance();
+    let MaterialPreview { diffuse, specular, mirror, .. } = material.preview();
     let body = diffuse + mirror;
     if body == RgbPower::ZERO { specular } else { body }
 }
@@ -81,7 +81,7 @@ pub fn main_color(material: &Material) -> RgbPower {
 /// What a material looks like to the machine, from both sides.
 pub fn attributes(material: &Material) -> Attributes {
     let sum = |bands: RgbPower| bands.max(DVec3::ZERO).element_sum();
-    let MaterialPreview { diffuse, specular, exponent, mirror } = material.appearance();
+    let MaterialPreview { diffuse, specular, exponent, mirror } = material.preview();
     let body = sum(diffuse);
     let share = body / (body + sum(specular) + sum(mirror)).max(f64::MIN_POSITIVE);
     let front = SurfaceColor {
@@ -99,7 +99,7 @@ pub fn illumination(lights: &[Light], at: DVec3) -> Vec<Illumination> {
     // Of a light that has a size, the middle counts; the machine knows no light from all around.
     let beam = |light: &Light| {
         let source = LightSource::new(light, &bands);
-        let beam = if source.is_sky() { None } else { source.beam(at, None, [0.5; 2], 0) }?;
+        let beam = if source.is_sky() { None } else { source.sample_incident(at, None, [0.5; 2], 0) }?;
         let [red, green, blue, ..] = beam.irradiance.0;
         Some((beam.towards, RgbPower::new(red, green, blue)))
     };

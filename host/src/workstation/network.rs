@@ -22,9 +22,9 @@ const VIEW_TRIGGER: &str = "PERIS_VIEW";
 const VIEW_TEXT: &str = "PERIS_PRINT";
 
 /// The function that asks for a shaded picture when no message came for a while.
-const QUIET: &str = "PERIS_QUIET";
+const IDLE_TIMER: &str = "PERIS_QUIET";
 /// How long dials stand still before the picture is shaded, hundredths of a second.
-const QUIET_CENTISECONDS: i32 = 30;
+const IDLE_CENTISECONDS: i32 = 30;
 /// The rendering that takes colours as they are.
 const WASH_SHADED: i32 = 5;
 
@@ -161,7 +161,7 @@ pub fn label(key: i32, text: &str) -> Command {
 }
 
 /// Asks for the matrix of the view, whoever set up the network that answers.
-pub(super) fn ask_view() -> Vec<Command> {
+pub(super) fn request_view() -> Vec<Command> {
     let mut build = Build::default();
     build.connect(VIEW_TEXT, 1, 1, "HOST_MESSAGE");
     build.send(Value::Boolean(true), 1, VIEW_TRIGGER);
@@ -178,12 +178,12 @@ pub(super) fn leave_view() -> Command {
 /// them, the picture follows. The vector screen goes on when a picture is done.
 pub fn shading() -> Vec<Command> {
     let mut build = Build::default();
-    build.function(QUIET, "TIMEOUT");
-    build.send(Value::Integer(QUIET_CENTISECONDS), 2, QUIET);
-    build.send(Value::Integer(WASH_SHADED), 3, QUIET);
-    build.connect(QUIET, 1, 1, &format!("{ROOT}.SHADE"));
+    build.function(IDLE_TIMER, "TIMEOUT");
+    build.send(Value::Integer(IDLE_CENTISECONDS), 2, IDLE_TIMER);
+    build.send(Value::Integer(WASH_SHADED), 3, IDLE_TIMER);
+    build.connect(IDLE_TIMER, 1, 1, &format!("{ROOT}.SHADE"));
     for dial in 1..8 {
-        build.connect("DIALS", dial, 1, QUIET);
+        build.connect("DIALS", dial, 1, IDLE_TIMER);
     }
     build.function("PERIS_SHOWN", "CONSTANT");
     build.send(Value::Integer(0), 2, "PERIS_SHOWN");
@@ -195,14 +195,14 @@ pub fn shading() -> Vec<Command> {
 
 /// Asks for a picture of the light of a solution.
 pub fn shade() -> Vec<Command> {
-    vec![send(Value::Boolean(true), 1, QUIET)]
+    vec![send(Value::Boolean(true), 1, IDLE_TIMER)]
 }
 
 /// Makes a scene that takes the place of another stand as dials have turned that: they are turned by nothing, so that what
 /// sums their turns speaks.
 ///
 /// - `movement`: what a turn of dials 5 to 7 moves from now on, scene units.
-pub fn settle(movement: f64) -> Vec<Command> {
+pub fn zero_dials(movement: f64) -> Vec<Command> {
     let mut build = Build::default();
     build.send(Value::Real(movement), 4, "PERIS_T");
     for function in ["PERIS_RX", "PERIS_RY", "PERIS_RZ", "PERIS_S"] {

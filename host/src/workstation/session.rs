@@ -66,7 +66,7 @@ impl<'a> Wait<'a> {
     /// The time that is left.
     fn left(&self) -> Result<Duration, WorkstationError> {
         let left = self.end.checked_duration_since(Instant::now()).filter(|time| !time.is_zero());
-        left.ok_or_else(|| WorkstationError::Silent { what: self.what.into(), seconds: self.patience.as_secs() })
+        left.ok_or_else(|| WorkstationError::Timeout { what: self.what.into(), seconds: self.patience.as_secs() })
     }
 }
 
@@ -121,7 +121,7 @@ impl Session {
     }
 
     /// How long the workstation may take.
-    pub fn patience(&self) -> Timeouts {
+    pub fn timeouts(&self) -> Timeouts {
         self.patience
     }
 
@@ -164,7 +164,7 @@ impl Session {
         written.map_err(|error| match error.kind() {
             io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut => {
                 let what = "it to read what is sent".to_string();
-                WorkstationError::Silent { what, seconds: self.patience.answer.as_secs() }
+                WorkstationError::Timeout { what, seconds: self.patience.answer.as_secs() }
             }
             _ => closed(error),
         })
@@ -236,7 +236,7 @@ impl Session {
     /// # Errors
     /// [`WorkstationError::Silent`], [`WorkstationError::Closed`], [`WorkstationError::Answer`].
     pub fn view(&mut self) -> Result<DMat4, WorkstationError> {
-        self.commands(&network::ask_view())?;
+        self.commands(&network::request_view())?;
         let mut lines = Vec::new();
         let mut others = VecDeque::new();
         let wait = Wait::begin("the matrix of the view", self.patience.answer);
@@ -283,7 +283,7 @@ impl Session {
     pub fn replace(&mut self, shown: &structure::StructureCommands, movement: f64) -> Result<(), WorkstationError> {
         self.commands(&[Command::Begin, structure::delete_objects()])?;
         self.commands(&shown.commands)?;
-        self.commands(&network::settle(movement))?;
+        self.commands(&network::zero_dials(movement))?;
         self.commands(&[Command::End])?;
         self.synchronize()
     }
@@ -332,7 +332,7 @@ mod tests {
         let partner = listener.accept();
         session.text(&"A := F:NOP; ".repeat(2_000_000)).expect("it waits here");
         let error = session.flush().expect_err("nobody reads");
-        assert_eq!(error, WorkstationError::Silent { what: "it to read what is sent".into(), seconds: 1 });
+        assert_eq!(error, WorkstationError::Timeout { what: "it to read what is sent".into(), seconds: 1 });
         drop(partner);
     }
 
@@ -355,6 +355,6 @@ mod tests {
         let mut session = Session::attach(&address, Timeouts::of(1)).expect("it is taken in");
         std::thread::spawn(move || talk(listener.accept()?.0));
         let error = session.synchronize().expect_err("it never comes to the point");
-        assert!(matches!(error, WorkstationError::Silent { seconds: 1, .. }), "{error}");
+        assert!(matches!(error, WorkstationError::Timeout { seconds: 1, .. }), "{error}");
     }
 }

@@ -241,7 +241,7 @@ fn data(
 ) -> Result<Vec<MaterialPart>, WorkstationError> {
     let failed = |e: String| WorkstationError::Scene(format!("{}: {e}", object.name));
     let chord = drawing.tolerance * object.shape.extent().unwrap_or(1.0);
-    let coarse = object.shape.made(Tolerance::new(chord, angle)).map_err(|e| failed(e.to_string()))?;
+    let coarse = object.shape.tessellate(Tolerance::new(chord, angle)).map_err(|e| failed(e.to_string()))?;
     let mesh = coarse.mesh.transformed(&DAffine3::from_mat4(object.transform));
     let (materials, material_of) = object.materials(&coarse.operand_of);
     let selection = match drawing.lines {

@@ -17,7 +17,7 @@ use glam::{DMat4, DVec3};
 use std::path::PathBuf;
 
 /// The range of wavelengths in a plot, nm.
-const SEEN: (f64, f64) = (360.0, 830.0);
+const VISIBLE_RANGE: (f64, f64) = (360.0, 830.0);
 
 /// Writes the files of a record, and says which.
 pub(super) fn plot(record: &Record, place: &RecordAddress, folder: &Folder) -> Result<(), CommandFailure> {
@@ -31,7 +31,7 @@ pub(super) fn plot(record: &Record, place: &RecordAddress, folder: &Folder) -> R
                 return Err(anyhow::anyhow!("the light \"{}\" has no spectrum, but {bands}", record.name).into());
             }
         },
-        RecordContent::CaughtLight(_) => {
+        RecordContent::Photons(_) => {
             return Err(anyhow::anyhow!("caught light is seen in its scene only: render that with --light").into());
         }
         RecordContent::Texture(picture) => {
@@ -77,7 +77,7 @@ fn picture_file(folder: &Folder, name: &str) -> Result<Destination, CommandFailu
 /// Curves over the wavelengths that are seen.
 fn curve(record: &Record, curves: &Curves) -> Plot {
     let of = |(name, spectrum): (&str, &crate::color::Spectrum)| {
-        let within = spectrum.samples().filter(|(wavelength, _)| (SEEN.0..=SEEN.1).contains(wavelength));
+        let within = spectrum.samples().filter(|(wavelength, _)| (VISIBLE_RANGE.0..=VISIBLE_RANGE.1).contains(wavelength));
         let points = within.map(|(x, y)| PlotPoint { x, y, label: String::new() }).collect();
         Series { name: name.to_owned(), points }
     };

@@ -15,9 +15,9 @@ pub(super) fn show(record: &Record, json: bool) -> Result<(), CommandFailure> {
             RecordContent::Texture(picture) => {
                 serde_json::json!({ "width": picture.width(), "height": picture.height(), "mean": mean(picture) })
             }
-            RecordContent::CaughtLight(caught) => {
+            RecordContent::Photons(caught) => {
                 let bounds = caught.bounds().map(|corners| corners.map(|corner| corner.to_array()));
-                serde_json::json!({ "ways": caught.ways(), "caught": caught.len(), "bounds": bounds })
+                serde_json::json!({ "ways": caught.paths(), "caught": caught.len(), "bounds": bounds })
             }
             _ => serde_json::Value::Null,
         };
@@ -49,7 +49,7 @@ pub(super) fn show(record: &Record, json: bool) -> Result<(), CommandFailure> {
             }
         },
         RecordContent::Material(material) => say!("{}", serde_json::to_string_pretty(material)?),
-        RecordContent::CaughtLight(caught) => {
+        RecordContent::Photons(caught) => {
             if let Some([low, high]) = caught.bounds() {
                 say!("bounds    {low} to {high}");
             }

@@ -90,7 +90,7 @@ pub(super) struct RenderArguments {
     #[command(flatten)]
     pub(super) display: DisplayArguments,
     /// Renders one pixel only, counted from the upper left corner, and prints its radiance; writes no file
-    #[arg(long, value_name = "X,Y", value_parser = place)]
+    #[arg(long, value_name = "X,Y", value_parser = parse_pixel)]
     pub(super) pixel: Option<[u32; 2]>,
     /// Prints the ways of the first samples of the pixel, and every term that they add
     #[arg(long, requires = "pixel")]
@@ -119,7 +119,7 @@ impl RenderArguments {
     }
 
     /// How pictures are to be made. Where errors or the clock decide about samples, the scene does not.
-    pub(super) fn order(&self, settings: &Settings) -> RenderOrder {
+    pub(super) fn render_options(&self, settings: &Settings) -> RenderOrder {
         let is_open = self.error.is_some() || self.seconds.is_some();
         RenderOrder {
             samples: self.samples.unwrap_or(if is_open { MAX_SAMPLES } else { settings.image.samples }),
@@ -195,7 +195,7 @@ fn renderers() -> impl TypedValueParser<Value = Technique> {
 }
 
 /// Reads the place of a pixel.
-fn place(text: &str) -> Result<[u32; 2], String> {
+fn parse_pixel(text: &str) -> Result<[u32; 2], String> {
     let (x, y) = text.split_once(',').ok_or("give X,Y")?;
     let number = |text: &str| text.trim().parse().map_err(|_| format!("'{text}' is no number of a pixel"));
     Ok([number(x)?, number(y)?])

@@ -46,7 +46,7 @@ fn run(arguments: &RenderArguments) -> Result<(), CommandFailure> {
     let prepared = Prepared::new(&scene)?;
     let views = arguments.views_of(&prepared)?;
     let plan = Plan::of_views(&prepared, &views, arguments.everything);
-    let order = arguments.order(&prepared.settings);
+    let order = arguments.render_options(&prepared.settings);
     if order.denoise && order.samples < 2 {
         let message = "--denoise needs 2 samples in each pixel: what differs between them is noise";
         return Err(CommandFailure::new(Exit::Usage, anyhow::anyhow!(message)));
@@ -94,7 +94,7 @@ fn run(arguments: &RenderArguments) -> Result<(), CommandFailure> {
             all.render(&mut |view, film, checkpoints| {
                 let film = film.map_or_else(|| Film::new(order.width, order.height), Ok)?;
                 let film = if arguments.layers && state.is_none() { film.with_classes() } else { film };
-                Ok(tracer.go_on(film, view, &order, &watch, checkpoints)?)
+                Ok(tracer.resume(film, view, &order, &watch, checkpoints)?)
             })
         }
     };

@@ -65,7 +65,7 @@ impl Saved<'_> {
     /// Keeps that a view is the next one, and not begun.
     pub(super) fn write_next(&self, number: usize, before: &Film) -> Result<(), StateError> {
         let film = Film::new(before.width(), before.height())?;
-        let film = if before.guides().is_empty() { film } else { film.with_guides() };
+        let film = if before.features().is_empty() { film } else { film.with_features() };
         film.write_state(self.destination, self.fingerprint, number as u32)
     }
 }
@@ -88,7 +88,7 @@ impl Intermediate {
             Some(PathBuf::from(name))
         };
         let row = arguments.renderer.row();
-        let is_followed = row.follows_light && arguments.light.is_none() && plan.needs(Stage::CaughtLight);
+        let is_followed = row.follows_light && arguments.light.is_none() && plan.needs(Stage::PhotonMap);
         let is_solved = row.solves || (row.adds_samples && plan.needs(Stage::Radiosity));
         Intermediate {
             light: is_followed.then(|| beside(".light")).flatten(),

@@ -19,7 +19,7 @@ use std::path::Path;
 use std::time::Instant;
 
 /// The part of the pixels that are clipped from which on it is told: less than it are lamps in sight.
-const TOLD: f64 = 1e-3;
+const REPORTED_CLIPPING: f64 = 1e-3;
 
 /// Renders a view: on a film that was begun before, if there is one, and keeping it from time to time.
 pub(super) type Render<'a> = dyn FnMut(&View, Option<Film>, Option<Checkpoints<'_>>) -> Result<Rendering, CommandFailure> + 'a;
@@ -86,7 +86,7 @@ impl ViewBatch<'_> {
             drop(keeping);
             progress::clear();
             let clipped = written?;
-            if clipped > TOLD && self.display.tone == Tone::Linear {
+            if clipped > REPORTED_CLIPPING && self.display.tone == Tone::Linear {
                 let part = 100.0 * clipped;
                 warn(&format!(
                     "{part:.1}% of the pixels are brighter than white, and clipped; --tone filmic shows them"
@@ -116,7 +116,7 @@ impl ViewBatch<'_> {
                     return failed(Exit::Missed, message.into());
                 }
             }
-            interrupts::say_kept("pictures of finished views are written");
+            interrupts::note_saved("pictures of finished views are written");
             missing = missing.max(self.arguments.error.map_or(0.0, |target| rendering.film.missing(target)));
         }
         match self.arguments.error {

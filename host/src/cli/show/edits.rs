@@ -16,7 +16,7 @@ use std::{
 };
 
 /// How often files are looked at. One that has changed is read when it stands still from one look to the next.
-const GLANCE: Duration = Duration::from_millis(100);
+const POLL_INTERVAL: Duration = Duration::from_millis(100);
 
 /// A scene that was made anew.
 pub(super) struct Edit {
@@ -92,12 +92,12 @@ pub(super) fn watch(
     let (mut camera, mut initial) = (camera, initial);
     thread::spawn(move || {
         loop {
-            thread::sleep(GLANCE);
+            thread::sleep(POLL_INTERVAL);
             if !watched.have_changed() {
                 continue;
             }
             while watched.have_changed() {
-                thread::sleep(GLANCE);
+                thread::sleep(POLL_INTERVAL);
             }
             let edit = load(&arguments.script, &arguments.definitions).and_then(|evaluated| {
                 watched.follow(files(&arguments.script, &evaluated.files));

@@ -45,7 +45,7 @@ fn run(arguments: &ShowArguments) -> Result<(), CommandFailure> {
     let Evaluated { scene, files, .. } = source::lit(evaluated)?;
     let (model, light) = modelled(&scene, arguments, None)?;
     let edits = watched.map(|watched| edits::watch(arguments, watched, &files, camera, *model.initial()));
-    let patience = arguments.waits.patience();
+    let patience = arguments.waits.timeouts();
     let (mut emulator, line) = match &arguments.to {
         Some(line) => (None, line.clone()),
         None => {
@@ -72,7 +72,7 @@ fn run(arguments: &ShowArguments) -> Result<(), CommandFailure> {
         return Ok(());
     }
     served?;
-    match told.tell(&mut production) {
+    match told.report(&mut production) {
         // It ends as it was asked to, whether the machine still answers or not.
         Err(failure) if failure.exit == Exit::Line => {
             warn(&format!("the view is not known: {}", failure.error));

@@ -19,7 +19,7 @@ use std::{
 };
 
 /// How long to wait for a message before looking for whatever else there may be.
-const GLANCE: Duration = Duration::from_millis(50);
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
 /// The key over which the label tells how far a rendering is.
 const RENDER_KEY: i32 = 1;
 /// Letters of a text in the message line.
@@ -60,9 +60,9 @@ impl<'a> Server<'a> {
         told: &'a mut ViewReporter,
         scene: &Scene,
     ) -> Server<'a> {
-        let given = emulator.as_ref().map(|_| read_orders());
+        let given = emulator.as_ref().map(|_| read_commands());
         let orders = OperatorCommands { given, unanswered: 0, at_work: Instant::now() };
-        let order = order(scene, arguments);
+        let order = render_options(scene, arguments);
         Server {
             production,
             emulator,
@@ -82,16 +82,16 @@ impl<'a> Server<'a> {
     /// - `edits`: scenes that take the place of this one.
     pub(super) fn serve(&mut self, edits: Option<&mpsc::Receiver<Result<Edit, CommandFailure>>>) -> Result<(), CommandFailure> {
         loop {
-            if self.carry_out_orders()? {
+            if self.perform_commands()? {
                 return Ok(());
             }
             if let Some(edit) = edits.and_then(|edits| edits.try_recv().ok()) {
                 self.replace(edit)?;
             }
-            self.tell_of_rendering()?;
-            let message = match self.production.session().message(GLANCE, "a key") {
+            self.report_rendering()?;
+            let message = match self.production.session().message(POLL_INTERVAL, "a key") {
                 Ok(message) => message,
-                Err(WorkstationError::Silent { .. }) => continue,
+                Err(WorkstationError::Timeout { .. }) => continue,
                 Err(error) => return Err(error.into()),
             };
             let number = message.strip_prefix(KEY_PREFIX.as_bytes()).and_then(|n| std::str::from_utf8(n).ok());
@@ -100,7 +100,7 @@ impl<'a> Server<'a> {
                 Some(FunctionKey::Render) => self.render()?,
                 Some(FunctionKey::Cancel) => self.rendering.iter().for_each(Progressive::cancel),
                 Some(FunctionKey::Reset) => self.production.reset()?,
-                Some(FunctionKey::Camera) => self.told.tell(self.production)?,
+                Some(FunctionKey::Camera) => self.told.report(self.production)?,
                 Some(FunctionKey::End) => return Ok(()),
                 None => say!("message: {}", String::from_utf8_lossy(&message)),
             }
@@ -108,13 +108,13 @@ impl<'a> Server<'a> {
     }
 
     /// Gives orders that were read to the operator, and says his replies; whether that is the end.
-    fn carry_out_orders(&mut self) -> Result<bool, CommandFailure> {
+    fn perform_commands(&mut self) -> Result<bool, CommandFailure> {
         let Some(emulator) = self.emulator.as_mut() else { return Ok(false) };
         let orders = &mut self.orders;
         match orders.given.as_ref().map(mpsc::Receiver::try_recv) {
             Some(Ok(order)) if order == "quit" => return Ok(true),
             Some(Ok(order)) => {
-                emulator.give(&order)?;
+                emulator.send_operator_command(&order)?;
                 orders.at_work = if orders.unanswered == 0 { Instant::now() } else { orders.at_work };
                 orders.unanswered += 1;
             }
@@ -132,7 +132,7 @@ impl<'a> Server<'a> {
             say!("{}", reply.replace("\\n", "\n"));
         }
         let session = self.production.session();
-        if orders.unanswered > 0 && orders.at_work.elapsed() > session.patience().order {
+        if orders.unanswered > 0 && orders.at_work.elapsed() > session.timeouts().order {
             // Orders such as 'frames 10000' take their time; a machine that lives answers its hosts meanwhile.
             session.synchronize()?;
             orders.at_work = Instant::now();
@@ -147,16 +147,16 @@ impl<'a> Server<'a> {
             Ok(edit) => edit,
             Err(failure) => {
                 let text = story(&failure.error);
-                say::tell(&text);
-                return Ok(self.production.say(&brief(&text))?);
+                say::write_error(&text);
+                return Ok(self.production.show_message(&brief(&text))?);
             }
         };
         if self.rendering.take().is_some() {
             self.write_label(KEYS[0].1)?;
         }
-        (self.order, self.display) = (order(&scene, self.arguments), scene.display);
+        (self.order, self.display) = (render_options(&scene, self.arguments), scene.display);
         self.production.replace(model, keeps_view)?;
-        self.production.say(" ")?;
+        self.production.show_message(" ")?;
         let sent = self.production.sent();
         if !self.arguments.json {
             say!("{} vectors shown anew after {:.3} s", sent.lines, sent.seconds);
@@ -172,18 +172,18 @@ impl<'a> Server<'a> {
     }
 
     /// Shows what there is of the image, and tells how far it is.
-    fn tell_of_rendering(&mut self) -> Result<(), CommandFailure> {
+    fn report_rendering(&mut self) -> Result<(), CommandFailure> {
         let Some(rendering) = &self.rendering else { return Ok(()) };
-        for news in rendering.news() {
+        for news in rendering.events() {
             match news {
                 RenderingEvent::Stage(stage) => {
                     progress::stage(stage);
                     self.stage = progress::words(stage);
-                    self.production.say(self.stage)?;
+                    self.production.show_message(self.stage)?;
                 }
                 RenderingEvent::Amount(amount) => {
                     progress::update(amount);
-                    self.production.say(&format!("{}: {}", self.stage, progress::describe(amount)))?;
+                    self.production.show_message(&format!("{}: {}", self.stage, progress::describe(amount)))?;
                 }
                 RenderingEvent::Part { shown, rows, samples, seconds_left } => {
                     self.production.show_rows(&shown, |row| rows[row as usize])?;
@@ -191,7 +191,7 @@ impl<'a> Server<'a> {
                     let amount = Progress { done: samples, all: all.into(), unit: "samples" };
                     let left = progress::clock(seconds_left);
                     progress::update(amount);
-                    self.production.say(&format!("{}, {left} left", progress::describe(amount)))?;
+                    self.production.show_message(&format!("{}, {left} left", progress::describe(amount)))?;
                     self.write_label(&format!("{:.0} %", 100.0 * samples / f64::from(all)))?;
                 }
                 RenderingEvent::End(ended) => {
@@ -223,7 +223,7 @@ impl<'a> Server<'a> {
             Err(error) => return Err(error.into()),
         };
         say!("{text}");
-        Ok(self.production.say(&brief(&text))?)
+        Ok(self.production.show_message(&brief(&text))?)
     }
 
     /// Writes the label over the key that renders, unless it is there already.
@@ -237,7 +237,7 @@ impl<'a> Server<'a> {
 }
 
 /// How a scene is rendered as the arguments say.
-fn order(scene: &Scene, arguments: &ShowArguments) -> RenderOrder {
+fn render_options(scene: &Scene, arguments: &ShowArguments) -> RenderOrder {
     let own = RenderOrder::of(&scene.settings);
     let samples = arguments.samples.unwrap_or(own.samples);
     // A denoiser tells noise from what is there by two samples at least.
@@ -252,7 +252,7 @@ fn brief(text: &str) -> String {
 }
 
 /// The lines of standard input, read by a thread of their own.
-fn read_orders() -> mpsc::Receiver<String> {
+fn read_commands() -> mpsc::Receiver<String> {
     let (sender, orders) = mpsc::channel();
     std::thread::spawn(move || {
         for line in std::io::stdin().lock().lines().map_while(Result::ok) {

@@ -24,7 +24,7 @@ impl ViewReporter {
     }
 
     /// Tells the view that is set now, unless that was told already.
-    pub(super) fn tell(&mut self, production: &mut Production) -> Result<(), CommandFailure> {
+    pub(super) fn report(&mut self, production: &mut Production) -> Result<(), CommandFailure> {
         let Some(camera) = production.camera()? else {
             warn("no camera sees what is set: it is scaled unequally, or not seen at all");
             return Ok(());

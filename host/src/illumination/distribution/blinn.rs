@@ -49,7 +49,7 @@ impl Distribution for Blinn {
         (half * (2.0 * half.dot(light)) - light).try_normalize().filter(|view| view.z > 0.0)
     }
 
-    fn sample_density(&self, light: DVec3, view: DVec3) -> f64 {
+    fn pdf(&self, light: DVec3, view: DVec3) -> f64 {
         let half = light + view;
         // A facet that turns by an angle turns the mirrored direction by twice that: 4 (L·H) in solid angle, and
         // L·H is half the length of L + V.

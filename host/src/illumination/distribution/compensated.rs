@@ -140,7 +140,7 @@ impl Compensated {
     }
 
     /// The density of [`Compensated::further`], 1/sr.
-    fn further_density(&self, cosine: f64) -> f64 {
+    fn further_pdf(&self, cosine: f64) -> f64 {
         let place = self.place(cosine).clamp(0.0, 1.0);
         let step = ((place * STEPS as f64) as usize).min(STEPS - 1);
         let part = place * STEPS as f64 - step as f64;
@@ -206,9 +206,9 @@ impl Distribution for Compensated {
         }
     }
 
-    fn sample_density(&self, light: DVec3, view: DVec3) -> f64 {
+    fn pdf(&self, light: DVec3, view: DVec3) -> f64 {
         let lost = self.chance(light);
-        let further = if lost > 0.0 { lost * self.further_density(view.z) } else { 0.0 };
-        further + (1.0 - lost) * self.first.sample_density(light, view)
+        let further = if lost > 0.0 { lost * self.further_pdf(view.z) } else { 0.0 };
+        further + (1.0 - lost) * self.first.pdf(light, view)
     }
 }

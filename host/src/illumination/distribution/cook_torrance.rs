@@ -16,7 +16,7 @@ pub(super) fn sample(light: DVec3, roughness: f64, point: [f64; 2]) -> Option<DV
 }
 
 /// The density of [`sample`].
-pub(super) fn sample_density(light: DVec3, view: DVec3, roughness: f64) -> f64 {
+pub(super) fn pdf(light: DVec3, view: DVec3, roughness: f64) -> f64 {
     let half = light + view;
     // L·H is half the length of L + V.
     let length = half.length();
@@ -62,7 +62,7 @@ impl Distribution for CookTorrance {
         sample(light, self.roughness, point)
     }
 
-    fn sample_density(&self, light: DVec3, view: DVec3) -> f64 {
-        sample_density(light, view, self.roughness)
+    fn pdf(&self, light: DVec3, view: DVec3) -> f64 {
+        pdf(light, view, self.roughness)
     }
 }

@@ -279,7 +279,7 @@ impl Distribution for FacetTable {
         (normal * (2.0 * normal.dot(light)) - light).try_normalize().filter(|view| view.z > 0.0)
     }
 
-    fn sample_density(&self, light: DVec3, view: DVec3) -> f64 {
+    fn pdf(&self, light: DVec3, view: DVec3) -> f64 {
         let half = light + view;
         let (k, _) = self.area.find(angle(half));
         let [from, to] = [k, k + 1].map(|k| self.area.places[k].sin().powi(2));

@@ -11,7 +11,7 @@ pub struct ShadingFrame {
 impl ShadingFrame {
     /// A frame about a normal, unit length; x is any direction along the surface.
     #[inline]
-    pub fn about(normal: DVec3) -> ShadingFrame {
+    pub fn from_normal(normal: DVec3) -> ShadingFrame {
         let (x, y) = normal.any_orthonormal_pair();
         ShadingFrame { axes: DMat3::from_cols(x, y, normal) }
     }
@@ -22,7 +22,7 @@ impl ShadingFrame {
     pub fn brushed(normal: DVec3, along: DVec3) -> ShadingFrame {
         match (along - normal * along.dot(normal)).try_normalize() {
             Some(x) if x.dot(normal).abs() < 1e-6 => ShadingFrame { axes: DMat3::from_cols(x, normal.cross(x), normal) },
-            _ => ShadingFrame::about(normal),
+            _ => ShadingFrame::from_normal(normal),
         }
     }
 
@@ -46,7 +46,7 @@ mod tests {
     #[test]
     fn a_frame_turns_there_and_back() {
         let normal = DVec3::new(1.0, -2.0, 0.5).normalize();
-        for frame in [ShadingFrame::about(normal), ShadingFrame::brushed(normal, DVec3::Y), ShadingFrame::brushed(normal, normal * 3.0)] {
+        for frame in [ShadingFrame::from_normal(normal), ShadingFrame::brushed(normal, DVec3::Y), ShadingFrame::brushed(normal, normal * 3.0)] {
             assert!((frame.local(normal) - DVec3::Z).length() < 1e-15);
             let direction = DVec3::new(0.3, 0.4, -0.2);
             assert!((frame.world(frame.local(direction)) - direction).length() < 1e-15);

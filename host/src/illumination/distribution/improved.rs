@@ -3,7 +3,7 @@
 //! The division by N·L is gone, so that it stays finite at grazing incidence. What is missing is the change 4 (V·H) from
 //! the solid angle of the normal to that of the viewer: for smooth facets its integral is 4 (N·L), not 1.
 
-use super::cook_torrance::{sample, sample_density};
+use super::cook_torrance::{sample, pdf};
 use super::{Distribution, DistributionError, SlopeDistribution, checked_roughness};
 use glam::{DVec2, DVec3};
 
@@ -42,7 +42,7 @@ impl Distribution for ImprovedCookTorrance {
         sample(light, self.roughness, point)
     }
 
-    fn sample_density(&self, light: DVec3, view: DVec3) -> f64 {
-        sample_density(light, view, self.roughness)
+    fn pdf(&self, light: DVec3, view: DVec3) -> f64 {
+        pdf(light, view, self.roughness)
     }
 }

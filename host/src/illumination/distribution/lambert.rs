@@ -25,7 +25,7 @@ impl Distribution for Lambert {
         Some(cosine_hemisphere(point, DVec3::Z)).filter(|view| view.z > 0.0)
     }
 
-    fn sample_density(&self, _: DVec3, view: DVec3) -> f64 {
+    fn pdf(&self, _: DVec3, view: DVec3) -> f64 {
         view.z * FRAC_1_PI
     }
 }

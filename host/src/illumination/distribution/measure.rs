@@ -20,7 +20,7 @@ pub fn light_at(incidence: f64) -> DVec3 {
 pub fn emitted_share(distribution: &dyn Distribution, light: DVec3, tolerance: f64, most: u32) -> Integral {
     let weight = |point| match distribution.sample(light, point) {
         Some(view) => {
-            let (density, sampled) = (distribution.density(light, view), distribution.sample_density(light, view));
+            let (density, sampled) = (distribution.density(light, view), distribution.pdf(light, view));
             if sampled > 0.0 { density / sampled } else { 0.0 }
         }
         None => 0.0,
@@ -34,10 +34,10 @@ pub fn emitted_share(distribution: &dyn Distribution, light: DVec3, tolerance: f
 /// A reciprocal distribution has the same integrals with light and viewer exchanged, and this is its [`emitted_share`].
 ///
 /// - `tolerance`, `most`: as in [`emitted_share`].
-pub fn seen_share(distribution: &dyn Distribution, view: DVec3, tolerance: f64, most: u32) -> Integral {
+pub fn received_share(distribution: &dyn Distribution, view: DVec3, tolerance: f64, most: u32) -> Integral {
     let weight = |point| match distribution.sample(view, point) {
         Some(light) => {
-            let (density, sampled) = (distribution.density(light, view), distribution.sample_density(view, light));
+            let (density, sampled) = (distribution.density(light, view), distribution.pdf(view, light));
             if sampled > 0.0 { density * light.z / (view.z * sampled) } else { 0.0 }
         }
         None => 0.0,
@@ -89,7 +89,7 @@ pub fn reciprocity_residual(distribution: &dyn Distribution, count: u64, seed: u
 pub fn check(distribution: &dyn Distribution, count: u64, seed: u64) -> Result<(), DistributionError> {
     pairs(distribution, count, seed).try_for_each(|(light, view)| {
         checked(distribution.name(), distribution.density(light, view), light, view)?;
-        checked(distribution.name(), distribution.sample_density(light, view), light, view).map(|_| ())
+        checked(distribution.name(), distribution.pdf(light, view), light, view).map(|_| ())
     })
 }
 

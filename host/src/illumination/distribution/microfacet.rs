@@ -56,7 +56,7 @@ impl Distribution for Microfacet {
     }
 
     fn density(&self, light: DVec3, view: DVec3) -> f64 {
-        self.weight(light, view) * self.sample_density(light, view)
+        self.weight(light, view) * self.pdf(light, view)
     }
 
     fn sample(&self, light: DVec3, point: [f64; 2]) -> Option<DVec3> {
@@ -64,7 +64,7 @@ impl Distribution for Microfacet {
         (normal * (2.0 * normal.dot(light)) - light).try_normalize().filter(|view| view.z > 0.0)
     }
 
-    fn sample_density(&self, light: DVec3, view: DVec3) -> f64 {
+    fn pdf(&self, light: DVec3, view: DVec3) -> f64 {
         self.facets.area(light + view, self.roughness) / (4.0 * self.facets.projected(light, self.roughness))
     }
 }

@@ -96,7 +96,7 @@ pub trait Distribution: std::fmt::Debug + Send + Sync {
 
     /// The density with which [`Distribution::sample`] draws a direction, 1/sr; it integrates to the part of the unit
     /// square that gives one. Above 0 wherever D is.
-    fn sample_density(&self, light: DVec3, view: DVec3) -> f64;
+    fn pdf(&self, light: DVec3, view: DVec3) -> f64;
 }
 
 /// A distribution that ships with the program.

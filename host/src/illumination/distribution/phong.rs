@@ -82,7 +82,7 @@ impl Distribution for Phong {
         view.try_normalize().filter(|view| view.z > 0.0)
     }
 
-    fn sample_density(&self, light: DVec3, view: DVec3) -> f64 {
+    fn pdf(&self, light: DVec3, view: DVec3) -> f64 {
         (self.exponent + 1.0) / TAU * self.power(light, view)
     }
 }

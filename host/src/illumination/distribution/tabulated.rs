@@ -240,7 +240,7 @@ impl Distribution for Tabulated {
         Some(DVec3::new(radius * cos, radius * sin, (1.0 - sine).sqrt())).filter(|view| view.z > 0.0)
     }
 
-    fn sample_density(&self, light: DVec3, view: DVec3) -> f64 {
+    fn pdf(&self, light: DVec3, view: DVec3) -> f64 {
         let (row, part) = self.between(light.z);
         let [ring, sector] = self.place(light, view).map(|place| place as usize);
         let cell = ring.min(self.steps - 1) * 2 * self.steps + sector.min(2 * self.steps - 1);

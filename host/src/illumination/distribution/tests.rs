@@ -1,8 +1,8 @@
 //! Facts about the whole family of distributions, and what each member must have to itself.
 
-use super::measure::{check, emitted_share, light_at, reciprocity_residual, seen_share};
+use super::measure::{check, emitted_share, light_at, reciprocity_residual, received_share};
 use super::*;
-use crate::numeric::sampling::{RandomStream, even};
+use crate::numeric::sampling::{RandomStream, r2_point};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 const ROUGHNESS: [f64; 6] = [1e-6, 1e-2, 0.1, 0.5, 1.0, 10.0];
@@ -74,7 +74,7 @@ fn samples_follow_their_density() {
         let steps = 240;
         hemisphere(steps, |view| {
             let area = FRAC_PI_2 / f64::from(steps) * PI / f64::from(steps) * (1.0 - view.z * view.z).sqrt();
-            expected[cell(view)] += made.sample_density(light, view) * area;
+            expected[cell(view)] += made.pdf(light, view) * area;
             0.0
         });
         let mut found = [0.0; 48];
@@ -100,7 +100,7 @@ fn samples_are_the_same_for_the_same_point() {
     for member in FAMILY {
         let made = (member.make)(0.2).expect("a distribution");
         for index in 0..50 {
-            let point = even(index, [0.25, 0.75]);
+            let point = r2_point(index, [0.25, 0.75]);
             assert_eq!(made.sample(light(30.0), point), made.sample(light(30.0), point));
         }
     }
@@ -207,7 +207,7 @@ fn a_function_of_ones_own_is_tabulated_with_a_stated_error() {
     for degrees in [0.0, 30.0, 60.0, 88.0] {
         let found = share(&fine, degrees);
         assert!((found - 1.0).abs() < 2e-3, "{degrees}: {found}");
-        let drawn = hemisphere(200, |view| fine.sample_density(light(degrees), view));
+        let drawn = hemisphere(200, |view| fine.pdf(light(degrees), view));
         assert!((drawn - 1.0).abs() < 5e-3, "{degrees}: {drawn}");
     }
     check(&fine, 2000, 1).expect("a distribution");
@@ -238,7 +238,7 @@ fn a_viewer_sees_of_what_is_not_reciprocal_more_than_is_emitted() {
     };
     let both = |name: &str| {
         let (distribution, at) = (make(name), light_at(82f64.to_radians()));
-        [emitted_share, seen_share].map(|share| share(distribution.as_ref(), at, 1e-4, 100_000).value)
+        [emitted_share, received_share].map(|share| share(distribution.as_ref(), at, 1e-4, 100_000).value)
     };
     let [emitted, seen] = both("improved (7)");
     assert!((emitted - 0.911).abs() < 2e-3 && (seen - 4.40).abs() < 2e-2, "{emitted} and {seen}");

@@ -19,8 +19,8 @@ pub(super) struct AreaLight {
 }
 
 impl Emitter for AreaLight {
-    fn beam(&self, point: DVec3, _: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<LightSample> {
-        let drawn = self.patch.draw(point, uniform)?;
+    fn sample_incident(&self, point: DVec3, _: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<LightSample> {
+        let drawn = self.patch.sample(point, uniform)?;
         let irradiance = self.strength.of(comb) * drawn.density.recip();
         Some(LightSample { towards: drawn.towards, distance: drawn.distance, irradiance, density: Some(drawn.density) })
     }
@@ -28,23 +28,23 @@ impl Emitter for AreaLight {
     /// A sphere's points lie on a smaller one, so that they are spread as its disc is, as seen from anywhere.
     fn points(&self, count: u32) -> Vec<LightPoint> {
         LightPoint::spread(count, |uniform| {
-            let (at, normal) = self.patch.point(uniform, count == 1);
-            (at, self.patch.seen_area(), normal, EmittingSides::Front)
+            let (at, normal) = self.patch.sample_area(uniform, count == 1);
+            (at, self.patch.projected_area(), normal, EmittingSides::Front)
         })
     }
 
     #[inline]
-    fn beam_from(&self, from: &LightPoint, point: DVec3, comb: usize) -> Option<LightSample> {
-        from.beam(self.strength.of(comb), point)
+    fn incident_from(&self, from: &LightPoint, point: DVec3, comb: usize) -> Option<LightSample> {
+        from.incident(self.strength.of(comb), point)
     }
 
     fn origin(&self) -> LightOrigin {
         LightOrigin::Within(Bounds::of(self.patch.bounds()))
     }
 
-    fn start(&self, uniform: [f64; 2], _: usize) -> Option<EmissionSample> {
-        let (at, normal) = start_on(&self.patch, uniform)?;
-        Some(EmissionSample::Place { at, normal: Some(normal), area: self.patch.area() })
+    fn sample_emission(&self, uniform: [f64; 2], _: usize) -> Option<EmissionSample> {
+        let (at, normal) = emission_point(&self.patch, uniform)?;
+        Some(EmissionSample::Point { at, normal: Some(normal), area: self.patch.area() })
     }
 
     fn intensity(&self, normal: Option<DVec3>, direction: DVec3, comb: usize) -> Channels {
@@ -56,7 +56,7 @@ impl Emitter for AreaLight {
         self.strength.of(comb) * (PI * self.patch.area())
     }
 
-    fn is_sharp(&self) -> bool {
+    fn is_delta(&self) -> bool {
         false
     }
 
@@ -64,16 +64,16 @@ impl Emitter for AreaLight {
         true
     }
 
-    fn glow(&self, ray: &Ray, t_min: f64, t_max: f64, comb: usize) -> Option<LightHit> {
-        let (t, front) = self.patch.met(ray, t_min, t_max)?;
+    fn intersect(&self, ray: &Ray, t_min: f64, t_max: f64, comb: usize) -> Option<LightHit> {
+        let (t, front) = self.patch.intersect(ray, t_min, t_max)?;
         let length = ray.direction.length();
         let radiance = if front { self.strength.of(comb) } else { Channels::ZERO };
-        Some(LightHit { t, radiance, density: self.patch.density(ray.origin, ray.direction / length, t * length) })
+        Some(LightHit { t, radiance, density: self.patch.pdf(ray.origin, ray.direction / length, t * length) })
     }
 }
 
 /// A point of a patch, drawn evenly by area, and the normal on the side that emits.
-fn start_on(patch: &LightShape, uniform: [f64; 2]) -> Option<(DVec3, DVec3)> {
+fn emission_point(patch: &LightShape, uniform: [f64; 2]) -> Option<(DVec3, DVec3)> {
     match *patch {
         LightShape::Rectangle { corner, across, up } => {
             Some((corner + across * uniform[0] + up * uniform[1], across.cross(up).try_normalize()?))

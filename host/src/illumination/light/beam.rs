@@ -53,7 +53,7 @@ pub(super) enum EmittingSides {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EmissionSample {
     /// From a place, in many directions.
-    Place {
+    Point {
         /// Where it is.
         at: DVec3,
         /// The normal of the surface there, if it is one.
@@ -118,7 +118,7 @@ impl LightPoint {
 
     /// The light that it sends to a point, of a surface of a radiance; none of a light without size.
     #[inline]
-    pub(super) fn beam(&self, radiance: Channels, point: DVec3) -> Option<LightSample> {
+    pub(super) fn incident(&self, radiance: Channels, point: DVec3) -> Option<LightSample> {
         let (Some((area, normal, sides)), Some(at)) = (self.surface, self.at) else { return None };
         let beam = from_point(at - point, radiance * area)?;
         let facing = match (normal, sides) {

@@ -54,7 +54,7 @@ fn there_is_a_light_of_every_kind() {
 /// Irradiance of a surface that faces up, by the beams of a light.
 fn sampled(source: &LightSource) -> f64 {
     let term = |uniform| {
-        let beam = source.beam(POINT, Some(DVec3::Y), uniform, 0);
+        let beam = source.sample_incident(POINT, Some(DVec3::Y), uniform, 0);
         beam.map_or(0.0, |beam| beam.irradiance.0[0] * beam.towards.y.max(0.0))
     };
     unit_square(term, 1e-6, 100_000).value
@@ -63,7 +63,7 @@ fn sampled(source: &LightSource) -> f64 {
 /// The radiance that comes from a direction, and the density with which beams are drawn there.
 fn seen(source: &LightSource, towards: DVec3) -> (f64, f64) {
     let ray = Ray { origin: POINT, direction: towards };
-    let glow = source.glow(&ray, 0.0, f64::INFINITY, 0).or_else(|| source.sky(&ray, Some(DVec3::Y), 0));
+    let glow = source.intersect(&ray, 0.0, f64::INFINITY, 0).or_else(|| source.sky_radiance(&ray, Some(DVec3::Y), 0));
     if let Some(glow) = glow {
         return (glow.radiance.0[0], glow.density);
     }
@@ -73,7 +73,7 @@ fn seen(source: &LightSource, towards: DVec3) -> (f64, f64) {
     let distance = (a - POINT).dot(normal) / towards.dot(normal);
     let met = POINT + towards * distance;
     let is_in = [(a, b), (b, c), (c, a)].iter().all(|(p, q)| (*q - *p).cross(met - *p).dot(normal) > 0.0);
-    match source.density_on_triangle(distance, towards.dot(normal)) {
+    match source.pdf_on_triangle(distance, towards.dot(normal)) {
         density if density > 0.0 && distance > 0.0 && is_in => (1.0, density),
         _ => (0.0, 0.0),
     }
@@ -83,7 +83,7 @@ fn seen(source: &LightSource, towards: DVec3) -> (f64, f64) {
 fn sampled_irradiance_is_that_of_all_that_is_seen() {
     let sequence = SobolSequence::new(3, 1);
     let count = 1 << 18;
-    for source in sources().iter().filter(|source| !source.is_sharp()) {
+    for source in sources().iter().filter(|source| !source.is_delta()) {
         let (mut irradiance, mut density) = (0.0, 0.0);
         for index in 0..count {
             let (radiance, _) = seen(source, cosine_hemisphere(sequence.point(index, 0), DVec3::Y));
@@ -103,8 +103,8 @@ fn beams_have_the_densities_that_are_told_and_come_from_where_lights_are() {
     for source in sources() {
         for _ in 0..200 {
             let uniform = stream.point();
-            let Some(beam) = source.beam(POINT, Some(DVec3::Y), uniform, 0) else { continue };
-            assert_eq!(beam.density.is_none(), source.is_sharp(), "{}", source.kind());
+            let Some(beam) = source.sample_incident(POINT, Some(DVec3::Y), uniform, 0) else { continue };
+            assert_eq!(beam.density.is_none(), source.is_delta(), "{}", source.kind());
             if let Some(density) = beam.density {
                 let (radiance, told) = seen(&source, beam.towards);
                 let error = (told / density - 1.0).abs().max((beam.irradiance.0[0] * density / radiance - 1.0).abs());
@@ -116,7 +116,7 @@ fn beams_have_the_densities_that_are_told_and_come_from_where_lights_are() {
                     (end - end.clamp(bounds.min, bounds.max)).length() < 1e-9
                 }
                 LightOrigin::Towards(towards) => beam.towards == towards && beam.distance.is_infinite(),
-                LightOrigin::Everywhere => beam.distance.is_infinite() && source.is_beyond(),
+                LightOrigin::Everywhere => beam.distance.is_infinite() && source.is_infinite(),
             };
             assert!(is_there, "{}", source.kind());
         }
@@ -126,12 +126,12 @@ fn beams_have_the_densities_that_are_told_and_come_from_where_lights_are() {
 #[test]
 fn points_that_stand_for_a_light_light_as_it_does() {
     // A disc in the sky stands in its middle, and other skies have no points.
-    for source in sources().iter().filter(|source| !source.is_beyond()) {
+    for source in sources().iter().filter(|source| !source.is_infinite()) {
         let points = source.points(4096);
-        let term = |point| source.beam_from(point, POINT, 0).map_or(0.0, |beam| beam.irradiance.0[0] * beam.towards.y);
+        let term = |point| source.incident_from(point, POINT, 0).map_or(0.0, |beam| beam.irradiance.0[0] * beam.towards.y);
         let (found, expected) = (points.iter().map(term).sum::<f64>(), sampled(source));
         assert!((found / expected - 1.0).abs() < 5e-3, "{}: {found} {expected}", source.kind());
-        assert!(points.len() == 1 || !source.is_sharp(), "{}", source.kind());
+        assert!(points.len() == 1 || !source.is_delta(), "{}", source.kind());
     }
 }
 
@@ -140,8 +140,8 @@ fn what_leaves_a_light_is_its_power() {
     let sequence = SobolSequence::new(1, 1);
     let (count, radius) = (1 << 14, 2.0);
     for source in sources() {
-        let of = |index: u32| match source.start(sequence.point(index, 0), 0) {
-            Some(EmissionSample::Place { normal, .. }) => {
+        let of = |index: u32| match source.sample_emission(sequence.point(index, 0), 0) {
+            Some(EmissionSample::Point { normal, .. }) => {
                 source.intensity(normal, sphere(sequence.point(index, 1)), 0).0[0] * 2.0 * TAU
             }
             Some(EmissionSample::Parallel { irradiance, .. }) => irradiance.0[0] * PI * radius * radius,

@@ -16,7 +16,7 @@ pub(super) struct DirectionalLight {
 }
 
 impl Emitter for DirectionalLight {
-    fn beam(&self, _: DVec3, _: Option<DVec3>, _: [f64; 2], comb: usize) -> Option<LightSample> {
+    fn sample_incident(&self, _: DVec3, _: Option<DVec3>, _: [f64; 2], comb: usize) -> Option<LightSample> {
         let irradiance = self.strength.of(comb);
         Some(LightSample { towards: self.towards, distance: f64::INFINITY, irradiance, density: None })
     }
@@ -29,7 +29,7 @@ impl Emitter for DirectionalLight {
         LightOrigin::Towards(self.towards)
     }
 
-    fn start(&self, _: [f64; 2], comb: usize) -> Option<EmissionSample> {
+    fn sample_emission(&self, _: [f64; 2], comb: usize) -> Option<EmissionSample> {
         Some(EmissionSample::Parallel { direction: -self.towards, irradiance: self.strength.of(comb) })
     }
 

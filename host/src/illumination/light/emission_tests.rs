@@ -12,8 +12,8 @@ fn sampled(source: &LightSource) -> f64 {
     let sequence = SobolSequence::new(1, 1);
     let count = 1 << 14;
     let of = |index: u32| {
-        let start = source.start(sequence.point(index, 0), 0);
-        let Some(EmissionSample::Place { normal, .. }) = start else { return 0.0 };
+        let start = source.sample_emission(sequence.point(index, 0), 0);
+        let Some(EmissionSample::Point { normal, .. }) = start else { return 0.0 };
         source.intensity(normal, sphere(sequence.point(index, 1)), 0).0[0] * 2.0 * TAU
     };
     (0..count).map(of).sum::<f64>() / f64::from(count)
@@ -51,7 +51,7 @@ fn what_leaves_a_source_is_its_power() {
 fn a_sky_sends_its_light_through_every_disc() {
     let light = Light::Sky { map: None, radiance: Color::grey(2.0), turned: 0.0 };
     let source = LightSource::new(&light, &WavelengthSets::bands());
-    let Some(EmissionSample::Parallel { irradiance, .. }) = source.start([0.3, 0.7], 0) else { panic!("parallel") };
+    let Some(EmissionSample::Parallel { irradiance, .. }) = source.sample_emission([0.3, 0.7], 0) else { panic!("parallel") };
     assert!((irradiance.0[0] - 4.0 * TAU).abs() < 1e-9);
     assert!((source.power(3.0, 0).0[0] - 4.0 * TAU * 9.0 * PI).abs() < 1e-9);
 }

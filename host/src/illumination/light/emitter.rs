@@ -8,22 +8,22 @@ use glam::DVec3;
 /// A light of one kind, ready for rendering. [`Source`](super::Source) says what each function gives.
 pub(super) trait Emitter {
     /// Light that arrives at a point if nothing stands between.
-    fn beam(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<LightSample>;
+    fn sample_incident(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<LightSample>;
 
     /// A few points that stand for it.
     fn points(&self, count: u32) -> Vec<LightPoint>;
 
     /// Light that arrives from one of its points.
-    fn beam_from(&self, _: &LightPoint, point: DVec3, comb: usize) -> Option<LightSample> {
+    fn incident_from(&self, _: &LightPoint, point: DVec3, comb: usize) -> Option<LightSample> {
         // What has no size is its only point, and the middle of a disc in the sky stands for it.
-        self.beam(point, None, [0.0; 2], comb)
+        self.sample_incident(point, None, [0.0; 2], comb)
     }
 
     /// Where its light comes from.
     fn origin(&self) -> LightOrigin;
 
     /// Where light leaves it.
-    fn start(&self, uniform: [f64; 2], comb: usize) -> Option<EmissionSample>;
+    fn sample_emission(&self, uniform: [f64; 2], comb: usize) -> Option<EmissionSample>;
 
     /// Flux in each solid angle that leaves such a place.
     fn intensity(&self, normal: Option<DVec3>, direction: DVec3, comb: usize) -> Channels;
@@ -32,7 +32,7 @@ pub(super) trait Emitter {
     fn power(&self, radius: f64, comb: usize) -> Channels;
 
     /// Whether its light comes from one direction only at every point.
-    fn is_sharp(&self) -> bool {
+    fn is_delta(&self) -> bool {
         true
     }
 
@@ -42,12 +42,12 @@ pub(super) trait Emitter {
     }
 
     /// Whether its light is worth being followed.
-    fn is_caught(&self) -> bool {
+    fn emits_photons(&self) -> bool {
         true
     }
 
     /// Whether it is seen where rays meet nothing.
-    fn is_beyond(&self) -> bool {
+    fn is_infinite(&self) -> bool {
         false
     }
 
@@ -57,17 +57,17 @@ pub(super) trait Emitter {
     }
 
     /// What a ray sees of a surface of its own.
-    fn glow(&self, _: &Ray, _: f64, _: f64, _: usize) -> Option<LightHit> {
+    fn intersect(&self, _: &Ray, _: f64, _: f64, _: usize) -> Option<LightHit> {
         None
     }
 
     /// What is seen of a sky.
-    fn sky(&self, _: &Ray, _: Option<DVec3>, _: usize) -> Option<LightHit> {
+    fn sky_radiance(&self, _: &Ray, _: Option<DVec3>, _: usize) -> Option<LightHit> {
         None
     }
 
     /// The density with which a direction is drawn in which its triangles are met.
-    fn density_on_triangle(&self, _: f64, _: f64) -> f64 {
+    fn pdf_on_triangle(&self, _: f64, _: f64) -> f64 {
         0.0
     }
 

@@ -45,7 +45,7 @@ impl MeshLight {
         (at, (b - a).cross(c - a).normalize_or_zero())
     }
 
-    fn draw(&self, point: DVec3, uniform: [f64; 2]) -> Option<(DVec3, f64, f64)> {
+    fn sample(&self, point: DVec3, uniform: [f64; 2]) -> Option<(DVec3, f64, f64)> {
         let (at, normal) = self.point(uniform);
         let offset = at - point;
         let distance = offset.length();
@@ -56,8 +56,8 @@ impl MeshLight {
 }
 
 impl Emitter for MeshLight {
-    fn beam(&self, point: DVec3, _: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<LightSample> {
-        let (towards, distance, density) = self.draw(point, uniform)?;
+    fn sample_incident(&self, point: DVec3, _: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<LightSample> {
+        let (towards, distance, density) = self.sample(point, uniform)?;
         let irradiance = self.strength.of(comb) * density.recip();
         Some(LightSample { towards, distance, irradiance, density: Some(density) })
     }
@@ -70,17 +70,17 @@ impl Emitter for MeshLight {
     }
 
     #[inline]
-    fn beam_from(&self, from: &LightPoint, point: DVec3, comb: usize) -> Option<LightSample> {
-        from.beam(self.strength.of(comb), point)
+    fn incident_from(&self, from: &LightPoint, point: DVec3, comb: usize) -> Option<LightSample> {
+        from.incident(self.strength.of(comb), point)
     }
 
     fn origin(&self) -> LightOrigin {
         LightOrigin::Within(Bounds::of(self.corners.iter().flatten().copied()))
     }
 
-    fn start(&self, uniform: [f64; 2], _: usize) -> Option<EmissionSample> {
+    fn sample_emission(&self, uniform: [f64; 2], _: usize) -> Option<EmissionSample> {
         let (at, normal) = self.point(uniform);
-        Some(EmissionSample::Place { at, normal: Some(normal), area: self.area })
+        Some(EmissionSample::Point { at, normal: Some(normal), area: self.area })
     }
 
     fn intensity(&self, normal: Option<DVec3>, direction: DVec3, comb: usize) -> Channels {
@@ -92,11 +92,11 @@ impl Emitter for MeshLight {
         self.strength.of(comb) * (TAU * self.area)
     }
 
-    fn is_sharp(&self) -> bool {
+    fn is_delta(&self) -> bool {
         false
     }
 
-    fn density_on_triangle(&self, distance: f64, cosine: f64) -> f64 {
+    fn pdf_on_triangle(&self, distance: f64, cosine: f64) -> f64 {
         if cosine == 0.0 { 0.0 } else { distance * distance / (cosine.abs() * self.area) }
     }
 }

@@ -55,7 +55,7 @@ impl Panorama {
         let [width, height] = source.size();
         let count = Picture::pixels_of(width, height)?;
         let bytes = count * if count <= MOST_WHOLE { size_of::<[f32; 3]>() } else { size_of::<u32>() };
-        memory::ask(bytes as u64, || format!("{}: a sky of {width} x {height} pixels", path.display()))?;
+        memory::reserve(bytes as u64, || format!("{}: a sky of {width} x {height} pixels", path.display()))?;
         let mut panorama = Panorama::black(width, height);
         let mut wrong = None;
         source.each(|x, y, texel| {

@@ -164,15 +164,15 @@ impl LightShape {
     /// Draws a point that lights a point; none where it does not light it.
     ///
     /// A sphere and a rectangle are drawn evenly by solid angle, a disc by its area.
-    pub(super) fn draw(&self, point: DVec3, uniform: [f64; 2]) -> Option<ShapeSample> {
+    pub(super) fn sample(&self, point: DVec3, uniform: [f64; 2]) -> Option<ShapeSample> {
         match *self {
             LightShape::Rectangle { corner, across, up } => {
                 let normal = self.normal()?;
                 if !self.is_before(point) {
                     return None;
                 }
-                if let Some(seen) = self.seen_rectangle(point) {
-                    let offset = seen.draw(uniform);
+                if let Some(seen) = self.spherical_rectangle(point) {
+                    let offset = seen.sample(uniform);
                     let distance = offset.length();
                     let density = seen.solid_angle().recip();
                     return (distance > 0.0).then(|| ShapeSample { towards: offset / distance, distance, density });
@@ -185,14 +185,14 @@ impl LightShape {
                 let [a, b] = disk(uniform);
                 self.by_area(point, center + (x * a + y * b) * radius, normal)
             }
-            LightShape::Sphere { center, radius } => draw_sphere(center - point, radius, uniform),
+            LightShape::Sphere { center, radius } => sample_sphere(center - point, radius, uniform),
         }
     }
 
     /// A point of it, drawn evenly by area, and its normal if it has one.
     ///
     /// - `middle`: its middle instead.
-    pub(super) fn point(&self, uniform: [f64; 2], middle: bool) -> (DVec3, Option<DVec3>) {
+    pub(super) fn sample_area(&self, uniform: [f64; 2], middle: bool) -> (DVec3, Option<DVec3>) {
         let [u, v] = if middle { [0.5; 2] } else { uniform };
         match *self {
             LightShape::Rectangle { corner, across, up } => (corner + across * u + up * v, self.normal()),
@@ -213,7 +213,7 @@ impl LightShape {
     }
 
     /// The area that is seen of it from straight before it and far away.
-    pub(super) fn seen_area(&self) -> f64 {
+    pub(super) fn projected_area(&self) -> f64 {
         match *self {
             LightShape::Sphere { radius, .. } => PI * radius * radius,
             _ => self.area(),
@@ -230,7 +230,7 @@ impl LightShape {
     }
 
     /// The rectangle as a point sees it, unless it is too small or none.
-    fn seen_rectangle(&self, point: DVec3) -> Option<SphericalRectangle> {
+    fn spherical_rectangle(&self, point: DVec3) -> Option<SphericalRectangle> {
         let LightShape::Rectangle { corner, across, up } = *self else { return None };
         let skew = across.dot(up).abs();
         if skew > 1e-12 * across.length() * up.length() {
@@ -240,12 +240,12 @@ impl LightShape {
     }
 
     /// The density with which [`Patch::draw`] draws a direction in which the patch is met at a distance, 1/sr.
-    pub(super) fn density(&self, point: DVec3, towards: DVec3, distance: f64) -> f64 {
+    pub(super) fn pdf(&self, point: DVec3, towards: DVec3, distance: f64) -> f64 {
         match *self {
             LightShape::Sphere { center, radius } => cone(center - point, radius).map_or(0.0, |cap| (TAU * cap).recip()),
             _ => {
                 let Some(normal) = self.normal() else { return 0.0 };
-                if let Some(seen) = self.seen_rectangle(point) {
+                if let Some(seen) = self.spherical_rectangle(point) {
                     return seen.solid_angle().recip();
                 }
                 let facing = -normal.dot(towards);
@@ -255,7 +255,7 @@ impl LightShape {
     }
 
     /// Where a ray meets it, in lengths of the direction, and whether on the side that emits.
-    pub(super) fn met(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<(f64, bool)> {
+    pub(super) fn intersect(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<(f64, bool)> {
         let Ray { origin, direction } = *ray;
         let within = |t: &f64| t_min < *t && *t < t_max;
         let plane = |at: DVec3, normal: DVec3| {
@@ -295,7 +295,7 @@ fn cone(offset: DVec3, radius: f64) -> Option<f64> {
     (square < 1.0).then(|| square / (1.0 + (1.0 - square).sqrt()))
 }
 
-fn draw_sphere(offset: DVec3, radius: f64, [x, y]: [f64; 2]) -> Option<ShapeSample> {
+fn sample_sphere(offset: DVec3, radius: f64, [x, y]: [f64; 2]) -> Option<ShapeSample> {
     let cap = cone(offset, radius)?;
     let far = offset.length();
     let axis = offset / far;

@@ -15,7 +15,7 @@ pub(super) struct PointLight {
 }
 
 impl Emitter for PointLight {
-    fn beam(&self, point: DVec3, _: Option<DVec3>, _: [f64; 2], comb: usize) -> Option<LightSample> {
+    fn sample_incident(&self, point: DVec3, _: Option<DVec3>, _: [f64; 2], comb: usize) -> Option<LightSample> {
         from_point(self.at - point, self.strength.of(comb))
     }
 
@@ -27,8 +27,8 @@ impl Emitter for PointLight {
         LightOrigin::point(self.at)
     }
 
-    fn start(&self, _: [f64; 2], _: usize) -> Option<EmissionSample> {
-        Some(EmissionSample::Place { at: self.at, normal: None, area: 0.0 })
+    fn sample_emission(&self, _: [f64; 2], _: usize) -> Option<EmissionSample> {
+        Some(EmissionSample::Point { at: self.at, normal: None, area: 0.0 })
     }
 
     fn intensity(&self, _: Option<DVec3>, _: DVec3, comb: usize) -> Channels {

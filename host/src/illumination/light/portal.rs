@@ -29,14 +29,14 @@ impl Portals {
     /// otherwise the two numbers are to choose another direction.
     ///
     /// - `uniform`: a point of the unit square.
-    pub(super) fn draw(&self, point: DVec3, [x, y]: [f64; 2]) -> PortalChoice {
+    pub(super) fn sample(&self, point: DVec3, [x, y]: [f64; 2]) -> PortalChoice {
         let count = self.before(point).count();
         match x / PART {
             _ if count == 0 => PortalChoice::Anywhere([x, y]),
             part if part < 1.0 => {
                 let number = (part * count as f64) as usize;
                 let uniform = [part * count as f64 - number as f64, y];
-                let drawn = self.before(point).nth(number).and_then(|portal| portal.draw(point, uniform));
+                let drawn = self.before(point).nth(number).and_then(|portal| portal.sample(point, uniform));
                 drawn.map_or(PortalChoice::None, |ShapeSample { towards, .. }| PortalChoice::Through(towards))
             }
             _ => PortalChoice::Anywhere([(x - PART) / (1.0 - PART), y]),
@@ -46,13 +46,13 @@ impl Portals {
     /// The density of a direction, 1/sr.
     ///
     /// - `anywhere`: with which the direction is drawn over the whole sky, 1/sr.
-    pub(super) fn density(&self, point: DVec3, towards: DVec3, anywhere: f64) -> f64 {
+    pub(super) fn pdf(&self, point: DVec3, towards: DVec3, anywhere: f64) -> f64 {
         let ray = Ray { origin: point, direction: towards };
         let (mut count, mut sum) = (0, 0.0);
         for portal in self.before(point) {
             count += 1;
-            let met = portal.met(&ray, 0.0, f64::INFINITY);
-            sum += met.map_or(0.0, |(distance, _)| portal.density(point, towards, distance));
+            let met = portal.intersect(&ray, 0.0, f64::INFINITY);
+            sum += met.map_or(0.0, |(distance, _)| portal.pdf(point, towards, distance));
         }
         if count == 0 { anywhere } else { PART * sum / f64::from(count) + (1.0 - PART) * anywhere }
     }

@@ -82,32 +82,32 @@ impl Sky {
     ///
     /// - `normal`: of the element that is lit, unit length; a sky of one radiance is then drawn by its cosine above it.
     /// - `uniform`: a point of the unit square.
-    pub(super) fn draw(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2]) -> Option<(DVec3, f64)> {
-        let towards = match self.portals.draw(point, uniform) {
+    pub(super) fn sample(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2]) -> Option<(DVec3, f64)> {
+        let towards = match self.portals.sample(point, uniform) {
             PortalChoice::Through(towards) => towards,
-            PortalChoice::Anywhere(uniform) => self.draw_anywhere(normal, uniform)?,
+            PortalChoice::Anywhere(uniform) => self.sample_anywhere(normal, uniform)?,
             PortalChoice::None => return None,
         };
-        Some((towards, self.density(point, towards, normal))).filter(|(_, density)| *density > 0.0)
+        Some((towards, self.pdf(point, towards, normal))).filter(|(_, density)| *density > 0.0)
     }
 
     /// The density with which [`Sky::draw`] draws a direction, 1/sr.
-    pub(super) fn density(&self, point: DVec3, towards: DVec3, normal: Option<DVec3>) -> f64 {
-        self.portals.density(point, towards, self.density_anywhere(towards, normal))
+    pub(super) fn pdf(&self, point: DVec3, towards: DVec3, normal: Option<DVec3>) -> f64 {
+        self.portals.pdf(point, towards, self.pdf_anywhere(towards, normal))
     }
 
     /// A direction, about as bright as it is; the normal as in [`Sky::draw`].
-    fn draw_anywhere(&self, normal: Option<DVec3>, uniform: [f64; 2]) -> Option<DVec3> {
+    fn sample_anywhere(&self, normal: Option<DVec3>, uniform: [f64; 2]) -> Option<DVec3> {
         match (&self.disc, &self.map, normal) {
-            (Some(disc), ..) => Some(self.forth(disc.draw(uniform))),
-            (None, Some(map), _) => Some(self.forth(direction(map.draw(uniform)?))),
+            (Some(disc), ..) => Some(self.forth(disc.sample(uniform))),
+            (None, Some(map), _) => Some(self.forth(direction(map.sample(uniform)?))),
             (None, None, Some(normal)) => Some(cosine_hemisphere(uniform, normal)),
             (None, None, None) => Some(sphere(uniform)),
         }
     }
 
     /// The density with which [`Sky::draw_anywhere`] draws a direction, 1/sr.
-    fn density_anywhere(&self, towards: DVec3, normal: Option<DVec3>) -> f64 {
+    fn pdf_anywhere(&self, towards: DVec3, normal: Option<DVec3>) -> f64 {
         if let Some(disc) = &self.disc {
             return if self.is_beside(towards) { 0.0 } else { disc.density };
         }
@@ -116,13 +116,13 @@ impl Sky {
         };
         let back = self.back(towards);
         let sine = back.x.hypot(back.z);
-        if sine > 0.0 { map.density(place(back)) / (sine * PI * TAU) } else { 0.0 }
+        if sine > 0.0 { map.pdf(place(back)) / (sine * PI * TAU) } else { 0.0 }
     }
 
     /// A direction from which light sets out into the scene, about as bright as it is, and its density, 1/sr.
-    pub(super) fn start(&self, uniform: [f64; 2]) -> Option<(DVec3, f64)> {
-        let towards = self.draw_anywhere(None, uniform)?;
-        Some((towards, self.density_anywhere(towards, None))).filter(|(_, density)| *density > 0.0)
+    pub(super) fn sample_emission(&self, uniform: [f64; 2]) -> Option<(DVec3, f64)> {
+        let towards = self.sample_anywhere(None, uniform)?;
+        Some((towards, self.pdf_anywhere(towards, None))).filter(|(_, density)| *density > 0.0)
     }
 
     /// Whether it has the same radiance in all directions.
@@ -194,7 +194,7 @@ impl Disc {
     }
 
     /// A direction in it, drawn evenly.
-    fn draw(&self, [x, y]: [f64; 2]) -> DVec3 {
+    fn sample(&self, [x, y]: [f64; 2]) -> DVec3 {
         let rise = x * self.rise;
         let sine = (rise * (2.0 - rise)).sqrt();
         let (across, along) = (y * TAU).sin_cos();
@@ -315,7 +315,7 @@ impl Map {
     }
 
     /// A place, about as bright as it is.
-    fn draw(&self, [x, y]: [f64; 2]) -> Option<DVec2> {
+    fn sample(&self, [x, y]: [f64; 2]) -> Option<DVec2> {
         if self.all <= 0.0 {
             return None;
         }
@@ -323,7 +323,7 @@ impl Map {
         let (row, down) = within(&self.rows, y);
         let (column, aside) = within(&self.columns[row * across..(row + 1) * across], x);
         let (cell, [s, t]) =
-            if self.side == 1 { ([column, row], [aside, down]) } else { self.drawn([column, row], [aside, down]) };
+            if self.side == 1 { ([column, row], [aside, down]) } else { self.sample_cell([column, row], [aside, down]) };
         // Down the means of both sides first, and then across where that is.
         let [a, b, c, d] = self.corners(cell);
         let t = linear(a + b, c + d, t);
@@ -333,7 +333,7 @@ impl Map {
     }
 
     /// A cell of a block, and what is left of the numbers that chose it.
-    fn drawn(&self, block: [usize; 2], [x, y]: [f64; 2]) -> ([usize; 2], [f64; 2]) {
+    fn sample_cell(&self, block: [usize; 2], [x, y]: [f64; 2]) -> ([usize; 2], [f64; 2]) {
         let [columns, rows] = [0, 1].map(|axis| self.cells_of(block[axis], axis));
         // Brightness of a row of corners, in pairs.
         let pairs = |y: usize| {
@@ -367,7 +367,7 @@ impl Map {
     }
 
     /// The density of a place in the map.
-    fn density(&self, place: DVec2) -> f64 {
+    fn pdf(&self, place: DVec2) -> f64 {
         if self.all <= 0.0 {
             return 0.0;
         }
@@ -426,11 +426,11 @@ mod tests {
         for _ in 0..count {
             let uniform = stream.point();
             for (number, map) in [&single, &blocks].into_iter().enumerate() {
-                let place = map.draw(uniform).expect("light");
+                let place = map.sample(uniform).expect("light");
                 sums[number] += place;
                 near[number] += u32::from((place - DVec2::new(5.5 / 37.0, 9.0 / 22.0)).abs().max_element() < 0.05);
-                assert!((map.density(place) / single.density(place) - 1.0).abs() < 1e-9);
-                seen += 0.5 / map.density(place);
+                assert!((map.pdf(place) / single.pdf(place) - 1.0).abs() < 1e-9);
+                seen += 0.5 / map.pdf(place);
             }
         }
         let [a, b] = sums.map(|sum| sum / f64::from(count));

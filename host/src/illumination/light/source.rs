@@ -110,8 +110,8 @@ impl LightSource {
     /// - `normal`: of the element at the point, unit length, if there is one: directions above it are drawn more often.
     /// - `uniform`: a point of the unit square, which chooses the point of a light that has a size.
     #[inline]
-    pub fn beam(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<LightSample> {
-        self.0.emitter().beam(point, normal, uniform, comb)
+    pub fn sample_incident(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<LightSample> {
+        self.0.emitter().sample_incident(point, normal, uniform, comb)
     }
 
     /// Points that stand for it: itself if it has no size, the middle of a disc in the sky, none for another sky.
@@ -123,8 +123,8 @@ impl LightSource {
 
     /// Light that arrives from one of [`Source::points`] if nothing stands between.
     #[inline]
-    pub fn beam_from(&self, from: &LightPoint, point: DVec3, comb: usize) -> Option<LightSample> {
-        self.0.emitter().beam_from(from, point, comb)
+    pub fn incident_from(&self, from: &LightPoint, point: DVec3, comb: usize) -> Option<LightSample> {
+        self.0.emitter().incident_from(from, point, comb)
     }
 
     /// Where its light comes from.
@@ -135,8 +135,8 @@ impl LightSource {
     /// Draws where light leaves the source; none where there is none.
     ///
     /// - `uniform`: a point of the unit square.
-    pub fn start(&self, uniform: [f64; 2], comb: usize) -> Option<EmissionSample> {
-        self.0.emitter().start(uniform, comb)
+    pub fn sample_emission(&self, uniform: [f64; 2], comb: usize) -> Option<EmissionSample> {
+        self.0.emitter().sample_emission(uniform, comb)
     }
 
     /// Flux in each solid angle that leaves a place of [`Source::start`] in a direction, over the density of the place,
@@ -154,8 +154,8 @@ impl LightSource {
 
     /// What a ray sees of a light that is a surface of its own.
     #[inline]
-    pub fn glow(&self, ray: &Ray, t_min: f64, t_max: f64, comb: usize) -> Option<LightHit> {
-        self.0.emitter().glow(ray, t_min, t_max, comb)
+    pub fn intersect(&self, ray: &Ray, t_min: f64, t_max: f64, comb: usize) -> Option<LightHit> {
+        self.0.emitter().intersect(ray, t_min, t_max, comb)
     }
 
     /// What is seen of a sky; none of another light, and beside a disc.
@@ -163,20 +163,20 @@ impl LightSource {
     /// - `ray`: of unit length, from the point from which it is seen.
     /// - `normal`: of the element from which it is seen, as in [`Source::beam`].
     #[inline]
-    pub fn sky(&self, ray: &Ray, normal: Option<DVec3>, comb: usize) -> Option<LightHit> {
-        self.0.emitter().sky(ray, normal, comb)
+    pub fn sky_radiance(&self, ray: &Ray, normal: Option<DVec3>, comb: usize) -> Option<LightHit> {
+        self.0.emitter().sky_radiance(ray, normal, comb)
     }
 
     /// The density with which [`Source::beam`] draws a direction in which emitting triangles are met, 1/sr.
     ///
     /// - `cosine`: between the direction and the normal of the triangle, any sign.
-    pub fn density_on_triangle(&self, distance: f64, cosine: f64) -> f64 {
-        self.0.emitter().density_on_triangle(distance, cosine)
+    pub fn pdf_on_triangle(&self, distance: f64, cosine: f64) -> f64 {
+        self.0.emitter().pdf_on_triangle(distance, cosine)
     }
 
     /// Whether its light comes from one direction only at every point.
-    pub fn is_sharp(&self) -> bool {
-        self.0.emitter().is_sharp()
+    pub fn is_delta(&self) -> bool {
+        self.0.emitter().is_delta()
     }
 
     /// Whether it is a surface of its own, which rays meet.
@@ -187,8 +187,8 @@ impl LightSource {
 
     /// Whether its light is worth being followed: a sky of one radiance is found from everywhere.
     #[inline]
-    pub fn is_caught(&self) -> bool {
-        self.0.emitter().is_caught()
+    pub fn emits_photons(&self) -> bool {
+        self.0.emitter().emits_photons()
     }
 
     /// The cone out of which nothing is sent: its tip, its axis, unit length, and the cosine of its half angle; none if
@@ -199,8 +199,8 @@ impl LightSource {
 
     /// Whether it is seen where rays meet nothing: a sky, or a disc in it.
     #[inline]
-    pub fn is_beyond(&self) -> bool {
-        self.0.emitter().is_beyond()
+    pub fn is_infinite(&self) -> bool {
+        self.0.emitter().is_infinite()
     }
 
     /// Whether it surrounds everything: no disc in the sky does.

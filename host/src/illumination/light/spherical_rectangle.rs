@@ -56,7 +56,7 @@ impl SphericalRectangle {
     }
 
     /// A point of the rectangle, from the lit point.
-    pub(super) fn draw(&self, [u, v]: [f64; 2]) -> DVec3 {
+    pub(super) fn sample(&self, [u, v]: [f64; 2]) -> DVec3 {
         let angle = u * self.solid_angle + self.k;
         let (sin, cos) = angle.sin_cos();
         let slope = (cos * self.b[0] - self.b[1]) / sin;

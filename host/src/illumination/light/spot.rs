@@ -29,7 +29,7 @@ impl SpotLight {
 }
 
 impl Emitter for SpotLight {
-    fn beam(&self, point: DVec3, _: Option<DVec3>, _: [f64; 2], comb: usize) -> Option<LightSample> {
+    fn sample_incident(&self, point: DVec3, _: Option<DVec3>, _: [f64; 2], comb: usize) -> Option<LightSample> {
         let beam = from_point(self.at - point, self.strength.of(comb))?;
         let part = self.part(-beam.towards.dot(self.axis));
         (part > 0.0).then(|| LightSample { irradiance: beam.irradiance * part, ..beam })
@@ -43,8 +43,8 @@ impl Emitter for SpotLight {
         LightOrigin::point(self.at)
     }
 
-    fn start(&self, _: [f64; 2], _: usize) -> Option<EmissionSample> {
-        Some(EmissionSample::Place { at: self.at, normal: None, area: 0.0 })
+    fn sample_emission(&self, _: [f64; 2], _: usize) -> Option<EmissionSample> {
+        Some(EmissionSample::Point { at: self.at, normal: None, area: 0.0 })
     }
 
     fn intensity(&self, _: Option<DVec3>, direction: DVec3, comb: usize) -> Channels {

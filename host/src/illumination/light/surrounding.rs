@@ -17,8 +17,8 @@ pub(super) struct EnvironmentLight {
 }
 
 impl Emitter for EnvironmentLight {
-    fn beam(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<LightSample> {
-        let (towards, density) = self.sky.draw(point, normal, uniform)?;
+    fn sample_incident(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<LightSample> {
+        let (towards, density) = self.sky.sample(point, normal, uniform)?;
         let irradiance = self.sky.radiance(towards, comb) * density.recip();
         Some(LightSample { towards, distance: f64::INFINITY, irradiance, density: Some(density) })
     }
@@ -31,8 +31,8 @@ impl Emitter for EnvironmentLight {
         LightOrigin::Everywhere
     }
 
-    fn start(&self, uniform: [f64; 2], comb: usize) -> Option<EmissionSample> {
-        let (towards, density) = self.sky.start(uniform)?;
+    fn sample_emission(&self, uniform: [f64; 2], comb: usize) -> Option<EmissionSample> {
+        let (towards, density) = self.sky.sample_emission(uniform)?;
         let irradiance = self.sky.radiance(towards, comb) * density.recip();
         Some(EmissionSample::Parallel { direction: -towards, irradiance })
     }
@@ -46,15 +46,15 @@ impl Emitter for EnvironmentLight {
         self.sky.total(comb) * disc
     }
 
-    fn is_sharp(&self) -> bool {
+    fn is_delta(&self) -> bool {
         false
     }
 
-    fn is_caught(&self) -> bool {
+    fn emits_photons(&self) -> bool {
         !self.sky.is_even()
     }
 
-    fn is_beyond(&self) -> bool {
+    fn is_infinite(&self) -> bool {
         true
     }
 
@@ -62,12 +62,12 @@ impl Emitter for EnvironmentLight {
         self.sky.disc().is_none()
     }
 
-    fn sky(&self, ray: &Ray, normal: Option<DVec3>, comb: usize) -> Option<LightHit> {
+    fn sky_radiance(&self, ray: &Ray, normal: Option<DVec3>, comb: usize) -> Option<LightHit> {
         let Ray { origin, direction: towards } = *ray;
         if self.sky.is_beside(towards) {
             return None;
         }
-        let (radiance, density) = (self.sky.radiance(towards, comb), self.sky.density(origin, towards, normal));
+        let (radiance, density) = (self.sky.radiance(towards, comb), self.sky.pdf(origin, towards, normal));
         Some(LightHit { t: f64::INFINITY, radiance, density })
     }
 }

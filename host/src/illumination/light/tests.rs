@@ -20,7 +20,7 @@ fn area(patch: LightShape) -> LightSource {
 fn irradiance(source: &LightSource, point: DVec3, normal: DVec3) -> f64 {
     let term = |uniform| {
         source
-            .beam(point, None, uniform, 0)
+            .sample_incident(point, None, uniform, 0)
             .map_or(0.0, |beam| beam.irradiance.0[0] * beam.towards.dot(normal).max(0.0))
     };
     unit_square(term, 1e-9, 200_000).value
@@ -29,11 +29,11 @@ fn irradiance(source: &LightSource, point: DVec3, normal: DVec3) -> f64 {
 #[test]
 fn irradiance_of_a_point_falls_with_the_square_of_the_distance() {
     let point = source(Light::Point { at: DVec3::new(0.0, 3.0, 0.0), intensity: Color::grey(18.0) });
-    let beam = point.beam(DVec3::ZERO, None, [0.5; 2], 0).expect("light");
+    let beam = point.sample_incident(DVec3::ZERO, None, [0.5; 2], 0).expect("light");
     assert_eq!((beam.irradiance.0[0], beam.distance, beam.towards), (2.0, 3.0, DVec3::Y));
-    assert!(point.beam(DVec3::new(0.0, 3.0, 0.0), None, [0.5; 2], 0).is_none(), "no direction at the light itself");
+    assert!(point.sample_incident(DVec3::new(0.0, 3.0, 0.0), None, [0.5; 2], 0).is_none(), "no direction at the light itself");
     for far in [1e-9, 1e9] {
-        let beam = point.beam(DVec3::new(far, 3.0, 0.0), None, [0.5; 2], 0).expect("light");
+        let beam = point.sample_incident(DVec3::new(far, 3.0, 0.0), None, [0.5; 2], 0).expect("light");
         assert!((beam.irradiance.0[0] * far * far / 18.0 - 1.0).abs() < 1e-12);
     }
 }
@@ -50,7 +50,7 @@ fn irradiance_of_a_sphere_is_that_of_its_solid_angle() {
     let patch = LightShape::Sphere { center: DVec3::new(3.0, 4.0, 0.0), radius: 1.0 };
     let found = irradiance(&area(patch), DVec3::ZERO, DVec3::Y);
     assert!((found - PI / 25.0 * 0.8).abs() < 1e-8);
-    assert!(area(patch).beam(DVec3::new(3.0, 4.5, 0.0), None, [0.5; 2], 0).is_none(), "dark inside");
+    assert!(area(patch).sample_incident(DVec3::new(3.0, 4.5, 0.0), None, [0.5; 2], 0).is_none(), "dark inside");
 }
 
 #[test]
@@ -62,7 +62,7 @@ fn irradiance_of_a_disc_is_that_of_its_closed_form() {
         let expected = PI * radius * radius / (radius * radius + height * height);
         let found = irradiance(&area(patch), DVec3::ZERO, DVec3::Y);
         assert!((found / expected - 1.0).abs() < 1e-6, "{height} {radius}: {found} {expected}");
-        assert!(area(patch).beam(center * 2.0, None, [0.5; 2], 0).is_none(), "dark behind");
+        assert!(area(patch).sample_incident(center * 2.0, None, [0.5; 2], 0).is_none(), "dark behind");
     }
 }
 
@@ -122,10 +122,10 @@ fn densities_are_those_of_the_drawn_directions() {
     for patch in patches {
         let source = area(patch);
         for _ in 0..200 {
-            let beam = source.beam(DVec3::ZERO, None, stream.point(), 0).expect("light");
+            let beam = source.sample_incident(DVec3::ZERO, None, stream.point(), 0).expect("light");
             let ray = Ray { origin: DVec3::ZERO, direction: beam.towards * 2.0 };
             // A point of the border may fall on either side of it.
-            let Some(glow) = source.glow(&ray, 0.0, f64::INFINITY, 0) else { continue };
+            let Some(glow) = source.intersect(&ray, 0.0, f64::INFINITY, 0) else { continue };
             assert!((2.0 * glow.t - beam.distance).abs() < 1e-6, "{patch:?}");
             assert!((glow.density / beam.density.expect("spread") - 1.0).abs() < 1e-6, "{patch:?}");
             assert_eq!(glow.radiance.0[0], 1.0);
@@ -144,7 +144,7 @@ fn a_spot_falls_from_all_to_nothing_between_its_angles() {
     });
     let at = |degrees: f64| {
         let (sin, cos) = degrees.to_radians().sin_cos();
-        spot.beam(DVec3::new(sin, 1.0 - cos, 0.0), None, [0.5; 2], 0).map_or(0.0, |beam| beam.irradiance.0[0])
+        spot.sample_incident(DVec3::new(sin, 1.0 - cos, 0.0), None, [0.5; 2], 0).map_or(0.0, |beam| beam.irradiance.0[0])
     };
     assert!((at(0.0) - 1.0).abs() < 1e-12 && (at(19.9) - 1.0).abs() < 1e-12 && at(40.1) == 0.0);
     let middle = ((20f64.to_radians().cos() + 40f64.to_radians().cos()) / 2.0).acos().to_degrees();
@@ -184,7 +184,7 @@ fn a_luminaire_shines_as_its_file_says() {
         goniometry: table,
         color: Color::grey(1.0),
     };
-    let beam = source(light).beam(DVec3::ZERO, None, [0.5; 2], 0).expect("light");
+    let beam = source(light).sample_incident(DVec3::ZERO, None, [0.5; 2], 0).expect("light");
     assert!((beam.irradiance.0[0] - 200.0 / 683.0 / 4.0).abs() < 1e-12);
 }
 
@@ -210,12 +210,12 @@ fn map() -> SkyMap {
 fn a_sky_of_one_radiance_lights_a_plane_with_pi_times_it() {
     let sky = source(Light::Sky { map: None, radiance: Color::grey(2.0), turned: 0.0 });
     assert!((irradiance(&sky, DVec3::ZERO, DVec3::Y) - 2.0 * PI).abs() < 1e-3);
-    assert_eq!(sky.sky(&from_origin(DVec3::X), None, 0).expect("a sky").radiance.0[0], 2.0);
+    assert_eq!(sky.sky_radiance(&from_origin(DVec3::X), None, 0).expect("a sky").radiance.0[0], 2.0);
     // By the cosine above an element, each direction brings as much.
     for uniform in [[0.1, 0.2], [0.7, 0.9], [0.99, 0.5]] {
-        let beam = sky.beam(DVec3::ZERO, Some(DVec3::Y), uniform, 0).expect("light");
+        let beam = sky.sample_incident(DVec3::ZERO, Some(DVec3::Y), uniform, 0).expect("light");
         assert!((beam.irradiance.0[0] * beam.towards.y - 2.0 * PI).abs() < 1e-9);
-        assert_eq!(sky.sky(&from_origin(beam.towards), Some(DVec3::Y), 0).map(|glow| glow.density), beam.density);
+        assert_eq!(sky.sky_radiance(&from_origin(beam.towards), Some(DVec3::Y), 0).map(|glow| glow.density), beam.density);
     }
 }
 
@@ -226,7 +226,7 @@ fn a_map_is_seen_where_its_directions_are_and_drawn_as_bright_as_it_is() {
     let drawn = irradiance(&sky, DVec3::ZERO, DVec3::new(0.6, 0.8, 0.0));
     let term = |uniform| {
         let towards = sphere(uniform);
-        sky.sky(&from_origin(towards), None, 0).map_or(0.0, |glow| glow.radiance.0[0])
+        sky.sky_radiance(&from_origin(towards), None, 0).map_or(0.0, |glow| glow.radiance.0[0])
             * towards.dot(DVec3::new(0.6, 0.8, 0.0)).max(0.0)
     };
     let even = 4.0 * PI * unit_square(term, 1e-4, 400_000).value;
@@ -234,20 +234,20 @@ fn a_map_is_seen_where_its_directions_are_and_drawn_as_bright_as_it_is() {
     // The density integrates to 1.
     let all = 4.0
         * PI
-        * unit_square(|u| sky.sky(&from_origin(sphere(u)), None, 0).map_or(0.0, |glow| glow.density), 1e-4, 400_000)
+        * unit_square(|u| sky.sky_radiance(&from_origin(sphere(u)), None, 0).map_or(0.0, |glow| glow.density), 1e-4, 400_000)
             .value;
     assert!((all - 1.0).abs() < 2e-3, "{all}");
     let mut stream = RandomStream::new(2, 2);
     for _ in 0..100 {
-        let beam = sky.beam(DVec3::ZERO, None, stream.point(), 0).expect("light");
-        let glow = sky.sky(&from_origin(beam.towards), None, 0).expect("a sky");
+        let beam = sky.sample_incident(DVec3::ZERO, None, stream.point(), 0).expect("light");
+        let glow = sky.sky_radiance(&from_origin(beam.towards), None, 0).expect("a sky");
         assert!((glow.density / beam.density.expect("spread") - 1.0).abs() < 1e-9);
     }
     let ahead = source(Light::Sky { map: Some(map()), radiance: Color::grey(1.0), turned: 0.0 });
     // In the middle of column 4 of row 1, which is 60 degrees from the zenith, and straight up, where row 0 is.
     let towards = |degrees: f64, turn: f64| {
         let ((sine, cosine), (across, along)) = (degrees.to_radians().sin_cos(), turn.to_radians().sin_cos());
-        ahead.sky(&from_origin(DVec3::new(sine * across, cosine, -sine * along)), None, 0).expect("a sky").radiance.0[0]
+        ahead.sky_radiance(&from_origin(DVec3::new(sine * across, cosine, -sine * along)), None, 0).expect("a sky").radiance.0[0]
     };
     let pixel = |x: usize, y: usize| ((y * 8 + x) % 5) as f64;
     assert!((towards(60.0, 22.5) - pixel(4, 1)).abs() < 1e-9 && (towards(60.0, 112.5) - pixel(6, 1)).abs() < 1e-9);
@@ -262,20 +262,20 @@ fn a_disc_in_the_sky_is_drawn_evenly_and_seen_where_it_is() {
     let map = SkyMap { file: String::new(), panorama: None, disc: Some(disc) };
     let sun = source(Light::Sky { map: Some(map), radiance: Color::grey(2.0 / disc.solid_angle()), turned: 0.0 });
     assert!((irradiance(&sun, DVec3::ZERO, DVec3::Y) - 2.0 * 0.8).abs() < 1e-5);
-    assert!(!sun.is_sky() && sun.is_beyond() && sun.is_caught());
+    assert!(!sun.is_sky() && sun.is_infinite() && sun.emits_photons());
     let mut stream = RandomStream::new(4, 9);
     for _ in 0..1000 {
-        let beam = sun.beam(DVec3::ZERO, None, stream.point(), 0).expect("light");
+        let beam = sun.sample_incident(DVec3::ZERO, None, stream.point(), 0).expect("light");
         let angle = beam.towards.cross(disc.towards).length().asin();
         assert!(angle <= disc.radius * (1.0 + 1e-9) && (beam.towards.length() - 1.0).abs() < 1e-12);
-        let seen = sun.sky(&from_origin(beam.towards), None, 0).expect("it is there");
+        let seen = sun.sky_radiance(&from_origin(beam.towards), None, 0).expect("it is there");
         assert_eq!(Some(seen.density), beam.density);
     }
     assert!(
-        sun.sky(&from_origin(-disc.towards), None, 0).is_none() && sun.sky(&from_origin(DVec3::Y), None, 0).is_none()
+        sun.sky_radiance(&from_origin(-disc.towards), None, 0).is_none() && sun.sky_radiance(&from_origin(DVec3::Y), None, 0).is_none()
     );
     let [point] = sun.points(7)[..] else { panic!("one point") };
-    let beam = sun.beam_from(&point, DVec3::ZERO, 0).expect("light");
+    let beam = sun.incident_from(&point, DVec3::ZERO, 0).expect("light");
     assert!((beam.irradiance.0[0] - 2.0).abs() < 1e-6 && (beam.towards - disc.towards).length() < 1e-12);
 }
 
@@ -294,7 +294,7 @@ fn polygons_of_a_patch_lie_on_it_and_turn_counter_clockwise_about_where_it_emits
             let normal = (b - a).cross(c - a).normalize();
             let middle = polygon.iter().sum::<DVec3>() / polygon.len() as f64;
             let before = Ray { origin: middle + normal * 5.0, direction: -normal };
-            let glow = area_glow(&patch, &before).expect("it is met");
+            let glow = area_hit(&patch, &before).expect("it is met");
             assert!((glow.t - 5.0).abs() < 0.01 && glow.radiance.0[0] == 1.0, "{patch:?}: {glow:?}");
             let twice: DVec3 = polygon.windows(2).map(|pair| (pair[0] - a).cross(pair[1] - a)).sum();
             assert!(polygon.len() >= 3 && twice.dot(normal) > 0.0);
@@ -305,8 +305,8 @@ fn polygons_of_a_patch_lie_on_it_and_turn_counter_clockwise_about_where_it_emits
     }
 }
 
-fn area_glow(patch: &LightShape, ray: &Ray) -> Option<LightHit> {
-    area(*patch).glow(ray, 0.0, f64::INFINITY, 0)
+fn area_hit(patch: &LightShape, ray: &Ray) -> Option<LightHit> {
+    area(*patch).intersect(ray, 0.0, f64::INFINITY, 0)
 }
 
 /// A ray from the origin.
@@ -331,22 +331,22 @@ fn portals_change_where_a_sky_is_looked_for_and_not_how_much_it_lights() {
         for known in [Some(normal), None] {
             let mean = |source: &LightSource| {
                 let term = |uniform| {
-                    let beam = source.beam(DVec3::ZERO, known, uniform, 0);
+                    let beam = source.sample_incident(DVec3::ZERO, known, uniform, 0);
                     beam.map_or(0.0, |beam| beam.irradiance.0[0] * beam.towards.dot(normal).max(0.0))
                 };
                 unit_square(term, 1e-4, 400_000).value
             };
             let (plain, portal) = (mean(&sky), mean(&seen));
             assert!((portal / plain - 1.0).abs() < 3e-3, "{portal} {plain}");
-            let density = |u| seen.sky(&from_origin(sphere(u)), known, 0).map_or(0.0, |glow| glow.density);
+            let density = |u| seen.sky_radiance(&from_origin(sphere(u)), known, 0).map_or(0.0, |glow| glow.density);
             let all = 4.0 * PI * unit_square(density, 1e-4, 400_000).value;
             assert!((all - 1.0).abs() < 3e-3, "{all}");
         }
         let mut stream = RandomStream::new(5, 1);
         let mut through = 0;
         for _ in 0..1000 {
-            let Some(beam) = seen.beam(DVec3::ZERO, Some(normal), stream.point(), 0) else { continue };
-            let glow = seen.sky(&from_origin(beam.towards), Some(normal), 0).expect("a sky");
+            let Some(beam) = seen.sample_incident(DVec3::ZERO, Some(normal), stream.point(), 0) else { continue };
+            let glow = seen.sky_radiance(&from_origin(beam.towards), Some(normal), 0).expect("a sky");
             assert!((glow.density / beam.density.expect("spread") - 1.0).abs() < 1e-9);
             let at = beam.towards / -beam.towards.z;
             through += i32::from(beam.towards.z < 0.0 && at.x.abs() < 0.5 && (0.2..1.2).contains(&at.y));
@@ -355,8 +355,8 @@ fn portals_change_where_a_sky_is_looked_for_and_not_how_much_it_lights() {
         // Where there is none before a point, nothing changes.
         let below = DVec3::new(0.0, -5.0, 9.0);
         assert_eq!(
-            seen.beam(below, None, [0.3, 0.4], 0).map(|beam| beam.towards),
-            seen.with_portals(&[]).beam(below, None, [0.3, 0.4], 0).map(|beam| beam.towards)
+            seen.sample_incident(below, None, [0.3, 0.4], 0).map(|beam| beam.towards),
+            seen.with_portals(&[]).sample_incident(below, None, [0.3, 0.4], 0).map(|beam| beam.towards)
         );
     }
 }

@@ -203,7 +203,7 @@ impl Material {
     pub const MOST_PRIORITY: i32 = 1000;
 
     /// Whether it may pass on as a beam some of the light that comes to it.
-    pub fn may_throw(&self) -> bool {
+    pub fn may_cast_caustics(&self) -> bool {
         match &self.body {
             MaterialKind::Classic(Classic { mirror, specular, .. }) => !mirror.is_black() || !specular.is_black(),
             _ => true,
@@ -399,7 +399,7 @@ impl Material {
     }
 
     /// What it looks like in three bands, for displays that know no more of a material.
-    pub fn appearance(&self) -> MaterialPreview {
+    pub fn preview(&self) -> MaterialPreview {
         let shine = |roughness: f64| (2.0 / roughness.max(1e-3).powi(2) - 2.0).clamp(1.0, Classic::MOST_EXPONENT);
         let black = MaterialPreview { diffuse: DVec3::ZERO, specular: DVec3::ZERO, exponent: 1.0, mirror: DVec3::ZERO };
         let bands = |paint: &Paint| paint.mean_bands().clamp(DVec3::ZERO, DVec3::ONE);
@@ -424,7 +424,7 @@ impl Material {
                     }
                 }
             }
-            MaterialKind::Principled(principled) => principled.appearance(),
+            MaterialKind::Principled(principled) => principled.preview(),
             MaterialKind::Transparent(Transparent { index, .. }) => {
                 MaterialPreview { mirror: DVec3::splat(normal_reflectance(index.at(550.0))), ..black }
             }

@@ -53,9 +53,9 @@ pub enum LobeClass {
     Narrow,
     /// Those that spread light about everywhere, where a radiosity solution tells what comes from other surfaces: rays from
     /// the eye end at them, and light that is followed from lamps goes on.
-    Solved,
+    Radiosity,
     /// Those that answer lights only.
-    Ended,
+    LightsOnly,
 }
 
 /// What becomes of light that goes from one diffuse surface to another.
@@ -81,7 +81,7 @@ impl Interreflection {
 
 impl LobeClass {
     /// Those that carry rays from the eye on.
-    pub const CONTINUED: [LobeClass; 2] = [LobeClass::Broad, LobeClass::Narrow];
+    pub const CONTINUING: [LobeClass; 2] = [LobeClass::Broad, LobeClass::Narrow];
 }
 
 /// Among which lobes a direction is drawn.
@@ -90,7 +90,7 @@ pub enum LobeSelection {
     /// All that carry rays from the eye on.
     All,
     /// Those whose directions are not all known: [`Optics::mirrored`] gives the others.
-    Spread,
+    NonDelta,
     /// The narrow ones.
     Narrow,
     /// The broad ones, solved or not.
@@ -100,10 +100,10 @@ pub enum LobeSelection {
 impl LobeSelection {
     fn has(self, which: LobeClass, flags: Flags) -> bool {
         match self {
-            LobeSelection::All => LobeClass::CONTINUED.contains(&which),
-            LobeSelection::Spread => LobeClass::CONTINUED.contains(&which) && !flags.has(Flags::DELTA),
+            LobeSelection::All => LobeClass::CONTINUING.contains(&which),
+            LobeSelection::NonDelta => LobeClass::CONTINUING.contains(&which) && !flags.has(Flags::DELTA),
             LobeSelection::Narrow => which == LobeClass::Narrow,
-            LobeSelection::Broad => matches!(which, LobeClass::Broad | LobeClass::Solved),
+            LobeSelection::Broad => matches!(which, LobeClass::Broad | LobeClass::Radiosity),
         }
     }
 }
@@ -144,7 +144,7 @@ pub struct Bsdf {
 #[derive(Clone, Debug)]
 pub(super) enum StraightTransmission {
     /// One fraction for light from everywhere.
-    Shade(PreparedPaint),
+    Paint(PreparedPaint),
     /// Through a polished pane.
     Pane(Arc<PrincipledSurface>),
 }
@@ -152,8 +152,8 @@ pub(super) enum StraightTransmission {
 impl StraightTransmission {
     fn of(&self, sighting: &ShadingContext) -> Channels {
         match self {
-            StraightTransmission::Shade(shade) => shade.of(sighting),
-            StraightTransmission::Pane(surface) => surface.straight(sighting),
+            StraightTransmission::Paint(shade) => shade.of(sighting),
+            StraightTransmission::Pane(surface) => surface.straight_transmittance(sighting),
         }
     }
 }
@@ -196,7 +196,7 @@ impl Bsdf {
     ///
     /// Of directions that only a mirror or a smooth interface would reach nothing is known here.
     pub fn value(&self, which: LobeClass, sighting: &ShadingContext, light: DVec3) -> Channels {
-        self.of(which).fold(Channels::ZERO, |sum, lobe| sum + lobe.value(sighting, light))
+        self.of_class(which).fold(Channels::ZERO, |sum, lobe| sum + lobe.value(sighting, light))
     }
 
     /// Radiance towards the viewer for each unit of flux density that arrives from a light, 1/sr, by the lobes that are
@@ -209,34 +209,34 @@ impl Bsdf {
     /// Radiance towards the viewer for each unit of flux density that arrives from a light, 1/sr, by all lobes; nothing of
     /// what only a mirror or a smooth interface would reach.
     #[inline]
-    pub fn response(&self, sighting: &ShadingContext, light: DVec3) -> Channels {
+    pub fn total_value(&self, sighting: &ShadingContext, light: DVec3) -> Channels {
         self.lobes.iter().fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.value(sighting, light))
     }
 
     /// The density with which [`Optics::onward`] draws a direction by broad or by narrow lobes, 1/sr.
     ///
     /// - `among`: as there.
-    pub fn density(&self, which: LobeClass, sighting: &ShadingContext, light: DVec3, among: LobeSelection) -> f64 {
+    pub fn pdf(&self, which: LobeClass, sighting: &ShadingContext, light: DVec3, among: LobeSelection) -> f64 {
         let shares = self.shares(sighting, among);
         let members = self.lobes.iter().zip(&shares).filter(|(member, _)| member.which == which);
-        members.map(|(member, share)| share * member.lobe.density(sighting, light)).sum()
+        members.map(|(member, share)| share * member.lobe.pdf(sighting, light)).sum()
     }
 
     /// The density with which [`Optics::onward`] draws a direction among lobes, 1/sr.
-    pub fn density_among(&self, among: LobeSelection, sighting: &ShadingContext, light: DVec3) -> f64 {
+    pub fn pdf_among(&self, among: LobeSelection, sighting: &ShadingContext, light: DVec3) -> f64 {
         let members = self.lobes.iter().zip(self.shares(sighting, among)).filter(|(_, share)| *share > 0.0);
-        members.map(|(member, share)| share * member.lobe.density(sighting, light)).sum()
+        members.map(|(member, share)| share * member.lobe.pdf(sighting, light)).sum()
     }
 
     /// The directions of mirrors and smooth interfaces, all of them.
-    pub fn mirrored(&self, sighting: &ShadingContext) -> impl Iterator<Item = BsdfSample> {
+    pub fn specular_samples(&self, sighting: &ShadingContext) -> impl Iterator<Item = BsdfSample> {
         let narrow = |member: &&Member| member.which == LobeClass::Narrow && member.flags.has(Flags::DELTA);
         let members = self.lobes.iter().filter(narrow);
-        members.flat_map(|member| member.lobe.mirrored(sighting)).flatten().filter(|onward| onward.weight.max() > 0.0)
+        members.flat_map(|member| member.lobe.specular_samples(sighting)).flatten().filter(|onward| onward.weight.max() > 0.0)
     }
 
     /// What goes straight through, if anything does.
-    pub fn straight(&self, sighting: &ShadingContext) -> Option<BsdfSample> {
+    pub fn straight_sample(&self, sighting: &ShadingContext) -> Option<BsdfSample> {
         let weight = self.passing.as_ref()?.of(sighting);
         Some(BsdfSample { light: -sighting.view, weight, density: None, is_straight: true, is_broad: false })
     }
@@ -245,9 +245,9 @@ impl Bsdf {
     ///
     /// - `choice`: uniform in 0..1, chooses among lobes. `point`: uniform in the unit square.
     /// - `among`: which lobes it is drawn among.
-    pub fn onward(&self, sighting: &ShadingContext, choice: f64, point: [f64; 2], among: LobeSelection) -> Option<BsdfSample> {
+    pub fn sample(&self, sighting: &ShadingContext, choice: f64, point: [f64; 2], among: LobeSelection) -> Option<BsdfSample> {
         let shares = self.shares(sighting, among);
-        let (index, choice) = chosen(&shares, choice)?;
+        let (index, choice) = choose_share(&shares, choice)?;
         let Member { which, lobe, .. } = self.lobes.get(index)?;
         let drawn = lobe.sample(sighting, choice, point)?;
         if drawn.density.is_none() {
@@ -260,7 +260,7 @@ impl Bsdf {
         for (Member { which, lobe, .. }, share) in self.lobes.iter().zip(&shares).filter(|(_, share)| **share > 0.0) {
             if is_broad == (*which != LobeClass::Narrow) {
                 value += lobe.value(sighting, light);
-                density += share * lobe.density(sighting, light);
+                density += share * lobe.pdf(sighting, light);
             }
         }
         let weight = value * (light.z.abs() / density);
@@ -269,25 +269,25 @@ impl Bsdf {
 
     /// What ambient light, the same radiance from everywhere, adds: its reflected fraction.
     pub fn ambient(&self, sighting: &ShadingContext) -> Channels {
-        self.ambient.as_ref().map_or_else(|| self.diffuse(sighting), |ambient| ambient.of(sighting))
+        self.ambient.as_ref().map_or_else(|| self.diffuse_albedo(sighting), |ambient| ambient.of(sighting))
     }
 
     /// About what ambient light adds by what mirrors, metals, coats and glass reflect, where that is not followed.
-    pub fn surrounded(&self, sighting: &ShadingContext) -> Channels {
-        self.lobes.iter().fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.shown(sighting))
+    pub fn glossy_albedo(&self, sighting: &ShadingContext) -> Channels {
+        self.lobes.iter().fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.glossy_albedo(sighting))
     }
 
     /// The part of light from all around that is reflected alike to everywhere: Lambert's term, and what a ground under a
     /// coat gives in the mean.
-    pub fn diffuse(&self, sighting: &ShadingContext) -> Channels {
-        self.lobes.iter().fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.diffuse(sighting))
+    pub fn diffuse_albedo(&self, sighting: &ShadingContext) -> Channels {
+        self.lobes.iter().fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.diffuse_albedo(sighting))
     }
 
     /// About the part of light from all around that is reflected to the viewer, but for what a mirror or a smooth interface
     /// passes on.
-    pub fn spread_albedo(&self, sighting: &ShadingContext) -> Channels {
+    pub fn non_delta_albedo(&self, sighting: &ShadingContext) -> Channels {
         let spread = self.lobes.iter().filter(|member| !member.flags.has(Flags::DELTA));
-        spread.fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.diffuse(sighting) + lobe.shown(sighting))
+        spread.fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.diffuse_albedo(sighting) + lobe.glossy_albedo(sighting))
     }
 
     /// Whether some light is reflected alike to everywhere.
@@ -301,7 +301,7 @@ impl Bsdf {
     }
 
     /// What its patterns are mixed of in the mean over a place, for any wavelengths.
-    pub fn mix(&self, place: &TextureFootprint) -> TextureMixture<'_> {
+    pub fn texture_mixture(&self, place: &TextureFootprint) -> TextureMixture<'_> {
         let mut mixture = TextureMixture { count: self.patterns.len(), ..TextureMixture::default() };
         for (index, pattern) in self.patterns.iter().enumerate() {
             match pattern {
@@ -315,7 +315,7 @@ impl Bsdf {
     }
 
     /// What its patterns give in the mean over a place.
-    pub fn paint(&self, place: &TextureFootprint, comb: usize) -> TextureValues {
+    pub fn texture_values(&self, place: &TextureFootprint, comb: usize) -> TextureValues {
         self.patterns.iter().map(|pattern| pattern.at(place, comb)).collect()
     }
 
@@ -334,9 +334,9 @@ impl Bsdf {
     /// The part of light that goes straight through.
     ///
     /// - `cosine`: of the angle between light and normal, 0..=1. `place`: asked for only if a pattern has to be looked up.
-    pub fn passing(&self, comb: usize, cosine: f64, place: impl FnOnce() -> TextureFootprint) -> Channels {
+    pub fn straight_transmittance(&self, comb: usize, cosine: f64, place: impl FnOnce() -> TextureFootprint) -> Channels {
         let Some(passing) = &self.passing else { return Channels::ZERO };
-        let painted = if self.patterns.is_empty() { TextureValues::new() } else { self.paint(&place(), comb) };
+        let painted = if self.patterns.is_empty() { TextureValues::new() } else { self.texture_values(&place(), comb) };
         let view = DVec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
         passing.of(&ShadingContext { view, comb, side: InterfaceIndices::AIR, lane: 0, painted: &painted })
     }
@@ -350,44 +350,44 @@ impl Bsdf {
     /// The part of light that a polished interface lets through, as if it were not bent.
     ///
     /// - `cosine`: of the angle between light and normal, 0..=1. `place`: asked for only if a pattern has to be looked up.
-    pub fn cleared(&self, comb: usize, cosine: f64, place: impl FnOnce() -> TextureFootprint) -> Channels {
+    pub fn clear_transmittance(&self, comb: usize, cosine: f64, place: impl FnOnce() -> TextureFootprint) -> Channels {
         let Some(interior) = &self.interior else { return Channels::ZERO };
-        let painted = if self.patterns.is_empty() { TextureValues::new() } else { self.paint(&place(), comb) };
+        let painted = if self.patterns.is_empty() { TextureValues::new() } else { self.texture_values(&place(), comb) };
         let view = DVec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
         let side = InterfaceIndices { behind: interior.index.of(comb), ..InterfaceIndices::AIR };
         let sighting = ShadingContext { view, comb, side, lane: 0, painted: &painted };
-        self.of(LobeClass::Narrow).fold(Channels::ZERO, |sum, lobe| sum + lobe.cleared(&sighting))
+        self.of_class(LobeClass::Narrow).fold(Channels::ZERO, |sum, lobe| sum + lobe.clear_transmittance(&sighting))
     }
 
     /// Whether some lobe of a kind answers lights.
-    pub fn answers_lights(&self) -> bool {
+    pub fn has_non_delta(&self) -> bool {
         self.lobes.iter().any(|member| !member.flags.has(Flags::DELTA))
     }
 
     /// Whether rays are carried on.
-    pub fn carries_on(&self) -> bool {
-        self.lobes.iter().any(|member| LobeClass::CONTINUED.contains(&member.which))
+    pub fn continues_paths(&self) -> bool {
+        self.lobes.iter().any(|member| LobeClass::CONTINUING.contains(&member.which))
     }
 
     /// Whether some lobe passes light on as a beam, other than straight.
-    pub fn throws(&self) -> bool {
+    pub fn casts_caustics(&self) -> bool {
         self.throws
     }
 
     /// Whether some lobe spreads the light that comes to it.
-    pub fn takes(&self) -> bool {
+    pub fn stores_photons(&self) -> bool {
         self.takes
     }
 
     /// Radiance towards the viewer for each unit of flux density that arrives, 1/sr, of all lobes but the narrow ones.
-    pub fn spread_value(&self, sighting: &ShadingContext, light: DVec3) -> Channels {
+    pub fn non_narrow_value(&self, sighting: &ShadingContext, light: DVec3) -> Channels {
         let spread = self.lobes.iter().filter(|member| member.which != LobeClass::Narrow);
         spread.fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.value(sighting, light))
     }
 
     /// Radiance towards the viewer for each unit of flux density, 1/sr, of all lobes but the narrow ones, where it is one
     /// for all light from above; none where it is not.
-    pub fn even_value(&self, sighting: &ShadingContext) -> Option<Channels> {
+    pub fn constant_value(&self, sighting: &ShadingContext) -> Option<Channels> {
         let mut spread = self.lobes.iter().filter(|member| member.which != LobeClass::Narrow);
         spread.try_fold(Channels::ZERO, |sum, Member { flags, lobe, .. }| {
             flags.has(Flags::EVEN).then(|| sum + lobe.value(sighting, DVec3::Z))
@@ -401,7 +401,7 @@ impl Bsdf {
     }
 
     /// Whether some lobe that carries rays on does so in more than single directions.
-    pub fn spreads(&self) -> bool {
+    pub fn continues_non_delta(&self) -> bool {
         self.spreads
     }
 
@@ -411,21 +411,21 @@ impl Bsdf {
     pub(super) fn add(&mut self, lobe: AnyLobe, carried: Interreflection) {
         let flags = lobe.flags();
         let which = match carried {
-            Interreflection::LeftOut => LobeClass::Ended,
-            Interreflection::Solved if flags.has(Flags::DIFFUSE) => LobeClass::Solved,
-            Interreflection::Solved => LobeClass::Ended,
+            Interreflection::LeftOut => LobeClass::LightsOnly,
+            Interreflection::Solved if flags.has(Flags::DIFFUSE) => LobeClass::Radiosity,
+            Interreflection::Solved => LobeClass::LightsOnly,
             Interreflection::Followed if flags.has(Flags::BROAD) => LobeClass::Broad,
             Interreflection::Followed => LobeClass::Narrow,
         };
         let is_black = flags.has(Flags::BLACK);
-        let is_continued = LobeClass::CONTINUED.contains(&which);
+        let is_continued = LobeClass::CONTINUING.contains(&which);
         self.spreads |= is_continued && !flags.has(Flags::DELTA) && !is_black;
         match which {
             _ if is_black => {}
             LobeClass::Narrow if flags.has(Flags::STRAIGHT) => self.passes = true,
             LobeClass::Narrow if flags.has(Flags::PANE) => (self.passes, self.throws) = (true, true),
             LobeClass::Narrow => self.throws = true,
-            LobeClass::Broad | LobeClass::Solved | LobeClass::Ended => self.takes = true,
+            LobeClass::Broad | LobeClass::Radiosity | LobeClass::LightsOnly => self.takes = true,
         }
         self.lobes.push(Member { which, flags, lobe });
     }
@@ -450,7 +450,7 @@ impl Bsdf {
         self.lobes.iter().map(|member| &member.lobe)
     }
 
-    fn of(&self, which: LobeClass) -> impl Iterator<Item = &AnyLobe> {
+    fn of_class(&self, which: LobeClass) -> impl Iterator<Item = &AnyLobe> {
         self.lobes.iter().filter(move |member| member.which == which).map(|member| &member.lobe)
     }
 
@@ -469,7 +469,7 @@ impl Bsdf {
 }
 
 /// The share in which a number falls, and where in it, 0..1.
-fn chosen(shares: &[f64], choice: f64) -> Option<(usize, f64)> {
+fn choose_share(shares: &[f64], choice: f64) -> Option<(usize, f64)> {
     let mut below = 0.0;
     let mut last = None;
     for (index, share) in shares.iter().enumerate().filter(|(_, share)| **share > 0.0) {

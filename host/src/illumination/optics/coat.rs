@@ -1,6 +1,6 @@
 //! A transparent coat on a diffuse ground: plastic, varnish, glaze.
 
-use super::diffuse::{cosine_density, cosine_sample};
+use super::diffuse::{cosine_pdf, cosine_sample};
 use super::lobe::{Flags, Lobe};
 use super::shade::PreparedPaint;
 use super::sighting::{BsdfSample, ShadingContext};
@@ -85,7 +85,7 @@ impl Lobe for CoatReflection {
     fn flags(&self) -> Flags {
         match &self.facets {
             None => Flags::DELTA,
-            Some(facets) => Flags::of_density(facets.sample_density(DVec3::Z, DVec3::Z)),
+            Some(facets) => Flags::of_pdf(facets.pdf(DVec3::Z, DVec3::Z)),
         }
     }
 
@@ -100,17 +100,17 @@ impl Lobe for CoatReflection {
         Channels::splat(self.reflected(half.dot(view)) * facets.density(light, view) / view.z)
     }
 
-    fn density(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
+    fn pdf(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
         match &self.facets {
-            Some(facets) if !sighting.is_behind(light) => facets.sample_density(sighting.view, light),
+            Some(facets) if !sighting.is_behind(light) => facets.pdf(sighting.view, light),
             _ => 0.0,
         }
     }
 
     fn sample(&self, sighting: &ShadingContext, _: f64, point: [f64; 2]) -> Option<BsdfSample> {
         match &self.facets {
-            Some(facets) => facets.sample(sighting.view, point).map(BsdfSample::spread),
-            None => self.mirrored(sighting)[0],
+            Some(facets) => facets.sample(sighting.view, point).map(BsdfSample::unweighted),
+            None => self.specular_samples(sighting)[0],
         }
     }
 
@@ -119,12 +119,12 @@ impl Lobe for CoatReflection {
         self.reflected(sighting.view.z).max(if self.facets.is_none() { 0.0 } else { 0.02 })
     }
 
-    fn mirrored(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
-        let mirrored = || BsdfSample::single(sighting.mirrored(), self.shown(sighting));
+    fn specular_samples(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
+        let mirrored = || BsdfSample::specular(sighting.mirror_direction(), self.glossy_albedo(sighting));
         [self.facets.is_none().then(mirrored), None]
     }
 
-    fn shown(&self, sighting: &ShadingContext) -> Channels {
+    fn glossy_albedo(&self, sighting: &ShadingContext) -> Channels {
         Channels::splat(self.reflected(sighting.view.z))
     }
 }
@@ -150,7 +150,7 @@ pub(super) struct CoatedDiffuse {
 #[derive(Clone, Debug)]
 enum Fraction {
     Known(SpectralTable),
-    Painted(PreparedPaint),
+    Textured(PreparedPaint),
 }
 
 impl CoatedDiffuse {
@@ -163,7 +163,7 @@ impl CoatedDiffuse {
             PreparedPaint::Plain(curve) => {
                 Fraction::Known(SpectralTable::each(combs, |comb| curve.of(comb).map(|k| series(k, mean, back))))
             }
-            painted => Fraction::Painted(painted.clone()),
+            painted => Fraction::Textured(painted.clone()),
         };
         CoatedDiffuse { coat, mean, back, fraction }
     }
@@ -171,7 +171,7 @@ impl CoatedDiffuse {
     fn fraction(&self, sighting: &ShadingContext) -> Channels {
         match &self.fraction {
             Fraction::Known(curve) => curve.of(sighting.comb),
-            Fraction::Painted(shade) => shade.of(sighting).map(|k| series(k, self.mean, self.back)),
+            Fraction::Textured(shade) => shade.of(sighting).map(|k| series(k, self.mean, self.back)),
         }
     }
 }
@@ -180,7 +180,7 @@ impl Lobe for CoatedDiffuse {
     fn flags(&self) -> Flags {
         let is_black = match &self.fraction {
             Fraction::Known(curve) => curve.max() <= 0.0,
-            Fraction::Painted(shade) => shade.is_black(),
+            Fraction::Textured(shade) => shade.is_black(),
         };
         Flags::BROAD | Flags::DIFFUSE | Flags::BLACK.when(is_black)
     }
@@ -192,8 +192,8 @@ impl Lobe for CoatedDiffuse {
         self.fraction(sighting) * (self.coat.through(light.z) * self.coat.through(sighting.view.z))
     }
 
-    fn density(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
-        cosine_density(sighting, light)
+    fn pdf(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
+        cosine_pdf(sighting, light)
     }
 
     fn sample(&self, _: &ShadingContext, _: f64, point: [f64; 2]) -> Option<BsdfSample> {
@@ -205,7 +205,7 @@ impl Lobe for CoatedDiffuse {
     }
 
     /// π D T̄² of the D without its two T.
-    fn diffuse(&self, sighting: &ShadingContext) -> Channels {
+    fn diffuse_albedo(&self, sighting: &ShadingContext) -> Channels {
         self.fraction(sighting) * (std::f64::consts::PI * self.mean * self.mean)
     }
 }

@@ -23,7 +23,7 @@ const DOUBT: f64 = 5.0;
 /// Bins of the chi-squared test: of the cosine from below to above, and of the azimuth.
 const BINS: [usize; 2] = [16, 12];
 /// The lanes of two patterns: of a lobe that varies.
-const PAINTED: [Channels; 2] = [Channels([0.25; crate::color::LANES]); 2];
+const TEXTURE_VALUES: [Channels; 2] = [Channels([0.25; crate::color::LANES]); 2];
 
 fn varying() -> NumberTexture {
     let paints = vec![Paint::grey(0.0), Paint::grey(1.0)];
@@ -84,21 +84,21 @@ fn lobes() -> Vec<AnyLobe> {
     let mut library = BsdfBuilder::new(&wavelengths, false);
     let mut all = Vec::new();
     for material in &materials {
-        all.extend(library.optics(material, Interreflection::Followed).expect("a material").lobes().cloned());
+        all.extend(library.bsdf(material, Interreflection::Followed).expect("a material").lobes().cloned());
     }
     all
 }
 
-fn sighting(degrees: f64, before: f64, behind: f64) -> ShadingContext<'static> {
+fn context(degrees: f64, before: f64, behind: f64) -> ShadingContext<'static> {
     let (sin, cos) = degrees.to_radians().sin_cos();
     let side = InterfaceIndices { before: Channels::splat(before), behind: Channels::splat(behind), inside: before > behind };
-    ShadingContext { view: DVec3::new(sin, 0.0, cos), comb: 0, side, lane: 0, painted: &PAINTED }
+    ShadingContext { view: DVec3::new(sin, 0.0, cos), comb: 0, side, lane: 0, painted: &TEXTURE_VALUES }
 }
 
 /// From outside and from inside, steeply and at a flat angle.
-fn sightings() -> impl Iterator<Item = ShadingContext<'static>> {
+fn contexts() -> impl Iterator<Item = ShadingContext<'static>> {
     [[1.0, 1.5], [1.5, 1.0]].into_iter().flat_map(|[before, behind]| {
-        [15.0, 50.0, 80.0].into_iter().map(move |degrees| sighting(degrees, before, behind))
+        [15.0, 50.0, 80.0].into_iter().map(move |degrees| context(degrees, before, behind))
     })
 }
 
@@ -174,9 +174,9 @@ fn deviations(
 fn samples_are_drawn_as_densities_say() {
     let spread: Vec<AnyLobe> = lobes().into_iter().filter(|lobe| !lobe.flags().has(Flags::DELTA)).collect();
     spread.par_iter().for_each(|lobe| {
-        for sighting in sightings() {
+        for sighting in contexts() {
             let drawn = |stream: &mut RandomStream| lobe.sample(&sighting, stream.uniform(), stream.point());
-            let found = deviations(|stream| Some(drawn(stream)?.light), |light| lobe.density(&sighting, light));
+            let found = deviations(|stream| Some(drawn(stream)?.light), |light| lobe.pdf(&sighting, light));
             assert!(found.clone().is_ok_and(|d| d < DOUBT), "{} at {}: {found:?}", lobe.kind(), sighting.view);
         }
     });
@@ -188,12 +188,12 @@ fn samples_of_a_tenth_more_roughness_are_told_apart() {
         let finish = Finish::Rough { name: "GGX".into(), roughness: roughness.into() };
         let shipped::ComplexIndex { n, k } = shipped::metal("copper").expect("a metal");
         let material = MaterialKind::Metal(Metal { n, k, finish }).into();
-        let optics = BsdfBuilder::new(&WavelengthSets::bands(), false).optics(&material, Interreflection::Followed);
+        let optics = BsdfBuilder::new(&WavelengthSets::bands(), false).bsdf(&material, Interreflection::Followed);
         optics.expect("a material").lobes().next().expect("a lobe").clone()
     };
-    let (one, other, sighting) = (metal(0.3), metal(0.33), sighting(50.0, 1.0, 1.5));
+    let (one, other, sighting) = (metal(0.3), metal(0.33), context(50.0, 1.0, 1.5));
     let drawn = |stream: &mut RandomStream| Some(one.sample(&sighting, stream.uniform(), stream.point())?.light);
-    let found = deviations(drawn, |light| other.density(&sighting, light));
+    let found = deviations(drawn, |light| other.pdf(&sighting, light));
     assert!(found.clone().is_ok_and(|d| d > DOUBT), "{found:?}");
 }
 
@@ -201,7 +201,7 @@ fn samples_of_a_tenth_more_roughness_are_told_apart() {
 fn light_goes_to_and_fro_alike() {
     let mut stream = RandomStream::new(3, 5);
     for lobe in lobes().iter().filter(|lobe| !NOT_PHYSICAL.contains(&lobe.kind())) {
-        for sighting in sightings() {
+        for sighting in contexts() {
             for _ in 0..40 {
                 let [x, y] = stream.point();
                 let light = direction(2.0 * x - 1.0, y);
@@ -230,12 +230,12 @@ fn light_goes_to_and_fro_alike() {
 fn no_lobe_sends_more_light_than_comes_and_its_strength_is_about_that() {
     let all = lobes();
     all.par_iter().filter(|lobe| !NOT_PHYSICAL.contains(&lobe.kind())).for_each(|lobe| {
-        for sighting in sightings() {
+        for sighting in contexts() {
             let InterfaceIndices { before, behind, .. } = sighting.side;
             let gained = (behind.0[0] / before.0[0]).powi(2);
             let spread =
                 |cosines| over(cosines, [0.0, 1.0], 4_000, |light| lobe.value(&sighting, light).0[0] * light.z.abs());
-            let mirrored = lobe.mirrored(&sighting).into_iter().flatten();
+            let mirrored = lobe.specular_samples(&sighting).into_iter().flatten();
             let mirrored =
                 mirrored.map(|o| o.weight.0[0] * if o.light.z < 0.0 && !o.is_straight { gained } else { 1.0 });
             let sent = spread([0.0, 1.0]) + spread([-1.0, 0.0]) * gained + mirrored.sum::<f64>();
@@ -252,22 +252,22 @@ fn flags_tell_what_lobes_do() {
         let (flags, kind) = (lobe.flags(), lobe.kind());
         assert!(!flags.has(Flags::BLACK), "{kind}");
         assert!(!flags.has(Flags::DELTA | Flags::BROAD), "{kind}: single directions are no broad ones");
-        for sighting in sightings() {
+        for sighting in contexts() {
             let lights = [0; 20].map(|_| stream.point()).map(|[x, y]| direction(2.0 * x - 1.0, y));
             let onward = lobe.sample(&sighting, stream.uniform(), stream.point());
             if flags.has(Flags::DELTA) {
                 let is_nothing =
-                    |l: &DVec3| lobe.value(&sighting, *l).max() == 0.0 && lobe.density(&sighting, *l) == 0.0;
+                    |l: &DVec3| lobe.value(&sighting, *l).max() == 0.0 && lobe.pdf(&sighting, *l) == 0.0;
                 assert!(lights.iter().all(is_nothing), "{kind}");
                 assert!(onward.is_none_or(|onward| onward.density.is_none()), "{kind}");
             } else {
-                assert!(lobe.mirrored(&sighting).iter().all(Option::is_none), "{kind}");
+                assert!(lobe.specular_samples(&sighting).iter().all(Option::is_none), "{kind}");
                 assert!(onward.is_none_or(|onward| onward.density.is_some()), "{kind}");
             }
             let above = lights.map(|light| DVec3::new(light.x, light.y, light.z.abs()));
             let values = above.map(|light| lobe.value(&sighting, light).0[0]);
             assert!(!flags.has(Flags::EVEN) || values.iter().all(|value| *value == values[0]), "{kind}");
-            assert!(!flags.has(Flags::DIFFUSE) || lobe.diffuse(&sighting).max() > 0.0, "{kind}");
+            assert!(!flags.has(Flags::DIFFUSE) || lobe.diffuse_albedo(&sighting).max() > 0.0, "{kind}");
             assert!(!flags.has(Flags::STRAIGHT) || onward.is_some_and(|onward| onward.is_straight), "{kind}");
         }
     }

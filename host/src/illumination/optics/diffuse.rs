@@ -14,12 +14,12 @@ pub(super) struct DiffuseLobe(pub(super) PreparedPaint);
 
 /// A direction of light in proportion to its cosine.
 pub(super) fn cosine_sample(point: [f64; 2]) -> Option<BsdfSample> {
-    Some(cosine_hemisphere(point, DVec3::Z)).filter(|light| light.z > 0.0).map(BsdfSample::spread)
+    Some(cosine_hemisphere(point, DVec3::Z)).filter(|light| light.z > 0.0).map(BsdfSample::unweighted)
 }
 
 /// The density of [`cosine_sample`], 1/sr.
 #[inline]
-pub(super) fn cosine_density(sighting: &ShadingContext, light: DVec3) -> f64 {
+pub(super) fn cosine_pdf(sighting: &ShadingContext, light: DVec3) -> f64 {
     if sighting.is_behind(light) { 0.0 } else { light.z * FRAC_1_PI }
 }
 
@@ -34,8 +34,8 @@ impl Lobe for DiffuseLobe {
     }
 
     #[inline]
-    fn density(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
-        cosine_density(sighting, light)
+    fn pdf(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
+        cosine_pdf(sighting, light)
     }
 
     fn sample(&self, _: &ShadingContext, _: f64, point: [f64; 2]) -> Option<BsdfSample> {
@@ -47,7 +47,7 @@ impl Lobe for DiffuseLobe {
         self.0.of(sighting).max()
     }
 
-    fn diffuse(&self, sighting: &ShadingContext) -> Channels {
+    fn diffuse_albedo(&self, sighting: &ShadingContext) -> Channels {
         self.0.of(sighting)
     }
 }

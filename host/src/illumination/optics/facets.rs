@@ -17,16 +17,16 @@ const PARTS: usize = 8;
 #[derive(Clone, Debug)]
 pub(super) enum FacetDistribution {
     /// Reflects once.
-    Once(Arc<dyn Distribution>),
+    SingleScattering(Arc<dyn Distribution>),
     /// With all reflections between facets.
-    All(Arc<Compensated>),
+    MultipleScattering(Arc<Compensated>),
 }
 
 impl FacetDistribution {
     fn as_distribution(&self) -> &dyn Distribution {
         match self {
-            FacetDistribution::Once(distribution) => distribution.as_ref(),
-            FacetDistribution::All(compensated) => compensated.as_ref(),
+            FacetDistribution::SingleScattering(distribution) => distribution.as_ref(),
+            FacetDistribution::MultipleScattering(compensated) => compensated.as_ref(),
         }
     }
 }
@@ -50,8 +50,8 @@ impl RoughConductor {
     /// - `conductors`: for each comb, lane by lane.
     pub(super) fn new(shape: FacetDistribution, conductors: Arc<Vec<[Conductor; LANES]>>) -> RoughConductor {
         let further = match &shape {
-            FacetDistribution::Once(_) => Vec::new(),
-            FacetDistribution::All(compensated) => {
+            FacetDistribution::SingleScattering(_) => Vec::new(),
+            FacetDistribution::MultipleScattering(compensated) => {
                 let left = 1.0 - compensated.mean_lost();
                 let factor = |mean: f64| mean * mean * left / (1.0 - mean * (1.0 - left));
                 conductors
@@ -66,7 +66,7 @@ impl RoughConductor {
 
 impl Lobe for RoughConductor {
     fn flags(&self) -> Flags {
-        Flags::of_density(self.shape.as_distribution().sample_density(DVec3::Z, DVec3::Z))
+        Flags::of_pdf(self.shape.as_distribution().pdf(DVec3::Z, DVec3::Z))
     }
 
     /// D K / (N·V), 1/sr, for light above the horizon.
@@ -79,23 +79,23 @@ impl Lobe for RoughConductor {
         let Some(half) = (light + view).try_normalize() else { return Channels::ZERO };
         let first = reflectance(&self.conductors[comb], half.dot(view));
         match &self.shape {
-            FacetDistribution::Once(distribution) => first * (distribution.density(light, view) / view.z),
-            FacetDistribution::All(compensated) => {
+            FacetDistribution::SingleScattering(distribution) => first * (distribution.density(light, view) / view.z),
+            FacetDistribution::MultipleScattering(compensated) => {
                 let [once, further] = compensated.parts(light, view);
                 first * (once / view.z) + self.further[comb] * (further / view.z)
             }
         }
     }
 
-    fn density(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
+    fn pdf(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
         match sighting.is_behind(light) {
             true => 0.0,
-            false => self.shape.as_distribution().sample_density(sighting.view, light),
+            false => self.shape.as_distribution().pdf(sighting.view, light),
         }
     }
 
     fn sample(&self, sighting: &ShadingContext, _: f64, point: [f64; 2]) -> Option<BsdfSample> {
-        self.shape.as_distribution().sample(sighting.view, point).map(BsdfSample::spread)
+        self.shape.as_distribution().sample(sighting.view, point).map(BsdfSample::unweighted)
     }
 
     fn strength(&self, _: &ShadingContext) -> f64 {
@@ -103,7 +103,7 @@ impl Lobe for RoughConductor {
     }
 
     /// Fresnel's term of a facet that faces halfway.
-    fn shown(&self, sighting: &ShadingContext) -> Channels {
+    fn glossy_albedo(&self, sighting: &ShadingContext) -> Channels {
         reflectance(&self.conductors[sighting.comb.min(self.conductors.len() - 1)], sighting.view.z)
     }
 }

@@ -56,7 +56,7 @@ pub(super) fn reflected(sighting: &ShadingContext, cosine: f64) -> Channels {
 }
 
 /// By how much radiance falls as it leaves what is behind: it grows by the square of the index on its way in.
-fn thinned(sighting: &ShadingContext) -> Channels {
+fn radiance_scale(sighting: &ShadingContext) -> Channels {
     let side = &sighting.side;
     by_lane(sighting, |lane| (side.before.0[lane] / side.behind.0[lane]).powi(2))
 }
@@ -70,13 +70,13 @@ impl Lobe for SmoothDielectric {
         Channels::ZERO
     }
 
-    fn density(&self, _: &ShadingContext, _: DVec3) -> f64 {
+    fn pdf(&self, _: &ShadingContext, _: DVec3) -> f64 {
         0.0
     }
 
     /// One of the two, by its part.
     fn sample(&self, sighting: &ShadingContext, choice: f64, _: [f64; 2]) -> Option<BsdfSample> {
-        let [reflection, refraction] = self.mirrored(sighting);
+        let [reflection, refraction] = self.specular_samples(sighting);
         let (Some(reflection), Some(refraction)) = (reflection, refraction) else { return reflection.or(refraction) };
         let least = reflection.weight.0.into_iter().fold(1.0, f64::min);
         let chance = chance_of(reflection.weight.max(), 1.0 - least);
@@ -92,24 +92,24 @@ impl Lobe for SmoothDielectric {
     }
 
     /// What is reflected and what comes through.
-    fn mirrored(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
+    fn specular_samples(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
         let view = sighting.view;
         let fraction = reflected(sighting, view.z);
-        let reflection = BsdfSample::single(DVec3::new(-view.x, -view.y, view.z), fraction);
+        let reflection = BsdfSample::specular(DVec3::new(-view.x, -view.y, view.z), fraction);
         let through = by_lane(sighting, |lane| {
             interface(sighting, lane).map_or(0.0, |surface| surface.transmittance(view.z).mean())
         });
         let refracted = interface(sighting, sighting.lane).and_then(|surface| surface.refracted(view, DVec3::Z));
         let refraction =
-            refracted.filter(|light| light.z < 0.0).map(|light| BsdfSample::single(light, through * thinned(sighting)));
+            refracted.filter(|light| light.z < 0.0).map(|light| BsdfSample::specular(light, through * radiance_scale(sighting)));
         [Some(reflection).filter(|onward| onward.weight.max() > 0.0), refraction.filter(|o| o.weight.max() > 0.0)]
     }
 
-    fn shown(&self, sighting: &ShadingContext) -> Channels {
+    fn glossy_albedo(&self, sighting: &ShadingContext) -> Channels {
         reflected(sighting, sighting.view.z)
     }
 
-    fn cleared(&self, sighting: &ShadingContext) -> Channels {
+    fn clear_transmittance(&self, sighting: &ShadingContext) -> Channels {
         Channels::ONE - reflected(sighting, sighting.view.z)
     }
 }
@@ -152,10 +152,10 @@ impl RoughDielectric {
 impl Lobe for RoughDielectric {
     fn flags(&self) -> Flags {
         // Of facets that all are seen, a quarter of the density of their normals.
-        Flags::of_density(0.25 * self.facets.area(DVec3::Z, self.roughness))
+        Flags::of_pdf(0.25 * self.facets.area(DVec3::Z, self.roughness))
     }
 
-    fn density(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
+    fn pdf(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
         let view = sighting.view;
         if view.z <= 0.0 || light.z == 0.0 {
             return 0.0;
@@ -219,14 +219,14 @@ impl Lobe for RoughDielectric {
         } else {
             interface(sighting, sighting.lane)?.refracted(view, facet).filter(|light| light.z < 0.0)
         };
-        light.map(BsdfSample::spread)
+        light.map(BsdfSample::unweighted)
     }
 
     fn strength(&self, _: &ShadingContext) -> f64 {
         1.0
     }
 
-    fn shown(&self, sighting: &ShadingContext) -> Channels {
+    fn glossy_albedo(&self, sighting: &ShadingContext) -> Channels {
         reflected(sighting, sighting.view.z)
     }
 }

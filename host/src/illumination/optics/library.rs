@@ -48,7 +48,7 @@ impl<'a> BsdfBuilder<'a> {
     ///
     /// # Errors
     /// [`MaterialError`].
-    pub fn optics(&mut self, material: &Material, diffuse: Interreflection) -> Result<Bsdf, MaterialError> {
+    pub fn bsdf(&mut self, material: &Material, diffuse: Interreflection) -> Result<Bsdf, MaterialError> {
         material.check()?;
         let emission = (!material.emission.is_black()).then(|| self.wavelengths.light(&material.emission));
         let black = PreparedPaint::Plain(self.wavelengths.constant(0.0));
@@ -56,13 +56,13 @@ impl<'a> BsdfBuilder<'a> {
         match &material.body {
             MaterialKind::Classic(classic) => self.classic(classic, diffuse, &mut optics)?,
             MaterialKind::Shaped(Distributed { reflectance, form }) => {
-                let fraction = self.shade(reflectance, &mut optics);
+                let fraction = self.prepared_paint(reflectance, &mut optics);
                 optics.ambient = Some(fraction.clone());
                 let lobe = match form {
                     DistributionForm::Member { name, roughness } => self.rough(roughness, &mut optics, |library, m| {
-                        let distribution: Arc<dyn Distribution> = match library.shape(name, m)? {
-                            FacetDistribution::Once(distribution) => distribution,
-                            FacetDistribution::All(compensated) => compensated,
+                        let distribution: Arc<dyn Distribution> = match library.facet_distribution(name, m)? {
+                            FacetDistribution::SingleScattering(distribution) => distribution,
+                            FacetDistribution::MultipleScattering(compensated) => compensated,
                         };
                         Ok(AnyLobe::Shaped(ShapedLobe { fraction: fraction.clone(), form: distribution }))
                     })?,
@@ -85,22 +85,22 @@ impl<'a> BsdfBuilder<'a> {
         carried: Interreflection,
         optics: &mut Bsdf,
     ) -> Result<(), MaterialError> {
-        if let Some(shade) = self.needed(&classic.diffuse, optics) {
+        if let Some(shade) = self.needed_paint(&classic.diffuse, optics) {
             optics.ambient = Some(shade.clone());
             optics.add(AnyLobe::Diffuse(DiffuseLobe(shade)), carried);
         }
-        if let Some(shade) = self.needed(&classic.specular, optics) {
+        if let Some(shade) = self.needed_paint(&classic.specular, optics) {
             let made = |_: &mut BsdfBuilder<'a>, n| {
                 Ok(AnyLobe::Phong(ShapedLobe { fraction: shade.clone(), form: Phong::new(n)? }))
             };
             let lobe = self.varied(&classic.exponent, 1.0, optics, made)?;
             optics.add(lobe, carried);
         }
-        if let Some(shade) = self.needed(&classic.mirror, optics) {
+        if let Some(shade) = self.needed_paint(&classic.mirror, optics) {
             optics.add(AnyLobe::Mirror(MirrorLobe(shade)), Interreflection::Followed);
         }
-        if let Some(shade) = self.needed(&classic.transparency, optics) {
-            optics.passing = Some(StraightTransmission::Shade(shade.clone()));
+        if let Some(shade) = self.needed_paint(&classic.transparency, optics) {
+            optics.passing = Some(StraightTransmission::Paint(shade.clone()));
             optics.add(AnyLobe::Straight(StraightLobe(shade)), Interreflection::Followed);
         }
         Ok(())
@@ -118,11 +118,11 @@ impl<'a> BsdfBuilder<'a> {
             }
             Ok(lanes)
         };
-        let conductors = Arc::new((0..self.wavelengths.combs()).map(lanes).collect::<Result<Vec<_>, _>>()?);
+        let conductors = Arc::new((0..self.wavelengths.count()).map(lanes).collect::<Result<Vec<_>, _>>()?);
         let lobe = match finish {
             Finish::Polished => AnyLobe::Polished(SmoothConductor { conductors }),
             Finish::Rough { name, roughness } => self.rough(roughness, optics, |library, m| {
-                Ok(AnyLobe::Metallic(RoughConductor::new(library.shape(name, m)?, conductors.clone())))
+                Ok(AnyLobe::Metallic(RoughConductor::new(library.facet_distribution(name, m)?, conductors.clone())))
             })?,
             Finish::Brushed { roughness: [along, across], along: direction } => {
                 optics.along = Some(*direction);
@@ -132,7 +132,7 @@ impl<'a> BsdfBuilder<'a> {
                 self.rough(along, optics, |_, along| {
                     let brushed = |across: f64| -> Result<AnyLobe, MaterialError> {
                         let form = Arc::new(Microfacet::new(SlopeDistribution::Beckmann, DVec2::new(along, across))?);
-                        Ok(AnyLobe::Metallic(RoughConductor::new(FacetDistribution::Once(form), conductors.clone())))
+                        Ok(AnyLobe::Metallic(RoughConductor::new(FacetDistribution::SingleScattering(form), conductors.clone())))
                     };
                     match (across_at, across) {
                         (None, across) => brushed(across.mean()),
@@ -168,8 +168,8 @@ impl<'a> BsdfBuilder<'a> {
         let Coated { diffuse, index, roughness } = coated;
         let coat = self.rough(roughness, optics, |library, m| Ok(AnyLobe::Coat(library.coat(*index, m)?)))?;
         optics.add(coat, Interreflection::Followed);
-        if let Some(shade) = self.needed(diffuse, optics) {
-            let combs = self.wavelengths.combs();
+        if let Some(shade) = self.needed_paint(diffuse, optics) {
+            let combs = self.wavelengths.count();
             let ground = self.rough(roughness, optics, |library, m| {
                 Ok(AnyLobe::Ground(CoatedDiffuse::new(library.coat(*index, m)?, *index, &shade, combs)))
             })?;
@@ -196,7 +196,7 @@ impl<'a> BsdfBuilder<'a> {
                 priority: principled.priority,
             });
         }
-        let colors = [&principled.base_color, &principled.sheen].map(|paint| self.shade(paint, optics));
+        let colors = [&principled.base_color, &principled.sheen].map(|paint| self.prepared_paint(paint, optics));
         let Principled { metallic, specular, transmission, coat, sheen_roughness, .. } = principled;
         let numbers = [metallic, specular, transmission, coat, sheen_roughness].map(|number| optics.quantity(number));
         // Facets of the slope m, the square of the roughness; what varies has a row of them.
@@ -287,35 +287,35 @@ impl<'a> BsdfBuilder<'a> {
     }
 
     /// A fraction of light; its pattern goes to the others of the material.
-    fn shade(&self, paint: &Paint, optics: &mut Bsdf) -> PreparedPaint {
+    fn prepared_paint(&self, paint: &Paint, optics: &mut Bsdf) -> PreparedPaint {
         match paint {
             Paint::Plain(color) => PreparedPaint::Plain(self.wavelengths.reflectance(color)),
             Paint::Pattern(pattern) => {
                 optics.patterns.push(PreparedTexture::Paint(PreparedPattern::new(pattern, self.wavelengths)));
-                PreparedPaint::Painted(optics.patterns.len() - 1)
+                PreparedPaint::Textured(optics.patterns.len() - 1)
             }
         }
     }
 
     /// A fraction of light; none if it is 0 and may be left out.
-    fn needed(&self, paint: &Paint, optics: &mut Bsdf) -> Option<PreparedPaint> {
+    fn needed_paint(&self, paint: &Paint, optics: &mut Bsdf) -> Option<PreparedPaint> {
         match paint {
             Paint::Plain(color) if !self.everything && self.wavelengths.reflectance(color).max() <= 0.0 => None,
             Paint::Pattern(_) if !self.everything && paint.is_black() => None,
-            _ => Some(self.shade(paint, optics)),
+            _ => Some(self.prepared_paint(paint, optics)),
         }
     }
 
     /// A member of the family.
-    fn shape(&mut self, name: &str, roughness: f64) -> Result<FacetDistribution, MaterialError> {
+    fn facet_distribution(&mut self, name: &str, roughness: f64) -> Result<FacetDistribution, MaterialError> {
         if let Some((.., shape)) = self.forms.iter().find(|(n, m, _)| n == name && *m == roughness) {
             return Ok(shape.clone());
         }
-        let all = |facets: SlopeDistribution| Ok::<_, MaterialError>(FacetDistribution::All(Arc::new(Compensated::new(facets, roughness)?)));
+        let all = |facets: SlopeDistribution| Ok::<_, MaterialError>(FacetDistribution::MultipleScattering(Arc::new(Compensated::new(facets, roughness)?)));
         let shape = match FAMILY.iter().find(|row| row.name == name) {
             Some(row) if row.name == "Beckmann, all" => all(SlopeDistribution::Beckmann)?,
             Some(row) if row.name == "GGX, all" => all(SlopeDistribution::Ggx)?,
-            Some(row) => FacetDistribution::Once(Arc::from((row.make)(roughness)?)),
+            Some(row) => FacetDistribution::SingleScattering(Arc::from((row.make)(roughness)?)),
             None => return Err(MaterialError::Unknown { name: name.into(), advice: String::new() }),
         };
         self.forms.push((name.into(), roughness, shape.clone()));

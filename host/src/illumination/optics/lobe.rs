@@ -44,7 +44,7 @@ impl Flags {
     }
 
     /// Of a lobe that is drawn with a density from straight above, 1/sr, whether it is broad.
-    pub(super) fn of_density(density: f64) -> Flags {
+    pub(super) fn of_pdf(density: f64) -> Flags {
         Flags::BROAD.when(density < NARROW)
     }
 }
@@ -66,7 +66,7 @@ pub(super) trait Lobe {
     fn value(&self, sighting: &ShadingContext, light: DVec3) -> Channels;
 
     /// The density of its samples, 1/sr.
-    fn density(&self, sighting: &ShadingContext, light: DVec3) -> f64;
+    fn pdf(&self, sighting: &ShadingContext, light: DVec3) -> f64;
 
     /// Draws a direction to light; its weight is right for single directions only, the others have a density.
     ///
@@ -77,23 +77,23 @@ pub(super) trait Lobe {
     fn strength(&self, sighting: &ShadingContext) -> f64;
 
     /// Its single directions.
-    fn mirrored(&self, _: &ShadingContext) -> [Option<BsdfSample>; 2] {
+    fn specular_samples(&self, _: &ShadingContext) -> [Option<BsdfSample>; 2] {
         [None, None]
     }
 
     /// The part of light from all around that it reflects alike to everywhere.
-    fn diffuse(&self, _: &ShadingContext) -> Channels {
+    fn diffuse_albedo(&self, _: &ShadingContext) -> Channels {
         Channels::ZERO
     }
 
     /// About the part of light from all around that it reflects to the viewer, where it is one that shows what is around;
     /// nothing of others.
-    fn shown(&self, _: &ShadingContext) -> Channels {
+    fn glossy_albedo(&self, _: &ShadingContext) -> Channels {
         Channels::ZERO
     }
 
     /// The part of light that goes through a polished interface.
-    fn cleared(&self, _: &ShadingContext) -> Channels {
+    fn clear_transmittance(&self, _: &ShadingContext) -> Channels {
         Channels::ZERO
     }
 }

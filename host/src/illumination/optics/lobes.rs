@@ -52,8 +52,8 @@ macro_rules! lobes {
             }
 
             #[inline]
-            fn density(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
-                match self { $(AnyLobe::$kind(lobe) => lobe.density(sighting, light),)* }
+            fn pdf(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
+                match self { $(AnyLobe::$kind(lobe) => lobe.pdf(sighting, light),)* }
             }
 
             #[inline]
@@ -67,23 +67,23 @@ macro_rules! lobes {
             }
 
             #[inline]
-            fn mirrored(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
-                match self { $(AnyLobe::$kind(lobe) => lobe.mirrored(sighting),)* }
+            fn specular_samples(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
+                match self { $(AnyLobe::$kind(lobe) => lobe.specular_samples(sighting),)* }
             }
 
             #[inline]
-            fn diffuse(&self, sighting: &ShadingContext) -> Channels {
-                match self { $(AnyLobe::$kind(lobe) => lobe.diffuse(sighting),)* }
+            fn diffuse_albedo(&self, sighting: &ShadingContext) -> Channels {
+                match self { $(AnyLobe::$kind(lobe) => lobe.diffuse_albedo(sighting),)* }
             }
 
             #[inline]
-            fn shown(&self, sighting: &ShadingContext) -> Channels {
-                match self { $(AnyLobe::$kind(lobe) => lobe.shown(sighting),)* }
+            fn glossy_albedo(&self, sighting: &ShadingContext) -> Channels {
+                match self { $(AnyLobe::$kind(lobe) => lobe.glossy_albedo(sighting),)* }
             }
 
             #[inline]
-            fn cleared(&self, sighting: &ShadingContext) -> Channels {
-                match self { $(AnyLobe::$kind(lobe) => lobe.cleared(sighting),)* }
+            fn clear_transmittance(&self, sighting: &ShadingContext) -> Channels {
+                match self { $(AnyLobe::$kind(lobe) => lobe.clear_transmittance(sighting),)* }
             }
         }
     };

@@ -19,12 +19,12 @@ impl Lobe for MirrorLobe {
         Channels::ZERO
     }
 
-    fn density(&self, _: &ShadingContext, _: DVec3) -> f64 {
+    fn pdf(&self, _: &ShadingContext, _: DVec3) -> f64 {
         0.0
     }
 
     fn sample(&self, sighting: &ShadingContext, _: f64, _: [f64; 2]) -> Option<BsdfSample> {
-        self.mirrored(sighting)[0]
+        self.specular_samples(sighting)[0]
     }
 
     #[inline]
@@ -32,11 +32,11 @@ impl Lobe for MirrorLobe {
         self.0.of(sighting).max()
     }
 
-    fn mirrored(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
-        [Some(BsdfSample::single(sighting.mirrored(), self.0.of(sighting))), None]
+    fn specular_samples(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
+        [Some(BsdfSample::specular(sighting.mirror_direction(), self.0.of(sighting))), None]
     }
 
-    fn shown(&self, sighting: &ShadingContext) -> Channels {
+    fn glossy_albedo(&self, sighting: &ShadingContext) -> Channels {
         self.0.of(sighting)
     }
 }

@@ -28,23 +28,23 @@ impl Lobe for SmoothConductor {
         Channels::ZERO
     }
 
-    fn density(&self, _: &ShadingContext, _: DVec3) -> f64 {
+    fn pdf(&self, _: &ShadingContext, _: DVec3) -> f64 {
         0.0
     }
 
     fn sample(&self, sighting: &ShadingContext, _: f64, _: [f64; 2]) -> Option<BsdfSample> {
-        self.mirrored(sighting)[0]
+        self.specular_samples(sighting)[0]
     }
 
     fn strength(&self, _: &ShadingContext) -> f64 {
         1.0
     }
 
-    fn mirrored(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
-        [Some(BsdfSample::single(sighting.mirrored(), self.shown(sighting))), None]
+    fn specular_samples(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
+        [Some(BsdfSample::specular(sighting.mirror_direction(), self.glossy_albedo(sighting))), None]
     }
 
-    fn shown(&self, sighting: &ShadingContext) -> Channels {
+    fn glossy_albedo(&self, sighting: &ShadingContext) -> Channels {
         reflectance(&self.conductors[sighting.comb.min(self.conductors.len() - 1)], sighting.view.z)
     }
 }

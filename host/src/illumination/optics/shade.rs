@@ -10,7 +10,7 @@ pub(super) enum PreparedPaint {
     /// One curve, everywhere.
     Plain(SpectralTable),
     /// What the pattern of a number gives at the place that is looked at.
-    Painted(usize),
+    Textured(usize),
 }
 
 /// A number, ready.
@@ -109,7 +109,7 @@ impl PreparedPaint {
     pub(super) fn of(&self, sighting: &ShadingContext<'_>) -> Channels {
         match self {
             PreparedPaint::Plain(curve) => curve.of(sighting.comb),
-            PreparedPaint::Painted(number) => sighting.painted.get(*number).copied().unwrap_or_default(),
+            PreparedPaint::Textured(number) => sighting.painted.get(*number).copied().unwrap_or_default(),
         }
     }
 }

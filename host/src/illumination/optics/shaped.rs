@@ -37,8 +37,8 @@ impl HasDistribution for Arc<dyn Distribution> {
 
 impl<D: HasDistribution> Lobe for DistributedLobe<D> {
     fn flags(&self) -> Flags {
-        let density = self.form.distribution().sample_density(DVec3::Z, DVec3::Z);
-        Flags::of_density(density) | Flags::BLACK.when(self.fraction.is_black())
+        let density = self.form.distribution().pdf(DVec3::Z, DVec3::Z);
+        Flags::of_pdf(density) | Flags::BLACK.when(self.fraction.is_black())
     }
 
     #[inline]
@@ -51,12 +51,12 @@ impl<D: HasDistribution> Lobe for DistributedLobe<D> {
     }
 
     #[inline]
-    fn density(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
-        if sighting.is_behind(light) { 0.0 } else { self.form.distribution().sample_density(sighting.view, light) }
+    fn pdf(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
+        if sighting.is_behind(light) { 0.0 } else { self.form.distribution().pdf(sighting.view, light) }
     }
 
     fn sample(&self, sighting: &ShadingContext, _: f64, point: [f64; 2]) -> Option<BsdfSample> {
-        self.form.distribution().sample(sighting.view, point).map(BsdfSample::spread)
+        self.form.distribution().sample(sighting.view, point).map(BsdfSample::unweighted)
     }
 
     #[inline]

@@ -36,7 +36,7 @@ pub struct ShadingContext<'a> {
 
 impl ShadingContext<'_> {
     /// The direction in which a mirror would see.
-    pub(super) fn mirrored(&self) -> DVec3 {
+    pub(super) fn mirror_direction(&self) -> DVec3 {
         DVec3::new(-self.view.x, -self.view.y, self.view.z)
     }
 
@@ -64,12 +64,12 @@ pub struct BsdfSample {
 
 impl BsdfSample {
     /// The one direction of a mirror or a smooth interface.
-    pub(super) fn single(light: DVec3, weight: Channels) -> BsdfSample {
+    pub(super) fn specular(light: DVec3, weight: Channels) -> BsdfSample {
         BsdfSample { light, weight, density: None, is_straight: false, is_broad: false }
     }
 
     /// A direction of many: its weight is found when all lobes that could have drawn it were asked.
-    pub(super) fn spread(light: DVec3) -> BsdfSample {
+    pub(super) fn unweighted(light: DVec3) -> BsdfSample {
         BsdfSample { light, weight: Channels::ZERO, density: Some(0.0), is_straight: false, is_broad: true }
     }
 }

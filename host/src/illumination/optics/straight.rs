@@ -19,12 +19,12 @@ impl Lobe for StraightLobe {
         Channels::ZERO
     }
 
-    fn density(&self, _: &ShadingContext, _: DVec3) -> f64 {
+    fn pdf(&self, _: &ShadingContext, _: DVec3) -> f64 {
         0.0
     }
 
     fn sample(&self, sighting: &ShadingContext, _: f64, _: [f64; 2]) -> Option<BsdfSample> {
-        self.mirrored(sighting)[0]
+        self.specular_samples(sighting)[0]
     }
 
     #[inline]
@@ -32,7 +32,7 @@ impl Lobe for StraightLobe {
         self.0.of(sighting).max()
     }
 
-    fn mirrored(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
-        [Some(BsdfSample { is_straight: true, ..BsdfSample::single(-sighting.view, self.0.of(sighting)) }), None]
+    fn specular_samples(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
+        [Some(BsdfSample { is_straight: true, ..BsdfSample::specular(-sighting.view, self.0.of(sighting)) }), None]
     }
 }

@@ -12,11 +12,11 @@ use std::f64::consts::{PI, TAU};
 
 fn ready(material: &Material, wavelengths: &WavelengthSets) -> Bsdf {
     BsdfBuilder::new(wavelengths, false)
-        .optics(material, Interreflection::Followed)
+        .bsdf(material, Interreflection::Followed)
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn sighting(degrees: f64, before: f64, behind: f64) -> ShadingContext<'static> {
+fn context(degrees: f64, before: f64, behind: f64) -> ShadingContext<'static> {
     let (sin, cos) = degrees.to_radians().sin_cos();
     let side = InterfaceIndices { before: Channels::splat(before), behind: Channels::splat(behind), inside: before > behind };
     ShadingContext { view: DVec3::new(sin, 0.0, cos), comb: 0, side, lane: 0, painted: &[] }
@@ -33,10 +33,10 @@ fn rough(name: &str, roughness: f64) -> Finish {
 
 /// Light that comes to the viewer of a radiance of 1 from everywhere, by samples that are spread evenly.
 fn furnace(optics: &Bsdf, sighting: &ShadingContext) -> f64 {
-    let mirrored: f64 = optics.mirrored(sighting).map(|onward| onward.weight.0[0]).sum();
+    let mirrored: f64 = optics.specular_samples(sighting).map(|onward| onward.weight.0[0]).sum();
     let spread = |choice: f64| {
         let drawn =
-            |point| optics.onward(sighting, choice, point, LobeSelection::Spread).map_or(0.0, |onward| onward.weight.0[0]);
+            |point| optics.sample(sighting, choice, point, LobeSelection::NonDelta).map_or(0.0, |onward| onward.weight.0[0]);
         unit_square(drawn, 1e-4, 20_000).value
     };
     // Lobes are chosen by the first number; it is averaged over evenly.
@@ -52,7 +52,7 @@ fn integral(optics: &Bsdf, sighting: &ShadingContext) -> f64 {
             let (sin, cos) = (TAU * y).sin_cos();
             let sine = (1.0 - x).max(0.0).sqrt();
             let light = DVec3::new(sine * cos, sine * sin, cosine * below);
-            PI * [LobeClass::Broad, LobeClass::Narrow, LobeClass::Ended]
+            PI * [LobeClass::Broad, LobeClass::Narrow, LobeClass::LightsOnly]
                 .map(|which| optics.value(which, sighting, light).0[0])
                 .iter()
                 .sum::<f64>()
@@ -70,8 +70,8 @@ fn a_white_coated_ground_returns_what_it_gets() {
             MaterialKind::Coated(Coated { diffuse: Paint::grey(1.0), index, roughness: f64::into(roughness) }).into();
         let optics = ready(&material, &wavelengths);
         for degrees in [0.0, 40.0, 75.0, 88.0] {
-            let sighting = sighting(degrees, 1.0, 1.0);
-            let mirrored: f64 = optics.mirrored(&sighting).map(|onward| onward.weight.0[0]).sum();
+            let sighting = context(degrees, 1.0, 1.0);
+            let mirrored: f64 = optics.specular_samples(&sighting).map(|onward| onward.weight.0[0]).sum();
             let all = mirrored + integral(&optics, &sighting);
             assert!((all - 1.0).abs() < 3e-4, "{index} {roughness} at {degrees}: {all}");
         }
@@ -104,7 +104,7 @@ fn samples_and_values_tell_the_same_of_every_material() {
         let optics = ready(&material, &wavelengths);
         for degrees in [5.0, 60.0] {
             for (before, behind) in [(1.0, behind), (behind, 1.0)] {
-                let sighting = sighting(degrees, before, behind);
+                let sighting = context(degrees, before, behind);
                 let (drawn, sum) = (furnace(&optics, &sighting), integral(&optics, &sighting));
                 let error = (drawn - sum).abs() / sum.max(0.1);
                 assert!(error < 0.02, "{} at {degrees} from {before}: {drawn} {sum}", material.word());
@@ -134,7 +134,7 @@ fn a_lobe_that_varies_is_that_of_the_value_at_the_place() {
         assert!(varied.is_textured());
         for roughness in [0.1, 0.17, 0.3, 0.5] {
             let painted = [Channels::splat(roughness); 2];
-            let of = sighting(40.0, 1.0, 1.5);
+            let of = context(40.0, 1.0, 1.5);
             let at = ShadingContext { painted: &painted, ..of };
             let same = ready(&made(roughness.into()), &wavelengths);
             let (drawn, sum) = (furnace(&varied, &at), integral(&varied, &at));
@@ -142,18 +142,18 @@ fn a_lobe_that_varies_is_that_of_the_value_at_the_place() {
             let constant = integral(&same, &of);
             assert!((constant - sum).abs() < 2e-3, "{roughness}: {constant} {sum}");
             let light = DVec3::new(-0.55, 0.1, 0.8).normalize();
-            let [a, b] = [varied.response(&at, light).0[0], same.response(&of, light).0[0]];
+            let [a, b] = [varied.total_value(&at, light).0[0], same.total_value(&of, light).0[0]];
             assert!((a / b - 1.0).abs() < 0.03, "{roughness}: {a} {b}");
         }
     }
     // The ends are exact, and so is what lies beyond them.
     let varied = ready(&metal(varying(0.1, 0.5)), &wavelengths);
     let same = ready(&metal(0.5.into()), &wavelengths);
-    let of = sighting(40.0, 1.0, 1.5);
+    let of = context(40.0, 1.0, 1.5);
     let light = DVec3::new(-0.4, 0.1, 0.8).normalize();
     for beyond in [0.5, 0.9] {
         let painted = [Channels::splat(beyond)];
-        let [a, b] = [varied.response(&ShadingContext { painted: &painted, ..of }, light), same.response(&of, light)];
+        let [a, b] = [varied.total_value(&ShadingContext { painted: &painted, ..of }, light), same.total_value(&of, light)];
         assert_eq!(a, b);
     }
 }
@@ -164,12 +164,12 @@ fn a_metal_may_be_brushed_as_patterns_tell() {
     let brushed = |roughness| copper(Finish::Brushed { roughness, along: DVec3::X });
     let varied = ready(&brushed([varying(0.05, 0.2), varying(0.2, 0.6)]), &wavelengths);
     let same = ready(&brushed([0.1.into(), 0.4.into()]), &wavelengths);
-    let of = sighting(30.0, 1.0, 1.0);
+    let of = context(30.0, 1.0, 1.0);
     // The pattern of the roughness across is the first.
     let painted = [Channels::splat(0.4), Channels::splat(0.1)];
     let at = ShadingContext { painted: &painted, ..of };
     for light in [DVec3::new(-0.5, 0.0, 0.86), DVec3::new(-0.45, 0.3, 0.8)] {
-        let [a, b] = [varied.response(&at, light.normalize()), same.response(&of, light.normalize())];
+        let [a, b] = [varied.total_value(&at, light.normalize()), same.total_value(&of, light.normalize())];
         assert!((a.0[0] / b.0[0] - 1.0).abs() < 0.04, "{a:?} {b:?}");
     }
 }
@@ -186,7 +186,7 @@ fn densities_are_those_with_which_directions_are_drawn() {
     for material in materials {
         let optics = ready(&material, &wavelengths);
         for (before, behind) in [(1.0, 1.5), (1.5, 1.0)] {
-            let sighting = sighting(35.0, before, behind);
+            let sighting = context(35.0, before, behind);
             // Share of samples in a cap, counted and integrated.
             let mut stream = RandomStream::new(5, 1);
             let axis = DVec3::new(-0.4, 0.3, if matches!(material.body, MaterialKind::Transparent(_)) { -0.6 } else { 0.6 });
@@ -194,16 +194,16 @@ fn densities_are_those_with_which_directions_are_drawn() {
             let count = 40_000;
             let mut inside = 0.0;
             for _ in 0..count {
-                let onward = optics.onward(&sighting, stream.uniform(), stream.point(), LobeSelection::All);
+                let onward = optics.sample(&sighting, stream.uniform(), stream.point(), LobeSelection::All);
                 inside += f64::from(u8::from(onward.is_some_and(|onward| onward.light.dot(axis) > cosine)));
             }
-            let frame = crate::illumination::distribution::ShadingFrame::about(axis);
+            let frame = crate::illumination::distribution::ShadingFrame::from_normal(axis);
             let term = |[x, y]: [f64; 2]| {
                 let z = 1.0 - x * (1.0 - cosine);
                 let (sin, cos) = (TAU * y).sin_cos();
                 let sine = (1.0 - z * z).sqrt();
                 let light = frame.world(DVec3::new(sine * cos, sine * sin, z));
-                LobeClass::CONTINUED.iter().map(|which| optics.density(*which, &sighting, light, LobeSelection::All)).sum::<f64>()
+                LobeClass::CONTINUING.iter().map(|which| optics.pdf(*which, &sighting, light, LobeSelection::All)).sum::<f64>()
             };
             let expected = TAU * (1.0 - cosine) * unit_square(term, 1e-5, 100_000).value;
             let found = inside / f64::from(count);
@@ -219,14 +219,14 @@ fn smooth_glass_splits_light_without_loss_and_bends_it_by_snells_law() {
     let glass = Transparent::clear(RefractiveIndex::Constant(1.5));
     let optics = ready(&MaterialKind::Transparent(glass).into(), &wavelengths);
     for degrees in [0.0, 30.0, 80.0, 89.9] {
-        let sighting = sighting(degrees, 1.0, 1.5);
-        let both: Vec<BsdfSample> = optics.mirrored(&sighting).collect();
+        let sighting = context(degrees, 1.0, 1.5);
+        let both: Vec<BsdfSample> = optics.specular_samples(&sighting).collect();
         let [reflected, refracted] = both.try_into().expect("two directions");
         let all = reflected.weight.0[0] + refracted.weight.0[0] * 2.25;
         assert!((all - 1.0).abs() < 1e-12, "{degrees}: {all}");
         assert!((refracted.light.x + degrees.to_radians().sin() / 1.5).abs() < 1e-12);
     }
-    let total: Vec<BsdfSample> = optics.mirrored(&sighting(60.0, 1.5, 1.0)).collect();
+    let total: Vec<BsdfSample> = optics.specular_samples(&context(60.0, 1.5, 1.0)).collect();
     assert_eq!((total.len(), total[0].weight.0[0]), (1, 1.0), "total reflection");
 }
 
@@ -241,7 +241,7 @@ fn a_rough_metal_with_all_reflections_loses_only_what_it_absorbs() {
         let metal = Metal { n: flat(0.0), k: flat(3.0), finish: rough("GGX, all", roughness) };
         let optics = ready(&MaterialKind::Metal(metal).into(), &wavelengths);
         for degrees in [0.0, 45.0, 80.0] {
-            let all = integral(&optics, &sighting(degrees, 1.0, 1.0));
+            let all = integral(&optics, &context(degrees, 1.0, 1.0));
             assert!((all - 1.0).abs() < 3e-4, "{roughness} at {degrees}: {all}");
         }
     }
@@ -252,12 +252,12 @@ fn copper_under_white_light_has_the_color_of_its_reflectance() {
     let wavelengths = WavelengthSets::spectral();
     let optics = ready(&copper(Finish::Polished), &wavelengths);
     let white = wavelengths.light(&Color::grey(1.0));
-    let combs = wavelengths.combs();
+    let combs = wavelengths.count();
     let seen: DVec3 = (0..combs)
         .map(|comb| {
-            let sighting = ShadingContext { comb, ..sighting(0.0, 1.0, 1.0) };
-            let mirrored = optics.mirrored(&sighting).next().expect("a mirror");
-            wavelengths.seen(comb, mirrored.weight * white.of(comb))
+            let sighting = ShadingContext { comb, ..context(0.0, 1.0, 1.0) };
+            let mirrored = optics.specular_samples(&sighting).next().expect("a mirror");
+            wavelengths.to_srgb(comb, mirrored.weight * white.of(comb))
         })
         .sum::<DVec3>()
         / combs as f64;
@@ -275,11 +275,11 @@ fn straight_light_goes_on_and_impossible_materials_are_errors() {
     let wavelengths = WavelengthSets::bands();
     let curtain = Classic { transparency: Paint::grey(0.25), ..Classic::default() };
     let optics = ready(&curtain.into(), &wavelengths);
-    let straight: Vec<BsdfSample> = optics.mirrored(&sighting(30.0, 1.0, 1.0)).collect();
+    let straight: Vec<BsdfSample> = optics.specular_samples(&context(30.0, 1.0, 1.0)).collect();
     assert!(straight[0].is_straight && straight[0].weight.0[0] == 0.25 && optics.passing.is_some());
     let mut library = BsdfBuilder::new(&wavelengths, false);
     let mut refused =
-        |material: Material| library.optics(&material, Interreflection::Followed).unwrap_err().to_string();
+        |material: Material| library.bsdf(&material, Interreflection::Followed).unwrap_err().to_string();
     let loud = Classic { diffuse: Paint::grey(1.5), ..Classic::default() };
     assert!(refused(loud.into()).contains("diffuse reflectance"));
     assert!(refused(copper(rough("Beckman", 0.3))).contains("did you mean Beckmann?"));
@@ -310,17 +310,17 @@ fn nothing_is_infinite_at_the_extremes() {
         let index = optics.interior.as_ref().map_or(1.0, |interior| interior.index.of(0).0[0]);
         for (before, behind) in [(1.0, index), (index, 1.0)] {
             for degrees in [0.0, 60.0, 89.9999] {
-                let sighting = sighting(degrees, before, behind);
+                let sighting = context(degrees, before, behind);
                 for _ in 0..200 {
                     let light = sphere(stream.point());
-                    let value = optics.response(&sighting, light);
+                    let value = optics.total_value(&sighting, light);
                     assert!(value.is_finite() && value.0.iter().all(|v| *v >= 0.0));
                     assert!(
-                        LobeClass::CONTINUED
+                        LobeClass::CONTINUING
                             .iter()
-                            .all(|which| optics.density(*which, &sighting, light, LobeSelection::All) >= 0.0)
+                            .all(|which| optics.pdf(*which, &sighting, light, LobeSelection::All) >= 0.0)
                     );
-                    let onward = optics.onward(&sighting, stream.uniform(), stream.point(), LobeSelection::All);
+                    let onward = optics.sample(&sighting, stream.uniform(), stream.point(), LobeSelection::All);
                     assert!(onward.is_none_or(|o| o.weight.is_finite() && (o.light.length() - 1.0).abs() < 1e-6));
                 }
             }
@@ -332,13 +332,13 @@ fn nothing_is_infinite_at_the_extremes() {
 fn absorption_over_the_wavelength_has_its_colour_however_strong_it_is() {
     let wavelengths = WavelengthSets::spectral();
     let white = wavelengths.light(&Color::grey(1.0));
-    let combs = wavelengths.combs();
+    let combs = wavelengths.count();
     for scale in [0.1, 1.0, 100.0] {
         let bands = glam::DVec3::new(0.2, 9.0, 7.0) * scale;
         let glass = Transparent { absorption: Color::Bands(bands), ..Transparent::clear(RefractiveIndex::Constant(1.5)) };
         let absorption = ready(&MaterialKind::Transparent(glass).into(), &wavelengths).interior.expect("glass").absorption;
         let seen: DVec3 =
-            (0..combs).map(|comb| wavelengths.seen(comb, absorption.of(comb) * white.of(comb))).sum::<DVec3>()
+            (0..combs).map(|comb| wavelengths.to_srgb(comb, absorption.of(comb) * white.of(comb))).sum::<DVec3>()
                 / combs as f64;
         assert!((seen - bands).length() < 2e-2 * bands.max_element(), "{seen} {bands}");
     }

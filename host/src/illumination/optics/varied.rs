@@ -78,8 +78,8 @@ impl<L: Lobe> Lobe for VaryingLobe<L> {
         self.mixed(sighting, |lobe| lobe.value(sighting, light))
     }
 
-    fn density(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
-        self.mixed_number(sighting, |lobe| lobe.density(sighting, light))
+    fn pdf(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
+        self.mixed_number(sighting, |lobe| lobe.pdf(sighting, light))
     }
 
     /// Draws a direction from one of the two lobes.
@@ -98,9 +98,9 @@ impl<L: Lobe> Lobe for VaryingLobe<L> {
     }
 
     /// The single directions of lobes that are polished alike, and differ in what lies on them.
-    fn mirrored(&self, sighting: &ShadingContext<'_>) -> [Option<BsdfSample>; 2] {
+    fn specular_samples(&self, sighting: &ShadingContext<'_>) -> [Option<BsdfSample>; 2] {
         let [(a, less), (b, more)] = self.parts(sighting);
-        let [one, other] = [a, b].map(|lobe| lobe.mirrored(sighting));
+        let [one, other] = [a, b].map(|lobe| lobe.specular_samples(sighting));
         let mixed = |(a, b): (Option<BsdfSample>, Option<BsdfSample>)| match (a, b) {
             (Some(a), Some(b)) => Some(BsdfSample { weight: a.weight * less + b.weight * more, ..b }),
             (a, b) => a
@@ -111,15 +111,15 @@ impl<L: Lobe> Lobe for VaryingLobe<L> {
         [mixed((a, b)), mixed((c, d))]
     }
 
-    fn diffuse(&self, sighting: &ShadingContext) -> Channels {
-        self.mixed(sighting, |lobe| lobe.diffuse(sighting))
+    fn diffuse_albedo(&self, sighting: &ShadingContext) -> Channels {
+        self.mixed(sighting, |lobe| lobe.diffuse_albedo(sighting))
     }
 
-    fn shown(&self, sighting: &ShadingContext) -> Channels {
-        self.mixed(sighting, |lobe| lobe.shown(sighting))
+    fn glossy_albedo(&self, sighting: &ShadingContext) -> Channels {
+        self.mixed(sighting, |lobe| lobe.glossy_albedo(sighting))
     }
 
-    fn cleared(&self, sighting: &ShadingContext) -> Channels {
-        self.mixed(sighting, |lobe| lobe.cleared(sighting))
+    fn clear_transmittance(&self, sighting: &ShadingContext) -> Channels {
+        self.mixed(sighting, |lobe| lobe.clear_transmittance(sighting))
     }
 }

@@ -13,7 +13,7 @@ use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
 /// Most looks at an image for one mean, side by side along the longer side of the part.
-const MOST_LOOKS: f64 = 16.0;
+const MOST_PROBES: f64 = 16.0;
 
 /// An image of fractions, 0..=1 in three bands, row 0 at the top (v = 1).
 ///
@@ -78,7 +78,7 @@ impl Image {
             (TexelFormat::Sixteen { .. } | TexelFormat::Float { .. }, _) => TexelStorage::Bands,
         };
         let pixels = Picture::pixels_of(width, height)?;
-        memory::ask(bytes_of(kind, pixels), || format!("{}: an image of {width} x {height} pixels", path.display()))?;
+        memory::reserve(bytes_of(kind, pixels), || format!("{}: an image of {width} x {height} pixels", path.display()))?;
         let mut finest = Level { width: width as usize, height: height as usize, texels: Texels::new(kind, pixels) };
         let mut wrong = None;
         source.each(|x, y, texel| {
@@ -192,7 +192,7 @@ impl Image {
         if !place.uv.is_finite() || !long.0.is_finite() {
             return self.mean();
         }
-        let looks = if long.0 <= 1.0 { 1.0 } else { (long.0 / short.max(1.0)).ceil().clamp(1.0, MOST_LOOKS) };
+        let looks = if long.0 <= 1.0 { 1.0 } else { (long.0 / short.max(1.0)).ceil().clamp(1.0, MOST_PROBES) };
         let level = short.max(long.0 / looks).max(1.0).log2().min((self.levels.len() - 1) as f64);
         let mut sum = DVec3::ZERO;
         for look in 0..looks as u32 {

@@ -148,7 +148,7 @@ impl Default for TextureMapping {
 
 impl TextureMapping {
     /// A place of the surface as the pattern counts it.
-    fn place(&self, place: &TextureFootprint) -> TextureFootprint {
+    fn mapped(&self, place: &TextureFootprint) -> TextureFootprint {
         let turn = self.turned();
         let lay = |uv: DVec2, own: DVec3| {
             let solid = if self.solid { turn * own } else { turn * uv.extend(0.0) };
@@ -267,7 +267,7 @@ impl Paint {
 impl Pattern {
     /// How much there is of each paint, in the mean over a place: fractions; of the bands of an image, three.
     pub fn parts(&self, place: &TextureFootprint) -> [f64; MOST_PAINTS] {
-        self.motif.parts(&self.laying.place(place), self.laying.solid)
+        self.motif.parts(&self.laying.mapped(place), self.laying.solid)
     }
 
     /// Whether it has its own colors.
@@ -327,7 +327,7 @@ impl Relief {
             Relief::Bumps { pattern, height } => {
                 let slope = |side: &FootprintSide| {
                     let length = side.scene.length();
-                    let laid = pattern.laying.place(&TextureFootprint { sides: [*side; 2], ..*place }).sides[0];
+                    let laid = pattern.laying.mapped(&TextureFootprint { sides: [*side; 2], ..*place }).sides[0];
                     let extent = if pattern.laying.solid { laid.own.length() } else { laid.uv.length() };
                     if length == 0.0 || extent == 0.0 {
                         return DVec3::ZERO;
@@ -340,7 +340,7 @@ impl Relief {
                 normal - slope(&place.sides[0]) - slope(&place.sides[1])
             }
             Relief::Normals { image, laying } => {
-                let [x, y, z] = (image.at(&laying.place(place)) * 2.0 - 1.0).to_array();
+                let [x, y, z] = (image.at(&laying.mapped(place)) * 2.0 - 1.0).to_array();
                 let upright = |along: DVec3| (along - normal * along.dot(normal)).normalize_or_zero();
                 upright(place.along[0]) * x + upright(place.along[1]) * y + normal * z.max(0.0)
             }

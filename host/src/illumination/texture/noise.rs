@@ -28,7 +28,7 @@ pub(super) fn noise(at: DVec3) -> f64 {
 pub(super) fn octaves(at: DVec3, count: u32, width: f64) -> f64 {
     let (mut sum, mut frequency, mut height) = (0.0, 1.0, 1.0);
     for octave in 0..count {
-        let part = kept(width * frequency);
+        let part = remaining(width * frequency);
         if part == 0.0 {
             break;
         }
@@ -45,7 +45,7 @@ pub(super) fn octaves(at: DVec3, count: u32, width: f64) -> f64 {
 ///
 /// # Source
 /// Apodaca and Gritz 2000, Advanced RenderMan, filtered noise.
-fn kept(width: f64) -> f64 {
+fn remaining(width: f64) -> f64 {
     let t = ((width - 0.2) / (0.75 - 0.2)).clamp(0.0, 1.0);
     1.0 - t * t * (3.0 - 2.0 * t)
 }

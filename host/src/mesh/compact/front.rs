@@ -71,7 +71,7 @@ impl Front {
     }
 
     /// The third vertex of the triangle on the left of an edge.
-    pub fn behind(&self, node: u32) -> u32 {
+    pub fn apex(&self, node: u32) -> u32 {
         self.nodes[node as usize].behind
     }
 

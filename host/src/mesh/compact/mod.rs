@@ -99,7 +99,7 @@ impl<'a> Decoder<'a> {
             let (step, apex) = match self.bits.ones(4)? {
                 0 => {
                     let position = |vertex: u32| self.positions[vertex as usize];
-                    let predicted = position(a) + position(b) - position(self.front.behind(gate));
+                    let predicted = position(a) + position(b) - position(self.front.apex(gate));
                     let apex = self.vertex(predicted)?;
                     (Step::Create(apex), apex)
                 }
@@ -247,7 +247,7 @@ impl Encoder {
                 self.bits.ones(0, 4);
                 let [a, b] = self.front.ends(gate);
                 let position = |vertex: u32| self.positions[vertex as usize];
-                self.vertex(apex, position(a) + position(b) - position(self.front.behind(gate)))?;
+                self.vertex(apex, position(a) + position(b) - position(self.front.apex(gate)))?;
                 Step::Create(apex)
             }
             Some(node) => {

@@ -11,7 +11,7 @@ use super::document::LocatedValue;
 use super::{BINARY_CHUNK, JSON_CHUNK, MAGIC, base64};
 
 /// Extensions without which the triangles are the same, or which need nothing further.
-const HARMLESS: [&str; 2] = ["KHR_mesh_quantization", "KHR_texture_transform"];
+const SUPPORTED_EXTENSIONS: [&str; 2] = ["KHR_mesh_quantization", "KHR_texture_transform"];
 /// So many triangles may come of nodes that share meshes, even if the file is small.
 const MOST_SHARED: usize = 1 << 22;
 /// The deepest tree of nodes.
@@ -38,7 +38,7 @@ pub fn parse(bytes: &[u8], neighbour: &dyn Fn(&str) -> Result<Vec<u8>, String>) 
     }
     for extension in root.list("extensionsRequired")? {
         let name = extension.text()?;
-        if !HARMLESS.contains(&name) && !name.starts_with("KHR_materials_") {
+        if !SUPPORTED_EXTENSIONS.contains(&name) && !name.starts_with("KHR_materials_") {
             return Err(extension.expected("no extension that changes meshes"));
         }
     }
@@ -193,7 +193,7 @@ impl<'a> Scene<'a> {
             let Some(part) = self.primitive(primitive)? else { continue };
             let material = primitive.get("material").map(|at| at.named(&self.root, "materials")).transpose()?;
             let called = material.map(|at| at.text_of("name")).transpose()?.flatten();
-            let look = material.map(look).transpose()?.flatten();
+            let look = material.map(material_of).transpose()?.flatten();
             let name = [own, called.unwrap_or_default()];
             let name = name.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("/");
             let triangles = self.mesh.triangles.len() + part.triangles.len();
@@ -268,7 +268,7 @@ impl<'a> Scene<'a> {
 }
 
 /// What a material looks like, textures left out; none if it does not say.
-fn look(material: LocatedValue<'_>) -> Result<Option<MetallicRoughness>, Fault> {
+fn material_of(material: LocatedValue<'_>) -> Result<Option<MetallicRoughness>, Fault> {
     let Some(at) = material.get("pbrMetallicRoughness") else { return Ok(None) };
     let factor = |key| Ok::<f64, Fault>(at.number(key)?.unwrap_or(1.0).clamp(0.0, 1.0));
     let [r, g, b, _] = at.numbers::<4>("baseColorFactor")?.unwrap_or([1.0; 4]);

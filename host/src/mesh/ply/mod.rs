@@ -54,7 +54,7 @@ fn check_count<T: Table>(element: &PlyElement, table: &T) -> Result<(), Fault> {
     let limit = (table.bytes_left() / row.max(1)).min(MAX_COUNT as u64);
     if element.count > limit {
         let problem = MeshProblem::TooMany { what: "rows announced", count: element.count, limit };
-        return Err(table.place().fault(problem));
+        return Err(table.location().fault(problem));
     }
     Ok(())
 }
@@ -85,13 +85,13 @@ impl Content {
             element.properties.iter().position(is_named)
         };
         let all = |slots: [Option<usize>; 3]| slots.into_iter().collect::<Option<Vec<_>>>();
-        let missing = || table.place().fault(MeshProblem::Ends("the vertex properties x, y and z"));
+        let missing = || table.location().fault(MeshProblem::Ends("the vertex properties x, y and z"));
         let position = all([slot(&["x"]), slot(&["y"]), slot(&["z"])]).ok_or_else(missing)?;
         let normal = all([slot(&["nx"]), slot(&["ny"]), slot(&["nz"])]);
         let (s, t) = (slot(&["s", "u", "texture_u"]), slot(&["t", "v", "texture_v"]));
         let mut row = vec![0.0; element.properties.len()];
         for _ in 0..element.count {
-            let place = table.place();
+            let place = table.location();
             for (value, property) in row.iter_mut().zip(&element.properties) {
                 match property.length {
                     None => *value = table.number(property.scalar)?,
@@ -123,7 +123,7 @@ impl Content {
                     table.skip(property)?;
                     continue;
                 };
-                let place = table.place();
+                let place = table.location();
                 let corners = table.count(length)?;
                 if corners < 3 {
                     return Err(place.fault(MeshProblem::FewCorners(corners as usize)));
@@ -152,7 +152,7 @@ impl Content {
                 };
                 corners.clear();
                 for _ in 0..table.count(length)? {
-                    let place = table.place();
+                    let place = table.location();
                     let number = table.number(property.scalar)?;
                     if number == -1.0 {
                         self.triangles.extend(strip(&corners));
@@ -171,7 +171,7 @@ impl Content {
         let count = self.positions.len();
         // Faces may stand before the vertices, so that indices can only be checked here.
         if let Some(&index) = self.triangles.iter().flatten().find(|&&index| index as usize >= count) {
-            return Err(table.place().fault(MeshProblem::Index { index: index.into(), count, table: "vertices" }));
+            return Err(table.location().fault(MeshProblem::Index { index: index.into(), count, table: "vertices" }));
         }
         let parameters_are_finite = self.parameters.iter().all(|parameter| parameter.is_finite());
         let parameters = if parameters_are_finite { self.parameters } else { Vec::new() };
@@ -192,7 +192,7 @@ fn length_of_indices(property: &Property) -> Option<Scalar> {
 
 /// A whole number from 0; `count` entries of `what` are known for the message.
 fn index<T: Table>(table: &mut T, property: &Property, count: usize, what: &'static str) -> Result<u32, Fault> {
-    let place = table.place();
+    let place = table.location();
     as_index(table.number(property.scalar)?, place, count, what)
 }
 

@@ -10,7 +10,7 @@ pub(super) trait Table {
     fn number(&mut self, scalar: Scalar) -> Result<f64, Fault>;
 
     /// Where the next number stands.
-    fn place(&self) -> FaultLocation;
+    fn location(&self) -> FaultLocation;
 
     /// Bytes from here to the end.
     fn bytes_left(&self) -> u64;
@@ -25,7 +25,7 @@ pub(super) trait Table {
 
     /// The next number as the length of a list.
     fn count(&mut self, scalar: Scalar) -> Result<u64, Fault> {
-        let place = self.place();
+        let place = self.location();
         let value = self.number(scalar)?;
         if value >= 0.0 && value.fract() == 0.0 && value <= self.bytes_left() as f64 {
             return Ok(value as u64);
@@ -71,19 +71,19 @@ impl<'a> Text<'a> {
 impl Table for Text<'_> {
     fn number(&mut self, _: Scalar) -> Result<f64, Fault> {
         if self.rest.is_empty() {
-            return Err(self.place().fault(MeshProblem::Ends("a number")));
+            return Err(self.location().fault(MeshProblem::Ends("a number")));
         }
         let end = self.rest.iter().position(u8::is_ascii_whitespace).unwrap_or(self.rest.len());
         let (word, rest) = self.rest.split_at(end);
         let value = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
         let found = || MeshProblem::Expected { expected: "a number", found: shortened(&String::from_utf8_lossy(word)) };
-        let value = value.ok_or_else(|| self.place().fault(found()))?;
+        let value = value.ok_or_else(|| self.location().fault(found()))?;
         self.rest = rest;
         self.skip_space();
         Ok(value)
     }
 
-    fn place(&self) -> FaultLocation {
+    fn location(&self) -> FaultLocation {
         FaultLocation::Line(self.line)
     }
 
@@ -111,7 +111,7 @@ impl<'a> Binary<'a> {
     }
 
     fn take<const N: usize>(&mut self) -> Result<[u8; N], Fault> {
-        let ends = self.place().fault(MeshProblem::Ends("a number"));
+        let ends = self.location().fault(MeshProblem::Ends("a number"));
         let (field, rest) = self.rest.split_first_chunk::<N>().ok_or(ends)?;
         self.rest = rest;
         let mut field = *field;
@@ -136,7 +136,7 @@ impl Table for Binary<'_> {
         })
     }
 
-    fn place(&self) -> FaultLocation {
+    fn location(&self) -> FaultLocation {
         FaultLocation::Byte(self.end - self.rest.len())
     }
 

@@ -104,7 +104,7 @@ fn no_change_of_bytes_makes_it_panic() {
             // Another place of a vertex, for instance: an octree all the same, which answers.
             Ok(mut octree) => {
                 octree.closest(&chord(DVec3::ZERO, 1.4, &mut stream), 0.0, f64::INFINITY);
-                octree.side(DVec3::X);
+                octree.containment(DVec3::X);
                 octree.remove(0);
             }
             Err(_) => refused += 1,

@@ -52,7 +52,7 @@ impl Shape {
         let shear = Shear::new(ray, octree.cube.side.recip())?;
         let mut best: Option<Hit> = None;
         for triangle in 0..self.triangles.len() {
-            if let Some(c) = shear.crossing(self.corners(triangle))
+            if let Some(c) = shear.intersection(self.corners(triangle))
                 && c.t > 0.0
                 && c.t < best.map_or(t_max, |hit| hit.t)
             {

@@ -16,8 +16,8 @@ impl Both<'_> {
     }
 
     fn side(&self, point: DVec3) -> Containment {
-        let side = self.octree.side(point);
-        assert_eq!(self.sorted.side(point, |triangle| self.shape.corners(triangle as usize)), side, "{point}");
+        let side = self.octree.containment(point);
+        assert_eq!(self.sorted.containment(point, |triangle| self.shape.corners(triangle as usize)), side, "{point}");
         side
     }
 }
@@ -133,8 +133,8 @@ fn without_a_surface_everything_is_outside() {
     let both = ball(2);
     let octree = both.octree();
     for point in [DVec3::ZERO, DVec3::splat(f64::NAN), DVec3::INFINITY, DVec3::splat(1e300)] {
-        assert_eq!(nothing.side(point), Containment::Outside);
-        assert_eq!(TriangleBvh::default().side(point, |_| [DVec3::ZERO; 3]), Containment::Outside);
-        assert_eq!(octree.side(point) == Containment::Outside, point != DVec3::ZERO);
+        assert_eq!(nothing.containment(point), Containment::Outside);
+        assert_eq!(TriangleBvh::default().containment(point, |_| [DVec3::ZERO; 3]), Containment::Outside);
+        assert_eq!(octree.containment(point) == Containment::Outside, point != DVec3::ZERO);
     }
 }

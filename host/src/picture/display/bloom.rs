@@ -45,7 +45,7 @@ fn deviation(level: usize) -> f64 {
 /// [`PictureError`] if there is no memory for the pyramid.
 pub(super) fn scatter(picture: &mut Picture, amount: f64, pixel_angle: f64) -> Result<(), PictureError> {
     let bytes = picture.pixels.len() as u64 * 32;
-    memory::ask(bytes, || format!("bloom of {} x {} pixels", picture.width, picture.height))?;
+    memory::reserve(bytes, || format!("bloom of {} x {} pixels", picture.width, picture.height))?;
     let (width, height) = (picture.width as usize, picture.height as usize);
     let base = Level { width, height, pixels: picture.pixels.iter().map(|pixel| pixel.radiance).collect() };
     let mut levels = vec![base];

@@ -75,7 +75,7 @@ impl Exr {
         let mut row = Vec::new();
         while let Some(block) = blocks.decompress_next_block() {
             let block = block.map_err(|error| error.to_string())?;
-            tell_block(&block, &channels, &meanings, &mut row, tell);
+            emit_block(&block, &channels, &meanings, &mut row, tell);
         }
         Ok(())
     }
@@ -99,7 +99,7 @@ fn meanings_of(header: &Header) -> Option<Vec<Vec<usize>>> {
 }
 
 /// Tells the pixels of a block, whose rows hold channel after channel.
-fn tell_block(
+fn emit_block(
     block: &UncompressedBlock,
     channels: &[ChannelDescription],
     meanings: &[Vec<usize>],

@@ -4,16 +4,16 @@ use super::super::film::Film;
 use super::super::guide::PixelFeatures;
 use super::super::tally::Tally;
 use super::plane::PixelPlane;
-use super::regression::{GUIDES, FeaturePlanes, MARGIN};
+use super::regression::{FEATURES, FeaturePlanes, MARGIN};
 use std::array::from_fn;
 
 /// The least ridge of what guides: the variance of its mean is the ridge otherwise, so that what is noisy explains less.
 const LEAST_RIDGE: f32 = 1e-5;
 
 /// What guides the regression.
-pub(super) fn guides(film: &Film) -> FeaturePlanes {
+pub(super) fn feature_planes(film: &Film) -> FeaturePlanes {
     let size = [film.width() as usize, film.height() as usize];
-    let (tallies, guides) = (film.tallies(), film.guides());
+    let (tallies, guides) = (film.tallies(), film.features());
     let count = |pixel: usize| tallies[pixel].count.max(1) as f32;
     let distance = |pixel: usize| {
         let Tally { elements, distances, .. } = &tallies[pixel];
@@ -23,7 +23,7 @@ pub(super) fn guides(film: &Film) -> FeaturePlanes {
         .filter_map(distance)
         .fold((0.0, 0.0f64), |(sum, seen), distance| (sum + distance.ln(), seen + 1.0));
     let typical = sum / seen.max(1.0);
-    let values: [PixelPlane; GUIDES] = from_fn(|guide| {
+    let values: [PixelPlane; FEATURES] = from_fn(|guide| {
         PixelPlane::new(size, MARGIN, |pixel| match guide {
             0..3 => guides[pixel].albedo[guide] / count(pixel),
             3..6 => guides[pixel].normal[guide - 3] / count(pixel),

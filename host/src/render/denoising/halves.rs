@@ -54,7 +54,7 @@ impl Halves {
     /// None of a film without light or guides, and of one whose mean leaves [`UNITS`].
     pub(super) fn of(film: &Film) -> Option<Halves> {
         let size = [film.width() as usize, film.height() as usize];
-        let (tallies, guides) = (film.tallies(), film.guides());
+        let (tallies, guides) = (film.tallies(), film.features());
         let unit = tallies.iter().map(|tally| tally.mean().dot(LUMINANCE)).sum::<f64>() / tallies.len() as f64;
         let unit = unit as f32;
         if !UNITS.contains(&unit) || guides.len() != tallies.len() {

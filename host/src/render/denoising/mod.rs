@@ -23,7 +23,7 @@ mod tests;
 
 use super::film::Film;
 use crate::picture::{Picture, PictureError};
-use guides::guides;
+use guides::feature_planes;
 use halves::Halves;
 use pilot::Pilot;
 use rayon::prelude::*;
@@ -44,7 +44,7 @@ pub(super) const BYTES: u64 = 220;
 pub(super) fn denoised(film: &Film, is_cancelled: &(dyn Fn() -> bool + Sync)) -> Result<Option<Picture>, PictureError> {
     let mut picture = film.picture()?;
     let Some(halves) = Halves::of(film) else { return Ok(Some(picture)) };
-    let guides = guides(film);
+    let guides = feature_planes(film);
     let both = |quiet: &[bool]| {
         let [early, late] = [&halves.early, &halves.late];
         [filtered(early, late, &guides, quiet, is_cancelled), filtered(late, early, &guides, quiet, is_cancelled)]

@@ -34,14 +34,14 @@ const LEAST_VARIANCE: f32 = 1e-8;
 /// A neighbor counts less if its variance is more than so many times the mean over the patch: it hit rare light.
 const MOST_VARIANCE: f32 = 8.0;
 /// Numbers that guide, beside the place.
-pub(super) const GUIDES: usize = 7;
+pub(super) const FEATURES: usize = 7;
 /// Which of the ridges each of them has.
-const RIDGE_OF: [usize; GUIDES] = [0, 0, 0, 1, 1, 1, 2];
+const RIDGE_OF: [usize; FEATURES] = [0, 0, 0, 1, 1, 1, 2];
 /// The unit of places, and their ridge in it.
 const PLACE_UNIT: f32 = 10.0;
 const PLACE_RIDGE: f32 = 0.1;
 /// Unknowns: a slope for each guide and both axes, and the value in the middle.
-const UNKNOWNS: usize = GUIDES + 3;
+const UNKNOWNS: usize = FEATURES + 3;
 
 /// The neighbors that are looked at, from row to row.
 static NEIGHBORS: LazyLock<Vec<[isize; 2]>> = LazyLock::new(|| {
@@ -77,7 +77,7 @@ impl NoisyPicture {
 /// What guides: albedo in three bands, the normal along three axes, and the logarithm of the distance; and the ridge of each
 /// of the three, which is greater where it is noisy itself.
 pub(super) struct FeaturePlanes {
-    pub(super) values: [PixelPlane; GUIDES],
+    pub(super) values: [PixelPlane; FEATURES],
     pub(super) ridges: [PixelPlane; 3],
 }
 
@@ -399,9 +399,9 @@ fn fit(picture: &NoisyPicture, guides: &FeaturePlanes, place: [isize; 2], weight
 struct Regression<'a> {
     bands: [&'a [f32]; 3],
     /// What guides.
-    values: [&'a [f32]; GUIDES],
+    values: [&'a [f32]; FEATURES],
     /// What guides in the middle.
-    middle: [Lanes; GUIDES],
+    middle: [Lanes; FEATURES],
 }
 
 impl Regression<'_> {
@@ -411,7 +411,7 @@ impl Regression<'_> {
     #[inline(always)]
     fn apart<const UNKNOWN: usize>(&self, beside: usize, dx: isize, dy: isize) -> Lanes {
         match UNKNOWN {
-            0..GUIDES => Lanes::read(self.values[UNKNOWN], beside).minus(self.middle[UNKNOWN]),
+            0..FEATURES => Lanes::read(self.values[UNKNOWN], beside).minus(self.middle[UNKNOWN]),
             7 => Lanes::splat(dx as f32 / PLACE_UNIT),
             8 => Lanes::splat(dy as f32 / PLACE_UNIT),
             _ => Lanes::splat(1.0),

@@ -15,7 +15,7 @@ type Truth<'a> = &'a dyn Fn(f64, f64) -> (DVec3, DVec3, DVec3);
 
 /// A film of some samples a pixel, whose radiance is that of the truth times a number of mean 1 and a deviation.
 fn film([width, height]: [u32; 2], samples: u32, deviation: f64, truth: Truth<'_>, seed: u64) -> Film {
-    let mut film = Film::new(width, height).expect("small").with_guides();
+    let mut film = Film::new(width, height).expect("small").with_features();
     let mut random = Pcg64Mcg::seed_from_u64(seed);
     for (y, mut row) in film.rows_mut().into_iter().enumerate() {
         for x in 0..width as usize {
@@ -70,7 +70,7 @@ fn an_even_wall_keeps_its_mean_and_loses_most_of_its_noise_however_bright_it_is(
 }
 
 #[test]
-fn edges_and_gradients_that_guides_tell_stay() {
+fn edges_and_gradients_that_features_tell_stay() {
     // Stripes of two albedos under light that falls off, and a corner between two walls.
     let scene: Truth<'_> = &|x, y| {
         let albedo = if ((x / 3.0) as u32).is_multiple_of(2) { 0.8 } else { 0.2 };
@@ -93,7 +93,7 @@ fn a_picture_without_noise_stays_as_it_is() {
 }
 
 #[test]
-fn a_shadow_that_no_guide_tells_is_not_blurred_away() {
+fn a_shadow_that_no_feature_tells_is_not_blurred_away() {
     let shadow: Truth<'_> = &|x, _| (DVec3::splat(if x < 32.0 { 0.1 } else { 1.0 }), DVec3::splat(0.5), DVec3::Z);
     let film = film([64, 40], 16, 0.3, shadow, 4);
     let quiet = denoise(&film);
@@ -123,7 +123,7 @@ fn odd_films_are_denoised_without_harm() {
     }
     let nothing = |_, _| (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
     assert!(denoise(&film([20, 20], 4, 0.0, &nothing, 7)).pixels().iter().all(|pixel| pixel.radiance == [0.0; 3]));
-    let empty = Film::new(9, 9).expect("small").with_guides();
+    let empty = Film::new(9, 9).expect("small").with_features();
     assert_eq!(denoise(&empty), empty.picture().expect("small"));
     // A single sample that is a million times as bright as the others, and infinities, which samples may hold.
     for value in [1e6, 1e30, f64::INFINITY, f64::NAN] {
@@ -146,7 +146,7 @@ fn pixels_of_one_sample_darken_none_beside_them() {
     for y in 0..40 {
         for x in 32..64 {
             film.tallies_mut()[y * 64 + x] = more.tallies()[y * 64 + x];
-            film.guides_mut()[y * 64 + x] = more.guides()[y * 64 + x];
+            film.features_mut()[y * 64 + x] = more.features()[y * 64 + x];
         }
     }
     let quiet = denoise(&film);
@@ -169,14 +169,14 @@ fn a_cancelled_one_gives_nothing() {
 
 #[test]
 fn halves_of_samples_are_what_the_film_holds() {
-    let mut film = Film::new(1, 1).expect("small").with_guides();
+    let mut film = Film::new(1, 1).expect("small").with_features();
     for (number, [early, late]) in [[0.0, 1.0], [1.0, 1.0], [2.0, 1.0], [2.0, 2.0], [4.0, 1.0]].into_iter().enumerate()
     {
         let value = f64::from(1u32 << number);
         film.rows_mut()[0].add(0, &PixelSample { radiance: DVec3::splat(value), ..PixelSample::default() }, &Default::default());
         let count = number as u32 + 1;
         assert_eq!(halves(count), [early, late], "{count}");
-        let PixelFeatures { early: sum, .. } = film.guides()[0];
+        let PixelFeatures { early: sum, .. } = film.features()[0];
         // The sum of the first n powers of two is one less than the next.
         assert_eq!(sum[0], (1u32 << early as u32) as f32 - 1.0, "{count}");
     }

@@ -87,7 +87,7 @@ impl VisibilityTester<'_> {
     /// for what is linear over a part of one. A small patch is asked in its middle only.
     ///
     /// - `corners`: what is known already. `may_be_divided`: whether it is longer than the finest.
-    pub(super) fn lit(
+    pub(super) fn external_light(
         &self,
         (patch, node): (&RadiosityPatch, &HierarchyNode),
         corners: Option<[ExternalLight; 3]>,
@@ -150,16 +150,16 @@ impl VisibilityTester<'_> {
         ([of_light, of_sky], turn): ([u32; 2], u32),
     ) -> Channels {
         let appearance = &self.world.appearance;
-        let combs = appearance.wavelengths.combs();
+        let combs = appearance.wavelengths.count();
         let least = appearance.prepared.settings.light.samples;
         let mut sum = Channels::ZERO;
         for (index, (number, source)) in appearance.sources.iter().enumerate() {
-            let mut samples = match source.is_sharp() {
+            let mut samples = match source.is_delta() {
                 true => 1,
                 false if source.is_sky() => least.max(of_sky),
                 false => least.max(of_light),
             };
-            let most = if source.is_sharp() || source.is_sky() { samples } else { MORE * samples };
+            let most = if source.is_delta() || source.is_sky() { samples } else { MORE * samples };
             let (mut asked, mut seen) = (0, 0);
             // The same points of a light for all elements: their light differs as smoothly as they do.
             let sequence = SobolSequence::new(0, *number as u64);
@@ -172,7 +172,7 @@ impl VisibilityTester<'_> {
                 if sample == samples && seen > 0 && seen < asked {
                     samples = most;
                 }
-                let Some(beam) = source.beam(point, Some(normal), uniform, 0) else { continue };
+                let Some(beam) = source.sample_incident(point, Some(normal), uniform, 0) else { continue };
                 let cosine = beam.towards.dot(normal);
                 if cosine <= 0.0 {
                     continue;
@@ -181,7 +181,7 @@ impl VisibilityTester<'_> {
                 let (ray, t_max) = match beam.distance.is_finite() {
                     false => (Ray { origin, direction: beam.towards }, f64::INFINITY),
                     true => {
-                        let end = if source.is_sharp() || source.is_surface() { 1.0 } else { SHORT };
+                        let end = if source.is_delta() || source.is_surface() { 1.0 } else { SHORT };
                         (Ray { origin, direction: point + beam.towards * beam.distance - origin }, end)
                     }
                 };
@@ -189,15 +189,15 @@ impl VisibilityTester<'_> {
                 for comb in 0..combs {
                     let passed = match (shadows, comb) {
                         (false, _) => Channels::ONE,
-                        (true, 0) => self.world.passed(&ray, t_max, (index, None), (0, 0.0)).0,
+                        (true, 0) => self.world.transmittance(&ray, t_max, (index, None), (0, 0.0)).0,
                         (true, _) if !appearance.passing => Channels::ONE,
-                        (true, comb) => self.world.passed(&ray, t_max, (index, None), (comb, 0.0)).0,
+                        (true, comb) => self.world.transmittance(&ray, t_max, (index, None), (comb, 0.0)).0,
                     };
                     if passed == Channels::ZERO {
                         break;
                     }
                     seen += u32::from(comb == 0);
-                    let beam = if comb == 0 { Some(beam) } else { source.beam(point, Some(normal), uniform, comb) };
+                    let beam = if comb == 0 { Some(beam) } else { source.sample_incident(point, Some(normal), uniform, comb) };
                     let arriving = beam.map_or(Channels::ZERO, |beam| beam.irradiance * passed * cosine);
                     part += if arriving.is_finite() { arriving } else { Channels::ZERO };
                 }

@@ -4,7 +4,7 @@ use super::direct::{CornerLight, Exitance, ExternalLight, bend, of_parts};
 use super::hierarchy::{Hierarchy, HierarchyNode, RadiosityPatch, normal_and_area};
 use super::sight::VisibilityTester;
 use crate::color::Channels;
-use crate::render::world::mean_diffuse;
+use crate::render::world::mean_diffuse_albedo;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -59,7 +59,7 @@ impl<'a> Elements<'a> {
             exitance,
             shadows,
         };
-        elements.learn(sight, 0, &[]);
+        elements.evaluate(sight, 0, &[]);
         elements.pull();
         elements
     }
@@ -77,7 +77,7 @@ impl<'a> Elements<'a> {
                 self.indirect.resize(self.hierarchy.nodes.len(), indirect);
             }
         }
-        self.learn(sight, first, &known);
+        self.evaluate(sight, first, &known);
     }
 
     /// Whether an element is long enough to be divided.
@@ -108,7 +108,7 @@ impl<'a> Elements<'a> {
     /// Finds what is not known of the nodes from one on.
     ///
     /// - `corners`: what is known at their corners; of none at first.
-    fn learn(&mut self, sight: &VisibilityTester<'_>, first: usize, corners: &[Option<[ExternalLight; 3]>]) {
+    fn evaluate(&mut self, sight: &VisibilityTester<'_>, first: usize, corners: &[Option<[ExternalLight; 3]>]) {
         let nodes = &self.hierarchy.nodes[first..];
         let of = |i: usize, node: &HierarchyNode| match node.is_face_cluster() {
             true => self.known_of_faces(sight, (first + i) as u32),
@@ -131,7 +131,7 @@ impl<'a> Elements<'a> {
         }
         let patch = &self.hierarchy.patches[node.patch as usize];
         let divisible = self.may_divide(node);
-        let (around, mean) = sight.lit((patch, node), corners, (self.exitance, self.shadows), divisible);
+        let (around, mean) = sight.external_light((patch, node), corners, (self.exitance, self.shadows), divisible);
         Known { reflectance: reflectance(sight, patch, (node.corners, node.middle)), mean, around }
     }
 
@@ -174,10 +174,10 @@ fn reflectance(sight: &VisibilityTester<'_>, patch: &RadiosityPatch, ([a, b, c],
     let appearance = &sight.world.appearance;
     let prepared = appearance.prepared;
     let triangle = patch.triangle;
-    let optics = appearance.optics(prepared.object_of[triangle as usize], prepared.material_number(triangle));
+    let optics = appearance.bsdf(prepared.object_of[triangle as usize], prepared.material_number(triangle));
     let weights = crate::numeric::triangle::weights(prepared.corners(triangle), middle);
     // About the parallelogram of the area of the element.
     let sides = [(b - a) * 0.5f64.sqrt(), (c - a) * 0.5f64.sqrt()];
-    let place = optics.is_textured().then(|| prepared.place(triangle, weights, sides));
-    mean_diffuse(optics, place.as_ref(), appearance.wavelengths.combs()).map(|part| part.clamp(0.0, 1.0))
+    let place = optics.is_textured().then(|| prepared.texture_place(triangle, weights, sides));
+    mean_diffuse_albedo(optics, place.as_ref(), appearance.wavelengths.count()).map(|part| part.clamp(0.0, 1.0))
 }

@@ -126,7 +126,7 @@ impl<'g> Gatherer<'g, '_> {
                         continue;
                     }
                     let is_little = factor * sent[other as usize].max() < LITTLE * self.error;
-                    let seen = if is_clear { 1.0 } else { self.seen((number as u32, from), other, is_little) };
+                    let seen = if is_clear { 1.0 } else { self.visible_part((number as u32, from), other, is_little) };
                     if seen > 0.0 {
                         found.push((other, (factor * seen) as f32));
                     }
@@ -167,7 +167,7 @@ impl<'g> Gatherer<'g, '_> {
     }
 
     /// The part of a node that is seen from a corner.
-    fn seen(&self, (number, from): (u32, [DVec3; 2]), other: u32, is_little: bool) -> f64 {
+    fn visible_part(&self, (number, from): (u32, [DVec3; 2]), other: u32, is_little: bool) -> f64 {
         let points = self.hierarchy.points(other);
         let (mut seen, mut all) = (0.0, 0.0);
         // Which of them is asked differs from pair to pair.
@@ -176,7 +176,7 @@ impl<'g> Gatherer<'g, '_> {
             let to = points[(i + shift) % POINTS];
             let weight = kernel(from, to);
             if weight > 0.0 && weight.is_finite() {
-                seen += weight * self.sight.between(from, to);
+                seen += weight * self.sight.transmittance(from, to);
                 all += weight;
                 if is_little {
                     break;

@@ -16,9 +16,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 const FORM_FACTOR_ERROR: f64 = 1e-2;
 /// How uncertain the light is that a link brings, as a part of it: where rays disagree, where none comes through, where
 /// all do.
-const PARTLY_SEEN: f64 = 0.5;
-const NOT_SEEN: f64 = 0.1;
-const SEEN: f64 = 0.02;
+const PARTLY_VISIBLE: f64 = 0.5;
+const NOT_VISIBLE: f64 = 0.1;
+const ALL_VISIBLE: f64 = 0.02;
 /// Elements at the most; beyond them nothing is divided any more.
 const MOST_NODES: usize = 3_000_000;
 
@@ -79,7 +79,7 @@ pub(super) fn refine(
     while !pending.is_empty() {
         let may_divide = elements.hierarchy.nodes.len() < MOST_NODES && !stopped();
         let bound = if may_divide { bound } else { RefinementBound { finest: f64::INFINITY, irradiance: f64::INFINITY } };
-        let judge = |_, (pair, is_clear): &([u32; 2], bool)| RefinementOracle { sight, elements, bound }.judge(*pair, *is_clear);
+        let judge = |_, (pair, is_clear): &([u32; 2], bool)| RefinementOracle { sight, elements, bound }.decide(*pair, *is_clear);
         let verdicts: Vec<RefinementStep> = sight.map(&pending, judge);
         let divided: Vec<u32> = verdicts
             .iter()
@@ -131,7 +131,7 @@ impl RefinementOracle<'_, '_> {
         uncertainty(self.elements, a, b, exchange) <= self.bound.irradiance
     }
 
-    fn judge(&self, [a, b]: [u32; 2], is_clear: bool) -> RefinementStep {
+    fn decide(&self, [a, b]: [u32; 2], is_clear: bool) -> RefinementStep {
         let (first, second) = (self.node(a), self.node(b));
         if first.is_dark || second.is_dark {
             return RefinementStep::Drop;
@@ -165,7 +165,7 @@ impl RefinementOracle<'_, '_> {
         let rough = self.sampled(a, b).min(most);
         let variation = (0.5 * sizes / distance + first.spread + second.spread).min(1.0);
         // Whatever rays tell, it is too uncertain.
-        let least = if is_clear { variation + SEEN } else { NOT_SEEN };
+        let least = if is_clear { variation + ALL_VISIBLE } else { NOT_VISIBLE };
         if rough > 0.0
             && !self.is_fine(a, b, least * rough)
             && let Some(verdict) = self.divide(a, b, is_clear)
@@ -180,11 +180,11 @@ impl RefinementOracle<'_, '_> {
             let is_sure = are_elements || self.is_fine(a, b, 0.25 * most);
             return if is_sure { RefinementStep::Drop } else { self.divide(a, b, is_clear).unwrap_or(RefinementStep::Drop) };
         }
-        let seen = self.visibility(a, b, is_clear, self.is_fine(a, b, NOT_SEEN * unoccluded));
+        let seen = self.visibility(a, b, is_clear, self.is_fine(a, b, NOT_VISIBLE * unoccluded));
         let unsure = match seen {
-            0.0 => NOT_SEEN,
-            seen if seen < 1.0 => PARTLY_SEEN,
-            _ => SEEN,
+            0.0 => NOT_VISIBLE,
+            seen if seen < 1.0 => PARTLY_VISIBLE,
+            _ => ALL_VISIBLE,
         };
         let doubt = unoccluded * (variation * seen + unsure);
         let link = ExchangeLink { a, b, exchange: unoccluded * seen };
@@ -246,7 +246,7 @@ impl RefinementOracle<'_, '_> {
                 let to = to[(i + shift + round) % POINTS];
                 let weight = kernel(*from, to);
                 if weight > 0.0 && weight.is_finite() {
-                    seen += weight * self.sight.between(*from, to);
+                    seen += weight * self.sight.transmittance(*from, to);
                     all += weight;
                 }
             }

@@ -99,9 +99,9 @@ impl Radiosity {
         let finest = (settings.finest * diagonal).max(f64::MIN_POSITIVE);
         let lengths = [finest, COARSEST * finest];
         let contacts =
-            Contacts::new(&sight, (diagonal, finest), |t| plan.keeps_object(prepared.object_of[t as usize] as usize));
+            Contacts::new(&sight, (diagonal, finest), |t| plan.includes_object(prepared.object_of[t as usize] as usize));
         let patches = patches(prepared, plan, &sight);
-        let hierarchy = visible::lit(&sight, patches, &contacts, (exitance, shadows), lengths);
+        let hierarchy = visible::lit_hierarchy(&sight, patches, &contacts, (exitance, shadows), lengths);
         if hierarchy.nodes.is_empty() {
             return Ok(Radiosity { light: SurfaceLight::dark(prepared), report: RadiosityReport::default() });
         }
@@ -123,7 +123,7 @@ impl Radiosity {
             let views = corners.as_ref().map(|corners| gatherer.views(&links, corners, &elements.sent));
             let looks = views
                 .as_ref()
-                .map(|views| visible::seen(&sight, &elements, (&leaves, views.rows()), settings.directions));
+                .map(|views| visible::leaf_visibility(&sight, &elements, (&leaves, views.rows()), settings.directions));
             let tolerance = if is_last { settings.tolerance } else { 1e-2 };
             let last = looks.as_ref().zip(views.as_ref());
             let (irradiance, light) = light(&elements, &links, last, (tolerance, &stopped), &mut report)?;
@@ -149,8 +149,8 @@ impl Radiosity {
     /// How a side of a triangle is divided into elements; none where no light comes.
     ///
     /// - `outside`: whether it is the outer side.
-    pub fn division(&self, triangle: u32, outside: bool) -> Option<ElementTree> {
-        self.light.division(triangle, outside)
+    pub fn element_tree(&self, triangle: u32, outside: bool) -> Option<ElementTree> {
+        self.light.element_tree(triangle, outside)
     }
 }
 
@@ -165,9 +165,9 @@ fn patches(prepared: &Prepared, plan: &Plan, sight: &VisibilityTester<'_>) -> Ve
     let appearance = &sight.world.appearance;
     let sides = |triangle: u32| {
         let object = prepared.object_of[triangle as usize];
-        let is_diffuse = || appearance.optics(object, prepared.material_number(triangle)).is_diffuse();
+        let is_diffuse = || appearance.bsdf(object, prepared.material_number(triangle)).is_diffuse();
         let [a, b, c] = prepared.corners(triangle);
-        let takes_part = plan.keeps_object(object as usize) && is_diffuse() && normal_and_area([a, b, c]).1 > 0.0;
+        let takes_part = plan.includes_object(object as usize) && is_diffuse() && normal_and_area([a, b, c]).1 > 0.0;
         let side = |corners, outside| RadiosityPatch { corners, triangle, outside };
         let sides = takes_part.then(|| [side([a, b, c], true), side([a, c, b], false)]);
         sides.into_iter().flatten()

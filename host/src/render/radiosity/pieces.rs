@@ -29,7 +29,7 @@ impl DisjointSets {
     /// Whether each is joined to one that is lit.
     ///
     /// - `are_lit`: tells of some whether they are lit. It is asked no more than needs be.
-    pub(super) fn alight(&mut self, are_lit: impl Fn(&[u32]) -> Vec<bool>) -> Vec<bool> {
+    pub(super) fn joined_to_lit(&mut self, are_lit: impl Fn(&[u32]) -> Vec<bool>) -> Vec<bool> {
         let mut root_lit = vec![false; self.0.len()];
         let mut next = 0;
         while next < self.0.len() {

@@ -14,7 +14,7 @@ use serde::de::DeserializeOwned;
 /// Rounding errors, in units of the last place of the largest coordinate, that rays keep clear of.
 const CLEARANCE_ULPS: f64 = 64.0;
 /// Surfaces that let light straight through and that a ray is led through, at the most.
-const MOST_PASSED: usize = 64;
+const MOST_PASSABLE: usize = 64;
 
 /// Asks rays.
 pub(super) struct VisibilityTester<'a> {
@@ -56,10 +56,10 @@ impl<'a> VisibilityTester<'a> {
     /// The part of light that comes from one point to another, in the mean over what light carries, 0..=1.
     ///
     /// Each with its unit normal, on the sides that see each other.
-    pub(super) fn between(&self, [from, from_normal]: [DVec3; 2], [to, to_normal]: [DVec3; 2]) -> f64 {
+    pub(super) fn transmittance(&self, [from, from_normal]: [DVec3; 2], [to, to_normal]: [DVec3; 2]) -> f64 {
         let origin = from + from_normal * self.clearance;
         let direction = to + to_normal * self.clearance - origin;
-        let passed = self.world.passed(&Ray { origin, direction }, 1.0, (usize::MAX, None), (0, 0.0)).0;
+        let passed = self.world.transmittance(&Ray { origin, direction }, 1.0, (usize::MAX, None), (0, 0.0)).0;
         let lanes = self.world.appearance.wavelengths.lanes();
         passed.0[..lanes].iter().sum::<f64>() / lanes as f64
     }
@@ -82,29 +82,29 @@ impl<'a> VisibilityTester<'a> {
     ///
     /// - `place`: a point with its unit normal, told which one and a point of the unit square.
     /// - `number`: of the element: each has directions of its own. `count`: of directions.
-    pub(super) fn around(&self, place: impl Fn(u32, [f64; 2]) -> [DVec3; 2], number: u64, count: u32) -> Vec<RayTarget> {
+    pub(super) fn trace_hemisphere(&self, place: impl Fn(u32, [f64; 2]) -> [DVec3; 2], number: u64, count: u32) -> Vec<RayTarget> {
         let sequence = SobolSequence::new(self.seed, number);
         let look = |index: u32| {
             let [point, normal] = place(index, sequence.point(index, 0));
             let towards = cosine_hemisphere(sequence.point(index, 1), normal);
-            self.along(&Ray { origin: point + normal * self.clearance, direction: towards })
+            self.trace(&Ray { origin: point + normal * self.clearance, direction: towards })
         };
         (0..count).map(look).collect()
     }
 
     /// What a ray meets first that light does not go straight through.
-    fn along(&self, ray: &Ray) -> RayTarget {
+    fn trace(&self, ray: &Ray) -> RayTarget {
         let (world, prepared) = (self.world, self.world.appearance.prepared);
         let mut from = 0.0;
-        for _ in 0..MOST_PASSED {
-            let struck = world.struck(ray, from);
+        for _ in 0..MOST_PASSABLE {
+            let struck = world.first_triangle(ray, from);
             let t_max = struck.map_or(f64::INFINITY, |(hit, _)| hit.t);
-            if world.appearance.glow(ray, from, t_max, 0).is_some() {
+            if world.appearance.intersect_lights(ray, from, t_max, 0).is_some() {
                 return RayTarget::Lamp;
             }
             let Some((hit, triangle)) = struck else { return RayTarget::Nothing };
             let optics =
-                world.appearance.optics(prepared.object_of[triangle as usize], prepared.material_number(triangle));
+                world.appearance.bsdf(prepared.object_of[triangle as usize], prepared.material_number(triangle));
             if !optics.is_passable() {
                 let [a, b, c] = prepared.corners(triangle);
                 let outside = (b - a).cross(c - a).dot(ray.direction) < 0.0;

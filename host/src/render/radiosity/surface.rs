@@ -117,7 +117,7 @@ impl SurfaceLight {
 
 impl SurfaceLight {
     /// How a side of a triangle is divided; none where no light comes.
-    pub(super) fn division(&self, triangle: u32, outside: bool) -> Option<ElementTree> {
+    pub(super) fn element_tree(&self, triangle: u32, outside: bool) -> Option<ElementTree> {
         let patch = self.patch_of[triangle as usize][usize::from(!outside)];
         (patch != NONE).then(|| {
             let node = self.hierarchy.node_of[patch as usize] as usize;
@@ -126,14 +126,14 @@ impl SurfaceLight {
                     let corners = self.hierarchy.patches[patch as usize].corners;
                     ElementTree { corners, parts: Vec::new(), is_cut: false }
                 }
-                false => self.division_of(node),
+                false => self.tree_of(node),
             }
         })
     }
 
-    fn division_of(&self, node: usize) -> ElementTree {
+    fn tree_of(&self, node: usize) -> ElementTree {
         let node = &self.hierarchy.nodes[node];
-        let parts = node.children().filter(|_| !node.is_dark).map(|child| self.division_of(child)).collect();
+        let parts = node.children().filter(|_| !node.is_dark).map(|child| self.tree_of(child)).collect();
         ElementTree { corners: node.corners, parts, is_cut: node.is_cut }
     }
 }

@@ -10,13 +10,13 @@ use super::sight::{RayTarget, VisibilityTester};
 use glam::DVec3;
 
 /// Directions in which a patch looks around for each of its parts, and at the most.
-const LOOKS: u32 = 16;
-const MOST_LOOKS: u32 = 1024;
+const DIRECTIONS: u32 = 16;
+const MOST_DIRECTIONS: u32 = 1024;
 
 /// The hierarchy of the patches to which light comes, straight or from others; elements of them to which none comes are dark.
 ///
 /// - `finest`, `coarsest`: lengths; patches are looked at in parts of the second.
-pub(super) fn lit(
+pub(super) fn lit_hierarchy(
     sight: &VisibilityTester<'_>,
     patches: Vec<RadiosityPatch>,
     contacts: &Contacts,
@@ -79,9 +79,9 @@ fn dark(
             return Vec::new();
         }
         let parts = (node.area / (coarsest * coarsest)).ceil().max(1.0);
-        let count = (f64::from(LOOKS) * parts).min(f64::from(MOST_LOOKS)) as u32;
+        let count = (f64::from(DIRECTIONS) * parts).min(f64::from(MOST_DIRECTIONS)) as u32;
         let of = |seen: RayTarget| element(hierarchy, &patch_of, seen);
-        let seen = sight.around(|index, uniform| hierarchy.place(number, index, uniform), u64::from(number), count);
+        let seen = sight.trace_hemisphere(|index, uniform| hierarchy.place(number, index, uniform), u64::from(number), count);
         let mut seen: Vec<u32> = seen.into_iter().map(of).filter(|node| *node != NONE).collect();
         seen.sort_unstable();
         seen.dedup();
@@ -92,7 +92,7 @@ fn dark(
     for (number, seen) in (0..).zip(&seen) {
         seen.iter().for_each(|other| joined.join(number, *other));
     }
-    joined.alight(|some| sight.map(some, |_, node| is_lit(*node))).iter().map(|alight| !alight).collect()
+    joined.joined_to_lit(|some| sight.map(some, |_, node| is_lit(*node))).iter().map(|alight| !alight).collect()
 }
 
 fn is_any_lit(corners: [DVec3; 3], coarsest: f64, at: &impl Fn(DVec3) -> bool) -> bool {
@@ -128,7 +128,7 @@ fn element(hierarchy: &Hierarchy, patch_of: &[[u32; 2]], seen: RayTarget) -> u32
 /// What leaves see.
 ///
 /// - `row`: for each leaf, the part of all that it sees that exchanges light.
-pub(super) fn seen(
+pub(super) fn leaf_visibility(
     sight: &VisibilityTester<'_>,
     elements: &Elements<'_>,
     (leaves, row): (&[u32], Vec<f64>),
@@ -147,7 +147,7 @@ pub(super) fn seen(
             leaf => place[leaf as usize],
         };
         sight
-            .around(|index, uniform| hierarchy.place(*leaf, index, uniform), own, directions)
+            .trace_hemisphere(|index, uniform| hierarchy.place(*leaf, index, uniform), own, directions)
             .into_iter()
             .map(of)
             .collect::<Vec<u32>>()
@@ -158,7 +158,7 @@ pub(super) fn seen(
         seen.iter().filter(|other| **other != NONE).for_each(|other| joined.join(number, *other));
     }
     let sends = |leaf: u32| (elements.direct[leaf as usize] + elements.extra[leaf as usize]).max() > 0.0;
-    let alight = joined.alight(|some| some.iter().map(|number| sends(leaves[*number as usize])).collect());
+    let alight = joined.joined_to_lit(|some| some.iter().map(|number| sends(leaves[*number as usize])).collect());
     let part = |seen: &Vec<u32>| seen.iter().filter(|other| **other != NONE).count() as f64 / f64::from(directions);
     let (part, is_dark) = (seen.iter().map(part).collect(), alight.iter().map(|alight| !alight).collect());
     LeafVisibility { directions, part, row, is_dark }

@@ -79,7 +79,7 @@ impl RayTracer<'_> {
                 continue;
             }
             if let Some(adaptive) = &mut adaptive {
-                adaptive.aim(film, *samples, if self.two_way.is_some() { SHARING } else { u32::MAX });
+                adaptive.begin_pass(film, *samples, if self.two_way.is_some() { SHARING } else { u32::MAX });
             }
             let before = number.checked_sub(1).map_or(0, |last| passes[last]);
             let goal = |pixel: usize| match &adaptive {
@@ -96,7 +96,7 @@ impl RayTracer<'_> {
                 Some(two_way) if is_needed => {
                     (watch.stage)("while following light from lamps");
                     let pass = (samples - 1) / SHARING;
-                    let caught = pool.install(|| two_way.caught(&self.world, pass, watch));
+                    let caught = pool.install(|| two_way.trace_pass(&self.world, pass, watch));
                     if caught.is_none() {
                         is_finished = false;
                         break;
@@ -107,7 +107,7 @@ impl RayTracer<'_> {
                 _ => None,
             };
             balance = balance.or(caught.as_ref().map(PhotonEstimator::balance));
-            let tracer = self.tracer(caught.as_ref(), &eye, !film.guides().is_empty());
+            let tracer = self.tracer(caught.as_ref(), &eye, !film.features().is_empty());
             loop {
                 let rows = f64::from(order.height);
                 let rows_done = AtomicU64::new(0);
@@ -162,7 +162,7 @@ impl RayTracer<'_> {
                 });
             }
             if let Some(adaptive) = &mut adaptive {
-                adaptive.pass(*samples);
+                adaptive.end_pass(*samples);
             }
             if watch.is_cancelled() || is_late() {
                 is_finished = number + 1 == passes.len();
@@ -186,7 +186,7 @@ impl RayTracer<'_> {
     ///
     /// # Errors
     /// [`RenderError`].
-    pub fn go_on(
+    pub fn resume(
         &self,
         mut film: Film,
         view: &View,
@@ -196,9 +196,9 @@ impl RayTracer<'_> {
     ) -> Result<Rendering, RenderError> {
         if order.denoise {
             let pixels = u64::from(order.width) * u64::from(order.height);
-            memory::ask(denoising::BYTES * pixels, || "denoising".into()).map_err(PictureError::from)?;
-            if film.guides().is_empty() && film.samples() == [0, 0] {
-                film = film.with_guides();
+            memory::reserve(denoising::BYTES * pixels, || "denoising".into()).map_err(PictureError::from)?;
+            if film.features().is_empty() && film.samples() == [0, 0] {
+                film = film.with_features();
             }
         }
         (watch.stage)("while rendering");

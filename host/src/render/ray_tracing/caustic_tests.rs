@@ -35,7 +35,7 @@ pub(super) fn down_on(at: DVec3, half: f64, height: f64) -> View {
 /// A mirror of a third of a cylinder of radius 1 around the y axis, hollow towards −x, on a floor.
 fn hollow_mirror(height: f64, light: Light) -> Scene {
     let corners = [(1.0, -0.02), (1.02, -0.02), (1.02, height), (1.0, height)].map(|(x, y)| DVec2::new(x, y));
-    let bent = Primitive::Turning { contours: vec![corners.to_vec()], turn: 1.0 / 3.0 };
+    let bent = Primitive::RevolvedPolygon { contours: vec![corners.to_vec()], turn: 1.0 / 3.0 };
     let objects = vec![
         block(DVec3::new(5.0, 0.1, 5.0), DVec3::new(0.0, -0.05, 0.0), diffuse(0.5)),
         object(Shape::from(bent), DMat4::from_rotation_y(PI / 6.0), mirror(1.0)),

@@ -62,7 +62,7 @@ fn classes(scene: &Scene) -> [f64; 5] {
     let tracer = ray_tracer(&prepared, &plan).expect("an octree");
     let order = RenderOrder::of(&scene.settings);
     let film = Film::new(order.width, order.height).expect("small").with_classes();
-    let rendering = tracer.go_on(film, &to_the_left(), &order, &Watch::NOBODY, None).expect("a picture");
+    let rendering = tracer.resume(film, &to_the_left(), &order, &Watch::NOBODY, None).expect("a picture");
     let film = &rendering.film;
     let count = f64::from(order.samples) * film.tallies().len() as f64;
     let of = |class: usize| film.classes().iter().map(|classes| classes[class].x).sum::<f64>() / count;

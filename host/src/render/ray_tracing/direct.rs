@@ -1,7 +1,7 @@
 //! Light that comes to an element from lights, without a way in between.
 
 use super::draws::SampleDimension;
-use super::encounter::{PathVertex, counted};
+use super::encounter::{PathVertex, power_heuristic};
 use crate::color::Channels;
 use crate::illumination::light::LightSample;
 use crate::illumination::optics::LobeClass;
@@ -24,24 +24,24 @@ pub(super) struct DirectLighting<'a> {
 
 impl<'a> DirectLighting<'a> {
     pub(super) fn new(world: &'a World<'a>, shadows: bool, samples: u32) -> DirectLighting<'a> {
-        let spread = world.appearance.sources.iter().any(|(_, source)| !source.is_sharp());
+        let spread = world.appearance.sources.iter().any(|(_, source)| !source.is_delta());
         DirectLighting { world, shadows, samples, spread }
     }
 
     /// Whether some light has a size, so that other rays may meet it.
-    pub(super) fn is_spread(&self) -> bool {
+    pub(super) fn has_area_lights(&self) -> bool {
         self.spread
     }
 
     /// Whether something is seen where rays meet nothing.
     pub(super) fn has_sky(&self) -> bool {
-        self.world.appearance.sources.iter().any(|(_, source)| source.is_beyond())
+        self.world.appearance.sources.iter().any(|(_, source)| source.is_infinite())
     }
 
     /// Radiance towards the viewer by the light of all lights, of broad lobes and of narrow ones.
     ///
     /// - `add`: is told what each light brings, by its number.
-    pub(super) fn light(
+    pub(super) fn radiance(
         &self,
         encounter: &PathVertex<'_>,
         counts: &mut RayCounts,
@@ -50,8 +50,8 @@ impl<'a> DirectLighting<'a> {
         let PathVertex { found, sighting, draws, leg, .. } = encounter;
         let mut sum = [Channels::ZERO; 2];
         for (index, (number, source)) in self.world.appearance.sources.iter().enumerate() {
-            let samples = if source.is_sharp() { 1 } else { self.samples };
-            if encounter.is_known && source.is_caught() {
+            let samples = if source.is_delta() { 1 } else { self.samples };
+            if encounter.is_known && source.emits_photons() {
                 continue;
             }
             if self.is_dark(encounter, index) {
@@ -60,11 +60,11 @@ impl<'a> DirectLighting<'a> {
             }
             let mut part = [Channels::ZERO; 2];
             for sample in 0..samples {
-                let uniform = draws.of_several(*leg, SampleDimension::Lights, *number as u32, [sample, samples]);
+                let uniform = draws.for_one_of_several(*leg, SampleDimension::Lights, *number as u32, [sample, samples]);
                 if let Some(beam) =
-                    source.beam(found.element.position, Some(found.element.normal), uniform, sighting.comb)
+                    source.sample_incident(found.element.position, Some(found.element.normal), uniform, sighting.comb)
                 {
-                    let arriving = self.arriving(encounter, index, &beam, counts);
+                    let arriving = self.reflected(encounter, index, &beam, counts);
                     part.iter_mut().zip(arriving).for_each(|(part, light)| *part += light);
                 }
             }
@@ -78,19 +78,19 @@ impl<'a> DirectLighting<'a> {
     }
 
     /// What a beam adds by broad lobes and by narrow ones.
-    fn arriving(&self, encounter: &PathVertex<'_>, index: usize, beam: &LightSample, counts: &mut RayCounts) -> [Channels; 2] {
+    fn reflected(&self, encounter: &PathVertex<'_>, index: usize, beam: &LightSample, counts: &mut RayCounts) -> [Channels; 2] {
         let PathVertex { found, frame, sighting, among, highest, .. } = encounter;
         let optics = found.optics;
         let light = frame.local(beam.towards);
         let source = &self.world.appearance.sources[index].1;
-        let ended = [LobeClass::Solved, LobeClass::Ended].map(|which| optics.value(which, sighting, light));
+        let ended = [LobeClass::Radiosity, LobeClass::LightsOnly].map(|which| optics.value(which, sighting, light));
         let mut values = [ended[0] + ended[1], Channels::ZERO];
         // Without what a further leg brings.
         let mut whole = values;
-        for (which, value) in LobeClass::CONTINUED.into_iter().zip(&mut values) {
+        for (which, value) in LobeClass::CONTINUING.into_iter().zip(&mut values) {
             let mut continued = optics.value(which, sighting, light);
             let most = continued.max();
-            let is_cut = if *highest > 0.0 { !source.is_sky() } else { source.is_caught() };
+            let is_cut = if *highest > 0.0 { !source.is_sky() } else { source.emits_photons() };
             if which == LobeClass::Narrow && most > *highest && is_cut {
                 continued *= highest / most;
             }
@@ -99,7 +99,7 @@ impl<'a> DirectLighting<'a> {
                 && continued != Channels::ZERO
             {
                 // The rest is what a further leg brings that meets the light.
-                continued *= counted(Some(density), optics.density(which, sighting, light, *among));
+                continued *= power_heuristic(Some(density), optics.pdf(which, sighting, light, *among));
             }
             *value += continued;
         }
@@ -110,8 +110,8 @@ impl<'a> DirectLighting<'a> {
         }
         counts.shadow += 1;
         let (ray, t_max) = self.ray(encounter, index, beam, light.z > 0.0);
-        let way = self.world.way(ray.origin, index);
-        let (passed, is_cleared) = self.world.passed(&ray, t_max, (index, way), (sighting.comb, encounter.draws.time));
+        let way = self.world.occluders(ray.origin, index);
+        let (passed, is_cleared) = self.world.transmittance(&ray, t_max, (index, way), (sighting.comb, encounter.draws.time));
         match is_cleared {
             // A further leg would be bent, and brings nothing.
             true => whole.map(|value| value * beam.irradiance * light.z.abs() * passed),
@@ -121,7 +121,7 @@ impl<'a> DirectLighting<'a> {
 
     /// Whether nothing comes from a light to an element, as far as the light buffer knows.
     fn is_dark(&self, encounter: &PathVertex<'_>, index: usize) -> bool {
-        let dark = |from| matches!(self.world.way(from, index), Some(Occluders::Dark));
+        let dark = |from| matches!(self.world.occluders(from, index), Some(Occluders::Dark));
         let element = &encounter.found.element;
         self.shadows && dark(element.leave_curved) && dark(element.through)
     }
@@ -135,7 +135,7 @@ impl<'a> DirectLighting<'a> {
         }
         let source = &self.world.appearance.sources[index].1;
         let at = element.position + beam.towards * beam.distance;
-        let t_max = if source.is_sharp() || source.is_surface() { 1.0 } else { SHORT };
+        let t_max = if source.is_delta() || source.is_surface() { 1.0 } else { SHORT };
         (Ray { origin, direction: at - origin }, t_max)
     }
 }

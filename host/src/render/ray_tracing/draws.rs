@@ -42,7 +42,7 @@ impl PathSampler {
     }
 
     /// These draws at a time drawn from those in which a shutter is open for so long; a single sample in their middle.
-    pub(super) fn within(self, shutter: f64) -> PathSampler {
+    pub(super) fn at_random_time(self, shutter: f64) -> PathSampler {
         let part = if self.of <= 1 { 0.5 } else { self.point(SampleDimension::Time)[0] };
         PathSampler { time: (part - 0.5) * shutter, ..self }
     }
@@ -63,13 +63,13 @@ impl PathSampler {
     /// A point of the unit square for a leg of the sample's way.
     ///
     /// - `leg`: its number, above 0, unlike that of all other legs. `more`: which of several for the same purpose.
-    pub(super) fn leg(&self, leg: u32, purpose: SampleDimension, more: u32) -> [f64; 2] {
-        self.of_several(leg, purpose, more, [0, 1])
+    pub(super) fn for_segment(&self, leg: u32, purpose: SampleDimension, more: u32) -> [f64; 2] {
+        self.for_one_of_several(leg, purpose, more, [0, 1])
     }
 
     /// One of several points for the same: they are as far from each other, and from those of other samples, as those of
     /// as many samples are.
-    pub(super) fn of_several(&self, leg: u32, purpose: SampleDimension, more: u32, [which, of]: [u32; 2]) -> [f64; 2] {
+    pub(super) fn for_one_of_several(&self, leg: u32, purpose: SampleDimension, more: u32, [which, of]: [u32; 2]) -> [f64; 2] {
         let index = self.index.wrapping_mul(of).wrapping_add(which);
         self.sequence.point(index, u64::from(leg) << 32 | (purpose as u64 + u64::from(more)))
     }
@@ -84,8 +84,8 @@ mod tests {
         for (index, of) in [(0, 16), (3, 16), (0, 1)] {
             // Of one sample, and of sixteen that have one each.
             let points = (0..16).map(|k| match of {
-                16 => PathSampler::new(5, 7, index, 4).of_several(2, SampleDimension::Lights, 1, [k, of]),
-                _ => PathSampler::new(5, 7, k, 16).leg(2, SampleDimension::Lights, 1),
+                16 => PathSampler::new(5, 7, index, 4).for_one_of_several(2, SampleDimension::Lights, 1, [k, of]),
+                _ => PathSampler::new(5, 7, k, 16).for_segment(2, SampleDimension::Lights, 1),
             });
             let mut cells: Vec<u32> = points.map(|[x, y]| (x * 4.0) as u32 * 4 + (y * 4.0) as u32).collect();
             cells.sort_unstable();

@@ -31,7 +31,7 @@ pub(super) struct PathVertex<'a> {
 ///
 /// # Source
 /// Veach and Guibas 1995, the power heuristic.
-pub(super) fn counted(leg: Option<f64>, light: f64) -> f64 {
+pub(super) fn power_heuristic(leg: Option<f64>, light: f64) -> f64 {
     match leg {
         None => 1.0,
         Some(density) => {

@@ -52,7 +52,7 @@ impl PathNote {
         PathNote::new(depth, what.into(), Some(adds))
     }
 
-    pub(super) fn lit(depth: u32, number: usize, adds: Channels) -> PathNote {
+    pub(super) fn direct_light(depth: u32, number: usize, adds: Channels) -> PathNote {
         PathNote::new(depth, format!("lit by light {}", number + 1), Some(adds))
     }
 

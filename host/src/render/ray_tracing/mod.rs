@@ -84,8 +84,8 @@ impl<'a> RayTracer<'a> {
     /// - `plan`: of the world. Where it needs radiosity, the light of a solution is to be given by [`RayTracer::with_indirect`].
     /// - `shelf`: where caught light is kept beyond this tracer; nowhere without one.
     pub fn new(world: World<'a>, plan: &'a Plan, shelf: Option<&'a PhotonStore>) -> RayTracer<'a> {
-        let keeps = |object| plan.keeps_object(object);
-        let two_way = plan.needs(Stage::CaughtLight).then(|| PhotonMapper::new(&world, keeps, shelf)).flatten();
+        let keeps = |object| plan.includes_object(object);
+        let two_way = plan.needs(Stage::PhotonMap).then(|| PhotonMapper::new(&world, keeps, shelf)).flatten();
         RayTracer { plan, world, two_way, indirect: None }
     }
 
@@ -100,8 +100,8 @@ impl<'a> RayTracer<'a> {
     }
 
     /// The light of lamps that was followed, as the first pass caught it; none if none is followed, or if it was stopped.
-    pub(super) fn caught(&self, watch: &Watch<'_>) -> Option<PhotonEstimator<'_>> {
-        self.two_way.as_ref().and_then(|two_way| two_way.caught(&self.world, 0, watch))
+    pub(super) fn photon_estimator(&self, watch: &Watch<'_>) -> Option<PhotonEstimator<'_>> {
+        self.two_way.as_ref().and_then(|two_way| two_way.trace_pass(&self.world, 0, watch))
     }
 
     /// The scene.
@@ -146,14 +146,14 @@ impl<'a> RayTracer<'a> {
     ) -> (PixelSample, RadianceByClass, usize) {
         let pixel = u64::from(y) * u64::from(order.width) + u64::from(x);
         let draws = PathSampler::new(order.seed, pixel, index, order.samples);
-        let draws = if self.world.moves() { draws.within(self.prepared().settings.geometry.shutter) } else { draws };
+        let draws = if self.world.moves() { draws.at_random_time(self.prepared().settings.geometry.shutter) } else { draws };
         let ([dx, dy], weight) = draws.position(order.filter);
         let wavelengths = &self.world.appearance.wavelengths;
-        let comb = wavelengths.comb(draws.point(SampleDimension::Wavelengths)[0]);
+        let comb = wavelengths.set_at(draws.point(SampleDimension::Wavelengths)[0]);
         let at = [f64::from(x) + dx, f64::from(y) + dy];
         let Some(sight) = eye.ray(at, draws.point(SampleDimension::Lens)) else {
-            let background = self.world.appearance.beyond(&AHEAD, None, comb, |_, _| 1.0);
-            let radiance = if order.matte { DVec3::ZERO } else { weight * wavelengths.seen(comb, background) };
+            let background = self.world.appearance.escaped_radiance(&AHEAD, None, comb, |_, _| 1.0);
+            let radiance = if order.matte { DVec3::ZERO } else { weight * wavelengths.to_srgb(comb, background) };
             let classes = [radiance, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO];
             return (PixelSample { radiance, weight, albedo: DVec3::splat(weight), ..PixelSample::default() }, classes, comb);
         };
@@ -161,7 +161,7 @@ impl<'a> RayTracer<'a> {
         let first =
             seen.first.map(|FirstHit { distance, normal, object, material }| (distance, normal, [object, material]));
         let left_out = order.matte && !seen.covered;
-        let light = |class: usize| weight * (wavelengths.seen(comb, seen.radiance[class]) + seen.other[class]);
+        let light = |class: usize| weight * (wavelengths.to_srgb(comb, seen.radiance[class]) + seen.other[class]);
         let classes = if left_out { RadianceByClass::default() } else { [0, 1, 2, 3].map(light) };
         let shared = if left_out { 0.0 } else { weight.abs() * seen.shared.sqrt() };
         let sample = PixelSample {
@@ -169,7 +169,7 @@ impl<'a> RayTracer<'a> {
             weight,
             covered: seen.covered,
             first,
-            albedo: weight * wavelengths.broad(seen.albedo),
+            albedo: weight * wavelengths.broad_bands(seen.albedo),
             normal: weight * seen.normal,
             shared,
         };
@@ -193,7 +193,7 @@ impl<'a> RayTracer<'a> {
         let told = |index: u32| {
             let pass = index / SHARING;
             let two_way = self.two_way.as_ref();
-            let caught = two_way.and_then(|two_way| two_way.caught(&self.world, pass, &Watch::NOBODY));
+            let caught = two_way.and_then(|two_way| two_way.trace_pass(&self.world, pass, &Watch::NOBODY));
             let tracer = self.tracer(caught.as_ref(), &eye, false);
             let (mut notes, mut work) = (Vec::new(), PathScratch::default());
             let (sample, _, comb) = self.sample((&tracer, &eye, order), pixel, index, &mut work, PathLog::to(&mut notes));
@@ -215,6 +215,6 @@ impl Renderer for RayTracer<'_> {
     }
 
     fn render(&self, view: &View, order: &RenderOrder, watch: &Watch<'_>) -> Result<Rendering, RenderError> {
-        self.go_on(Film::new(order.width, order.height)?, view, order, watch, None)
+        self.resume(Film::new(order.width, order.height)?, view, order, watch, None)
     }
 }

@@ -54,7 +54,7 @@ fn light_from_a_database_gives_the_same_picture_to_the_bit_and_is_not_followed_a
     let (plain, _) = picture(&scene, None);
     assert_eq!(picture(&scene, Some(&path)).0, plain);
     let store = Store::open(&path).expect("a database");
-    assert_eq!(store.entries(Some(RecordKind::CaughtLight)).expect("a list").len(), 4, "two lamps, two passes");
+    assert_eq!(store.entries(Some(RecordKind::Photons)).expect("a list").len(), 4, "two lamps, two passes");
 }
 
 #[test]

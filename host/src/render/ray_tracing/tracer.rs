@@ -2,7 +2,7 @@
 
 use super::direct::DirectLighting;
 use super::draws::{PathSampler, SampleDimension};
-use super::encounter::{PathVertex, counted};
+use super::encounter::{PathVertex, power_heuristic};
 use super::explain::{PathLog, PathNote};
 use crate::color::Channels;
 use crate::color::srgb::LUMINANCE;
@@ -11,7 +11,7 @@ use crate::illumination::optics::{LobeSelection, BsdfSample, ShadingContext};
 use crate::numeric::ray::Ray;
 use crate::render::indirect::{IndirectLight, IrradiancePart};
 use crate::render::two_way::PhotonEstimator;
-use crate::render::world::{RayCone, SurfaceInteraction, Media, RayHit, BoundedRay, World, diffuse};
+use crate::render::world::{RayCone, SurfaceInteraction, Media, RayHit, BoundedRay, World, diffuse_albedo};
 use crate::render::{PathClass, RayCounts};
 use crate::scene::Caustics;
 use glam::DVec3;
@@ -19,7 +19,7 @@ use glam::DVec3;
 /// Legs that would pass on less than this fraction of the light are followed by chance only, and then count for more.
 pub const ENERGY_CUTOFF: f64 = 1.0 / 4096.0;
 /// Where a way parts, both parts are followed as long as each passes on so much of the light.
-const WORTH_PARTING: f64 = 1.0 / 64.0;
+const LEAST_SPLIT: f64 = 1.0 / 64.0;
 /// What a lamp reflects on an element that is seen by spread light is cut off at this value, 1/sr, unless caustics count:
 /// a diffuse surface has at most 1/π.
 ///
@@ -68,33 +68,33 @@ struct PathSegment {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum PathHistory {
     /// No broad one.
-    Seen,
+    NoBroad,
     /// A broad one first, and none but narrow ones behind.
-    Spread,
+    OneBroad,
     /// Narrow ones first, then a broad one, and none but narrow ones behind: what is met there is a caustic.
-    Thrown,
+    Caustic,
     /// Several broad ones.
-    Carried,
+    SeveralBroad,
 }
 
 impl PathHistory {
     /// With a turn before those that it has.
-    fn after(self, is_broad: bool) -> PathHistory {
+    fn extended(self, is_broad: bool) -> PathHistory {
         match (self, is_broad) {
-            (PathHistory::Seen, true) => PathHistory::Spread,
-            (_, true) => PathHistory::Carried,
-            (PathHistory::Spread, false) => PathHistory::Thrown,
+            (PathHistory::NoBroad, true) => PathHistory::OneBroad,
+            (_, true) => PathHistory::SeveralBroad,
+            (PathHistory::OneBroad, false) => PathHistory::Caustic,
             (course, false) => course,
         }
     }
 
     /// The class of light that leaves a lamp on it.
-    fn of_lamps(self) -> PathClass {
+    fn class(self) -> PathClass {
         match self {
-            PathHistory::Seen => PathClass::Emitted,
-            PathHistory::Spread => PathClass::Direct,
-            PathHistory::Thrown => PathClass::Caustic,
-            PathHistory::Carried => PathClass::Indirect,
+            PathHistory::NoBroad => PathClass::Emitted,
+            PathHistory::OneBroad => PathClass::Direct,
+            PathHistory::Caustic => PathClass::Caustic,
+            PathHistory::SeveralBroad => PathClass::Indirect,
         }
     }
 }
@@ -103,9 +103,9 @@ impl PathHistory {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum LastScattering {
     /// None: it was spread.
-    Spread,
+    NonDelta,
     /// It went through polished interfaces only.
-    Through,
+    ClearInterface,
     /// Others.
     Other,
 }
@@ -135,7 +135,7 @@ impl PathResult {
     }
 
     /// A light that a leg meets.
-    fn guide_by_light(&mut self, leg: &PathSegment) {
+    fn record_light_albedo(&mut self, leg: &PathSegment) {
         if leg.guides {
             self.albedo += leg.passed;
         }
@@ -209,7 +209,7 @@ impl<'a> PathTracer<'a> {
         };
         let appearance = &world.appearance;
         let has_others =
-            appearance.ambient.is_some() || appearance.sources.iter().any(|(_, source)| !source.is_caught());
+            appearance.ambient.is_some() || appearance.sources.iter().any(|(_, source)| !source.emits_photons());
         let direct = DirectLighting::new(world, shadows, settings.light.samples.max(1));
         PathTracer { world, direct, depth, caustics, caught, indirect, has_others, around, guides }
     }
@@ -236,7 +236,7 @@ impl<'a> PathTracer<'a> {
             media: self.around,
             lane: None,
             for_lights: false,
-            course: PathHistory::Seen,
+            course: PathHistory::NoBroad,
             turn: LastScattering::Other,
             is_known: false,
             guides: self.guides,
@@ -249,38 +249,38 @@ impl<'a> PathTracer<'a> {
                 _ => counts.reflected += 1,
             }
             let direction = leg.sight.ray.direction;
-            match self.world.meet(&leg.sight, comb, draws.time) {
+            match self.world.intersect(&leg.sight, comb, draws.time) {
                 RayHit::Nothing => {
                     let radiance = match leg.for_lights && !self.direct.has_sky() {
                         true => Channels::ZERO,
                         false => {
                             let ray = Ray { direction: direction.normalize(), ..leg.sight.ray };
-                            let part = |sky: &LightSource, density| self.part(&leg, sky, density);
-                            self.world.appearance.beyond(&ray, leg.normal, comb, part)
+                            let part = |sky: &LightSource, density| self.mis_weight(&leg, sky, density);
+                            self.world.appearance.escaped_radiance(&ray, leg.normal, comb, part)
                         }
                     };
-                    seen.add(leg.course.of_lamps(), leg.passed * radiance);
-                    seen.guide_by_light(&leg);
+                    seen.add(leg.course.class(), leg.passed * radiance);
+                    seen.record_light_albedo(&leg);
                     seen.covered |= leg.depth > 0;
                     log.note(|| PathNote::term(leg.depth, "meets nothing", leg.passed * radiance));
                 }
-                RayHit::Glow(index, glow) => {
-                    let absorbed = leg.media.absorbed(self.world, glow.t * direction.length() - leg.begin, comb);
+                RayHit::Light(index, glow) => {
+                    let absorbed = leg.media.transmittance(self.world, glow.t * direction.length() - leg.begin, comb);
                     let (number, source) = &self.world.appearance.sources[index];
-                    let radiance = absorbed * glow.radiance * self.part(&leg, source, glow.density);
-                    seen.add(leg.course.of_lamps(), leg.passed * radiance);
-                    seen.guide_by_light(&leg);
+                    let radiance = absorbed * glow.radiance * self.mis_weight(&leg, source, glow.density);
+                    seen.add(leg.course.class(), leg.passed * radiance);
+                    seen.record_light_albedo(&leg);
                     seen.covered = true;
                     log.note(|| PathNote::light(leg.depth, *number, leg.passed * radiance));
                 }
-                RayHit::Element(found) => {
+                RayHit::Surface(found) => {
                     if leg.depth == 0 {
                         let SurfaceInteraction { depth, object, material, .. } = found;
                         seen.first = Some(FirstHit { distance: depth, normal: found.element.normal, object, material });
                     }
                     seen.covered = true;
                     let counting = &mut SampleRecord { counts, log: &mut log, seen: &mut seen };
-                    self.arrive(leg, &found, (comb, draws), counting, waiting);
+                    self.scatter(leg, &found, (comb, draws), counting, waiting);
                 }
             }
         }
@@ -288,7 +288,7 @@ impl<'a> PathTracer<'a> {
     }
 
     /// What an element sends back along a leg, and the legs that go on from there.
-    fn arrive(
+    fn scatter(
         &self,
         mut leg: PathSegment,
         found: &SurfaceInteraction<'_>,
@@ -298,7 +298,7 @@ impl<'a> PathTracer<'a> {
     ) {
         let optics = found.optics;
         let towards = leg.sight.ray.direction.normalize();
-        leg.passed *= leg.media.absorbed(self.world, found.distance - leg.begin, comb);
+        leg.passed *= leg.media.transmittance(self.world, found.distance - leg.begin, comb);
         let crossing = leg.media.crossing(self.world, found, &leg.sight.ray);
         if !crossing.is_interface {
             let sight = BoundedRay { t_min: crossing.last, ..leg.sight };
@@ -307,11 +307,11 @@ impl<'a> PathTracer<'a> {
         }
         log.note(|| PathNote::element(leg.depth, self.world.appearance.prepared, found));
         if let Some((emission, factor)) =
-            self.world.emitted(found, towards, comb, |source, density| self.part(&leg, source, density))
+            self.world.emitted(found, towards, comb, |source, density| self.mis_weight(&leg, source, density))
         {
             let radiance = leg.passed * emission * factor;
-            seen.add(leg.course.of_lamps(), radiance);
-            seen.guide_by_light(&leg);
+            seen.add(leg.course.class(), radiance);
+            seen.record_light_albedo(&leg);
             log.note(|| PathNote::term(leg.depth, "emits", radiance));
         }
         if leg.for_lights && !optics.is_passable() {
@@ -322,21 +322,21 @@ impl<'a> PathTracer<'a> {
         let drawn = match leg.lane {
             None if found.disperses() => {
                 let visibility = self.world.appearance.wavelengths.visibility(comb);
-                leg.passed.drawn(visibility, draws.point(SampleDimension::Wavelengths)[1])
+                leg.passed.sample_lane(visibility, draws.point(SampleDimension::Wavelengths)[1])
             }
             _ => None,
         };
         let (lane, alone) = drawn.unwrap_or((leg.lane.unwrap_or(0), leg.passed));
-        let side = crossing.side(self.world, comb);
-        let sighting = ShadingContext { view: frame.local(-towards), comb, side, lane, painted: found.painted() };
+        let side = crossing.indices(self.world, comb);
+        let sighting = ShadingContext { view: frame.local(-towards), comb, side, lane, painted: found.texture_values() };
         if leg.for_lights {
-            let onward = optics.straight(&sighting);
-            waiting.extend(onward.and_then(|onward| self.straight(&leg, found, (onward, 0), draws)));
+            let onward = optics.straight_sample(&sighting);
+            waiting.extend(onward.and_then(|onward| self.straight_segment(&leg, found, (onward, 0), draws)));
             return;
         }
         if leg.guides {
-            let passed = self.world.appearance.wavelengths.broad(leg.passed).element_sum() / 3.0;
-            seen.albedo += leg.passed * optics.spread_albedo(&sighting);
+            let passed = self.world.appearance.wavelengths.broad_bands(leg.passed).element_sum() / 3.0;
+            seen.albedo += leg.passed * optics.non_delta_albedo(&sighting);
             seen.normal += found.element.normal * passed;
         }
         if let Some(ambient) = &self.world.appearance.ambient {
@@ -348,13 +348,13 @@ impl<'a> PathTracer<'a> {
             seen.add(PathClass::Indirect, leg.passed * radiance);
             log.note(|| PathNote::term(leg.depth, "light of other surfaces", leg.passed * radiance));
         }
-        let is_worth = |onward: BsdfSample| (leg.passed * onward.weight).max() > WORTH_PARTING;
+        let is_worth = |onward: BsdfSample| (leg.passed * onward.weight).max() > LEAST_SPLIT;
         let (count, all_worth) =
-            optics.mirrored(&sighting).fold((0, true), |(count, all), onward| (count + 1, all && is_worth(onward)));
-        let directions = count + usize::from(optics.spreads());
+            optics.specular_samples(&sighting).fold((0, true), |(count, all), onward| (count + 1, all && is_worth(onward)));
+        let directions = count + usize::from(optics.continues_non_delta());
         let parts = directions <= 1 || waiting.len() + directions <= MOST_WAITING && all_worth;
-        let among = if parts { LobeSelection::Spread } else { LobeSelection::All };
-        let highest = self.highest(&leg);
+        let among = if parts { LobeSelection::NonDelta } else { LobeSelection::All };
+        let highest = self.clamp_value(&leg);
         let encounter = PathVertex {
             found,
             behind: crossing.media,
@@ -367,20 +367,20 @@ impl<'a> PathTracer<'a> {
             is_known: leg.is_known,
             alone,
         };
-        if optics.answers_lights() {
-            let add = |number, radiance| log.note(|| PathNote::lit(leg.depth, number, leg.passed * radiance));
-            let light = self.direct.light(&encounter, counts, add);
+        if optics.has_non_delta() {
+            let add = |number, radiance| log.note(|| PathNote::direct_light(leg.depth, number, leg.passed * radiance));
+            let light = self.direct.radiance(&encounter, counts, add);
             for (is_broad, radiance) in [true, false].into_iter().zip(light) {
-                seen.add(leg.course.after(is_broad).of_lamps(), leg.passed * radiance);
+                seen.add(leg.course.extended(is_broad).class(), leg.passed * radiance);
             }
         }
-        if let Some(caught) = self.caught.filter(|_| optics.takes() && !leg.is_known) {
+        if let Some(caught) = self.caught.filter(|_| optics.stores_photons() && !leg.is_known) {
             let (light, error) =
-                caught.seen(found, &encounter.sighting, (leg.passed, leg.lane.is_some()), leg.course != PathHistory::Seen);
-            let first = leg.course.after(true).after(false).of_lamps();
-            if leg.course == PathHistory::Seen {
+                caught.radiance_estimate(found, &encounter.sighting, (leg.passed, leg.lane.is_some()), leg.course != PathHistory::NoBroad);
+            let first = leg.course.extended(true).extended(false).class();
+            if leg.course == PathHistory::NoBroad {
                 let seen_as = |(radiance, other): (Channels, DVec3)| {
-                    self.world.appearance.wavelengths.seen(comb, radiance) + other
+                    self.world.appearance.wavelengths.to_srgb(comb, radiance) + other
                 };
                 let luminance = light.map(seen_as).into_iter().sum::<DVec3>().dot(LUMINANCE);
                 seen.shared += (luminance * error).powi(2);
@@ -391,16 +391,16 @@ impl<'a> PathTracer<'a> {
                 log.note(|| PathNote::term(leg.depth, "caught light", radiance));
             }
         }
-        if optics.carries_on() {
-            let point = draws.leg(leg.number, SampleDimension::Direction, 0);
-            let [choice, _] = draws.leg(leg.number, SampleDimension::Choice, 0);
+        if optics.continues_paths() {
+            let point = draws.for_segment(leg.number, SampleDimension::Direction, 0);
+            let [choice, _] = draws.for_segment(leg.number, SampleDimension::Choice, 0);
             if parts {
-                let drawn = optics.spreads().then(|| optics.onward(&sighting, choice, point, among)).flatten();
-                let legs = optics.mirrored(&sighting).zip(0..).chain(drawn.map(|onward| (onward, 2)));
-                waiting.extend(legs.filter_map(|(onward, branch)| self.onward(&leg, &encounter, onward, branch)));
+                let drawn = optics.continues_non_delta().then(|| optics.sample(&sighting, choice, point, among)).flatten();
+                let legs = optics.specular_samples(&sighting).zip(0..).chain(drawn.map(|onward| (onward, 2)));
+                waiting.extend(legs.filter_map(|(onward, branch)| self.next_segment(&leg, &encounter, onward, branch)));
             } else {
-                let drawn = optics.onward(&sighting, choice, point, among);
-                waiting.extend(drawn.and_then(|onward| self.onward(&leg, &encounter, onward, 0)));
+                let drawn = optics.sample(&sighting, choice, point, among);
+                waiting.extend(drawn.and_then(|onward| self.next_segment(&leg, &encounter, onward, 0)));
             }
         }
     }
@@ -411,56 +411,56 @@ impl<'a> PathTracer<'a> {
         let corners = self.world.appearance.prepared.corners(found.triangle);
         let weights = crate::numeric::triangle::weights(corners, found.element.position);
         let irradiance = indirect.irradiance(found.triangle, found.element.outside, weights, IrradiancePart::Indirect);
-        Some(diffuse(found.optics, comb, found.painted()) * irradiance * std::f64::consts::FRAC_1_PI)
+        Some(diffuse_albedo(found.optics, comb, found.texture_values()) * irradiance * std::f64::consts::FRAC_1_PI)
     }
 
     /// How much a light counts that a leg meets.
     ///
     /// - `density`: with which the light would have drawn the leg's direction.
-    fn part(&self, leg: &PathSegment, source: &LightSource, density: f64) -> f64 {
-        let is_caustic = leg.density.is_none() && leg.course != PathHistory::Seen;
+    fn mis_weight(&self, leg: &PathSegment, source: &LightSource, density: f64) -> f64 {
+        let is_caustic = leg.density.is_none() && leg.course != PathHistory::NoBroad;
         match self.caustics {
             // What is not followed from lamps counts wherever it is met.
-            Caustics::PhotonMapped if !source.is_caught() => counted(leg.density, density),
+            Caustics::PhotonMapped if !source.emits_photons() => power_heuristic(leg.density, density),
             Caustics::PhotonMapped if leg.is_known => 0.0,
             // A shadow ray has gone through what is polished.
-            Caustics::LeftOut if leg.turn == LastScattering::Through && self.world.appearance.clears => 0.0,
-            Caustics::LeftOut if source.is_sky() => counted(leg.density, density),
+            Caustics::LeftOut if leg.turn == LastScattering::ClearInterface && self.world.appearance.clears => 0.0,
+            Caustics::LeftOut if source.is_sky() => power_heuristic(leg.density, density),
             Caustics::PhotonMapped | Caustics::LeftOut if is_caustic => 0.0,
-            _ => leg.lamps * counted(leg.density, density),
+            _ => leg.lamps * power_heuristic(leg.density, density),
         }
     }
 
     /// The greatest value with which narrow lobes may reflect a lamp where a leg arrives, 1/sr.
-    fn highest(&self, leg: &PathSegment) -> f64 {
+    fn clamp_value(&self, leg: &PathSegment) -> f64 {
         match self.caustics {
-            Caustics::PhotonMapped if leg.course != PathHistory::Seen => 0.0,
-            Caustics::LeftOut if leg.course != PathHistory::Seen => HIGHEST,
+            Caustics::PhotonMapped if leg.course != PathHistory::NoBroad => 0.0,
+            Caustics::LeftOut if leg.course != PathHistory::NoBroad => HIGHEST,
             _ => f64::INFINITY,
         }
     }
 
     /// The leg that goes on in a direction; none if it is not worth following.
-    fn onward(&self, leg: &PathSegment, encounter: &PathVertex<'_>, onward: BsdfSample, branch: u32) -> Option<PathSegment> {
+    fn next_segment(&self, leg: &PathSegment, encounter: &PathVertex<'_>, onward: BsdfSample, branch: u32) -> Option<PathSegment> {
         let PathVertex { found, frame, sighting, draws, highest, alone, .. } = *encounter;
         if onward.is_straight {
-            return self.straight(leg, found, (onward, branch), &draws);
+            return self.straight_segment(leg, found, (onward, branch), &draws);
         }
         let through = onward.light.z < 0.0;
         let parts_wavelengths = through && leg.lane.is_none() && found.disperses();
         // Beyond the last leg, a direction that might have been drawn for a light still looks for it.
         let is_last = leg.depth >= self.depth;
-        if is_last && (onward.density.is_none() || !self.direct.is_spread()) {
+        if is_last && (onward.density.is_none() || !self.direct.has_area_lights()) {
             return None;
         }
-        let goes_back = self.caustics == Caustics::PhotonMapped && !onward.is_broad && leg.course != PathHistory::Seen;
+        let goes_back = self.caustics == Caustics::PhotonMapped && !onward.is_broad && leg.course != PathHistory::NoBroad;
         let is_known = leg.is_known || goes_back;
         if is_known && !self.has_others {
             return None;
         }
         let passed = if parts_wavelengths { alone } else { leg.passed } * onward.weight;
         let number = leg.number.wrapping_mul(3).wrapping_add(branch);
-        let passed = survived(passed, number, &draws)?;
+        let passed = russian_roulette(passed, number, &draws)?;
         let element = &found.element;
         let direction = frame.world(onward.light);
         // Of a spread lobe, what falls on the wrong side of the triangle or its surface is lost.
@@ -477,8 +477,8 @@ impl<'a> PathTracer<'a> {
         };
         let origin = if through { element.through } else { element.leave };
         let turn = match (onward.density, leg.turn) {
-            (Some(_), _) => LastScattering::Spread,
-            (None, LastScattering::Spread | LastScattering::Through) if through => LastScattering::Through,
+            (Some(_), _) => LastScattering::NonDelta,
+            (None, LastScattering::NonDelta | LastScattering::ClearInterface) if through => LastScattering::ClearInterface,
             _ => LastScattering::Other,
         };
         Some(PathSegment {
@@ -499,7 +499,7 @@ impl<'a> PathTracer<'a> {
             media,
             lane: if parts_wavelengths { Some(sighting.lane) } else { leg.lane },
             for_lights: is_last,
-            course: leg.course.after(onward.is_broad),
+            course: leg.course.extended(onward.is_broad),
             turn,
             is_known,
             guides: leg.guides && onward.density.is_none(),
@@ -507,13 +507,13 @@ impl<'a> PathTracer<'a> {
     }
 
     /// The rest of a leg behind what it goes straight through: the same ray, so that lights are met as if nothing was there.
-    fn straight(&self, leg: &PathSegment, found: &SurfaceInteraction<'_>, (onward, branch): (BsdfSample, u32), draws: &PathSampler) -> Option<PathSegment> {
+    fn straight_segment(&self, leg: &PathSegment, found: &SurfaceInteraction<'_>, (onward, branch): (BsdfSample, u32), draws: &PathSampler) -> Option<PathSegment> {
         let is_last = leg.depth >= self.depth;
-        if is_last && (leg.density.is_none() || !self.direct.is_spread()) {
+        if is_last && (leg.density.is_none() || !self.direct.has_area_lights()) {
             return None;
         }
         let number = leg.number.wrapping_mul(3).wrapping_add(branch);
-        let passed = survived(leg.passed * onward.weight, number, draws)?;
+        let passed = russian_roulette(leg.passed * onward.weight, number, draws)?;
         let sight = BoundedRay { t_min: found.t, ..leg.sight };
         let for_lights = leg.for_lights || is_last;
         Some(PathSegment { sight, passed, begin: found.distance, depth: leg.depth + 1, number, for_lights, ..*leg })
@@ -521,11 +521,11 @@ impl<'a> PathTracer<'a> {
 }
 
 /// What of a leg is followed: all of it, or, of one that passes little on, by chance more or nothing.
-fn survived(passed: Channels, number: u32, draws: &PathSampler) -> Option<Channels> {
+fn russian_roulette(passed: Channels, number: u32, draws: &PathSampler) -> Option<Channels> {
     let most = passed.max();
     if most >= ENERGY_CUTOFF {
         return Some(passed);
     }
     let survival = most / ENERGY_CUTOFF;
-    (most > 0.0 && draws.leg(number, SampleDimension::Survival, 0)[0] < survival).then(|| passed * survival.recip())
+    (most > 0.0 && draws.for_segment(number, SampleDimension::Survival, 0)[0] < survival).then(|| passed * survival.recip())
 }

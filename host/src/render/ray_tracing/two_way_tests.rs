@@ -44,7 +44,7 @@ pub(super) fn two_way(scene: &Scene, view: Option<View>, threads: usize) -> Rend
     let prepared = Prepared::new(&scene).unwrap_or_else(|e| panic!("{e}"));
     let view = view.unwrap_or(prepared.view());
     let plan = Plan::new(&prepared, &view);
-    assert!(plan.needs(Stage::CaughtLight));
+    assert!(plan.needs(Stage::PhotonMap));
     let tracer = ray_tracer(&prepared, &plan).expect("an octree");
     let order = RenderOrder { threads: NonZeroUsize::new(threads), ..RenderOrder::of(&scene.settings) };
     let rendering = tracer.render(&view, &order, &Watch::NOBODY).expect("a picture");
@@ -183,7 +183,7 @@ fn classes_of_light_add_up_and_are_the_same_by_both_ways_of_finding_it() {
         let tracer = ray_tracer(&prepared, &plan).expect("an octree");
         let order = RenderOrder::of(&scene.settings);
         let film = Film::new(16, 16).expect("small").with_classes();
-        let film = tracer.go_on(film, &prepared.view(), &order, &Watch::NOBODY, None).expect("a picture").film;
+        let film = tracer.resume(film, &prepared.view(), &order, &Watch::NOBODY, None).expect("a picture").film;
         for (tally, classes) in film.tallies().iter().zip(film.classes()) {
             assert!((tally.sum - classes.iter().copied().sum::<DVec3>()).length() <= 1e-9 * tally.sum.length());
         }
@@ -267,7 +267,7 @@ fn the_picture_is_the_same_for_any_number_of_threads_and_with_nothing_left_out()
 }
 
 #[test]
-fn a_second_view_takes_the_light_that_was_caught_for_the_first() {
+fn a_second_view_takes_the_photons_that_were_stored_for_the_first() {
     let mut scene = ball_and_mirror();
     (scene.settings.image.samples, scene.settings.photons.count, scene.settings.light.caustics) =
         (2, 5_000, Caustics::PhotonMapped);
@@ -300,7 +300,7 @@ fn scenes_without_mirrors_or_lamps_do_without_it() {
         scene.settings.light.caustics = Caustics::PhotonMapped;
         let prepared = Prepared::new(&scene).expect("sound");
         let plan = Plan::new(&prepared, &prepared.view());
-        assert!(!plan.needs(Stage::CaughtLight));
+        assert!(!plan.needs(Stage::PhotonMap));
         let with = super::tests::trace(&scene, None, false, 1);
         scene.settings.light.caustics = Caustics::LeftOut;
         assert!(with.picture == super::tests::trace(&scene, None, false, 1).picture);

@@ -99,7 +99,7 @@ impl<'a> Shader<'a> {
     }
 
     /// Finds the element in the middle of what samples see of a surface, and tells its number.
-    pub(super) fn find<'p>(
+    pub(super) fn find_interaction<'p>(
         &self,
         surface: &PixelSurface,
         parts: impl Iterator<Item = &'p SampleFragment>,
@@ -118,7 +118,7 @@ impl<'a> Shader<'a> {
         };
         let sight = self.eye.ray(middle, [0.5; 2])?;
         if let Some(found) = last
-            && found.meet(triangle, &sight.ray)
+            && found.move_to(triangle, &sight.ray)
         {
             founds.push(*found);
         } else {
@@ -138,20 +138,20 @@ impl<'a> Shader<'a> {
         let prepared = self.appearance.prepared;
         let length = sight.ray.direction.length();
         let towards = sight.ray.direction * length.recip();
-        let hit = met(&sight.ray, prepared.corners(triangle), triangle, least)?;
+        let hit = plane_hit(&sight.ray, prepared.corners(triangle), triangle, least)?;
         let mut element = SurfaceElement::new(prepared, triangle, &sight.ray, &hit, self.appearance.curved)?;
         let (object, material) = (prepared.object_of[triangle as usize], prepared.material_number(triangle));
-        let optics = self.appearance.optics(object, material);
+        let optics = self.appearance.bsdf(object, material);
         let distance = hit.t * length;
         let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
         let mut sides = Default::default();
         if optics.is_textured() {
             sides = footprint(element.face, towards, sight.cone.at(distance));
-            let place = prepared.place(triangle, weights, sides);
+            let place = prepared.texture_place(triangle, weights, sides);
             element.tilt(-towards, |normal| optics.tilted(&place, normal));
         }
         let normal = element.normal;
-        let frame = optics.along.map_or_else(|| ShadingFrame::about(normal), |along| ShadingFrame::brushed(normal, along));
+        let frame = optics.along.map_or_else(|| ShadingFrame::from_normal(normal), |along| ShadingFrame::brushed(normal, along));
         let curved = self.is_curved(triangle);
         let is_flat = !curved && !optics.is_textured();
         let seen = [object, material];
@@ -160,7 +160,7 @@ impl<'a> Shader<'a> {
 }
 
 /// Where a line of sight meets the plane of a triangle, moved towards its centroid until no weight is below the least.
-fn met(ray: &Ray, [a, b, c]: [DVec3; 3], triangle: u32, least: f64) -> Option<Hit> {
+fn plane_hit(ray: &Ray, [a, b, c]: [DVec3; 3], triangle: u32, least: f64) -> Option<Hit> {
     const THIRD: f64 = 1.0 / 3.0;
     let (across, up, from) = (b - a, c - a, ray.origin - a);
     let p = ray.direction.cross(up);

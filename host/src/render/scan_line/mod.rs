@@ -106,21 +106,21 @@ impl<'a> ScanLine<'a> {
     /// # Errors
     /// [`RenderError::Material`].
     pub fn new(prepared: &'a Prepared, plan: &'a Plan) -> Result<ScanLine<'a>, RenderError> {
-        Ok(ScanLine::lit(Appearance::new(prepared, plan)?, plan, None))
+        Ok(ScanLine::with_light(Appearance::new(prepared, plan)?, plan, None))
     }
 
     /// A renderer of the light of a solution by radiosity: no highlights and no ambient light, and no shadows but those that
     /// are in it. It takes materials and lights over from the world that was solved.
     pub fn showing(solution: Arc<dyn IndirectLight>, world: World<'a>, plan: &'a Plan) -> ScanLine<'a> {
-        ScanLine::lit(world.appearance, plan, Some(solution))
+        ScanLine::with_light(world.appearance, plan, Some(solution))
     }
 
-    fn lit(appearance: Appearance<'a>, plan: &'a Plan, solution: Option<Arc<dyn IndirectLight>>) -> ScanLine<'a> {
+    fn with_light(appearance: Appearance<'a>, plan: &'a Plan, solution: Option<Arc<dyn IndirectLight>>) -> ScanLine<'a> {
         let prepared = appearance.prepared;
-        let keeps = |triangle: &u32| plan.keeps_object(prepared.object_of[*triangle as usize] as usize);
+        let keeps = |triangle: &u32| plan.includes_object(prepared.object_of[*triangle as usize] as usize);
         let triangles: Vec<u32> = (0..prepared.triangles.len() as u32).filter(keeps).collect();
         let (groups, passing) = groups(&appearance);
-        let passable = seen_through(&appearance, &groups);
+        let passable = passable_triangles(&appearance, &groups);
         let shadows = plan.needs(Stage::Shadows) && solution.is_none();
         let casters = Casters::new(prepared, if shadows { triangles.clone() } else { Vec::new() }, groups);
         let samples = prepared.settings.light.samples.max(1);
@@ -163,11 +163,11 @@ impl<'a> ScanLine<'a> {
         matte: bool,
     ) -> Shader<'s> {
         let sources = || self.appearance.sources.iter().map(|(_, source)| source);
-        let (has_surfaces, has_sky) = (sources().any(LightSource::is_surface), sources().any(LightSource::is_beyond));
+        let (has_surfaces, has_sky) = (sources().any(LightSource::is_surface), sources().any(LightSource::is_infinite));
         let wavelengths = &self.appearance.wavelengths;
         let background = || {
-            let seen = |comb| wavelengths.seen(comb, self.appearance.beyond(&AHEAD, None, comb, |_, _| 1.0));
-            (0..wavelengths.combs()).map(seen).sum::<DVec3>() / wavelengths.combs() as f64
+            let seen = |comb| wavelengths.to_srgb(comb, self.appearance.escaped_radiance(&AHEAD, None, comb, |_, _| 1.0));
+            (0..wavelengths.count()).map(seen).sum::<DVec3>() / wavelengths.count() as f64
         };
         Shader {
             appearance: &self.appearance,
@@ -178,7 +178,7 @@ impl<'a> ScanLine<'a> {
             enclosed,
             passing: &self.passing,
             eye,
-            is_plain: wavelengths.combs() == 1 && !has_surfaces && self.passing.len() == 1,
+            is_plain: wavelengths.count() == 1 && !has_surfaces && self.passing.len() == 1,
             matte,
             has_surfaces,
             has_sky,
@@ -264,7 +264,7 @@ impl<'a> PictureWork<'a> {
             let range = begin..(begin + MOST_LINES).min(last);
             let lines = SampleLines::new(range.clone(), self.width, self.offsets);
             strip.spans = 0;
-            self.facets.see(band, &lines, strip);
+            self.facets.rasterize(band, &lines, strip);
             drawn.surfaces += strip.spans;
             for (shadow, counts) in self.shadows.iter().zip(counts.iter_mut()) {
                 drawn.shadows += shadow.count((&scan.casters, self.handed), band, &lines, strip, counts);
@@ -289,11 +289,11 @@ impl<'a> PictureWork<'a> {
 
 /// For each triangle, whether something is seen straight through it; nothing where that is so for none. Glass, which bends
 /// light, is seen through; rough glass throws the shadow of an opaque body.
-fn seen_through(appearance: &Appearance<'_>, groups: &[u8]) -> Vec<bool> {
+fn passable_triangles(appearance: &Appearance<'_>, groups: &[u8]) -> Vec<bool> {
     let prepared = appearance.prepared;
     let is_glass = |triangle: u32| {
         let object = prepared.object_of[triangle as usize];
-        appearance.optics(object, prepared.material_number(triangle)).interior.is_some()
+        appearance.bsdf(object, prepared.material_number(triangle)).interior.is_some()
     };
     let is_passable =
         |triangle: u32| groups.get(triangle as usize).is_some_and(|group| *group > 0) || is_glass(triangle);
@@ -306,7 +306,7 @@ fn seen_through(appearance: &Appearance<'_>, groups: &[u8]) -> Vec<bool> {
 /// A polished body lets through what its two surfaces do at right angles, less what is absorbed on its mean chord.
 fn groups(appearance: &Appearance<'_>) -> (Vec<u8>, Vec<Vec<Channels>>) {
     let prepared = appearance.prepared;
-    let combs = 0..appearance.wavelengths.combs();
+    let combs = 0..appearance.wavelengths.count();
     let mut passing: Vec<Vec<Channels>> = vec![combs.clone().map(|_| Channels::ZERO).collect()];
     if !(appearance.passing || appearance.clears) {
         return (Vec::new(), passing);
@@ -317,16 +317,16 @@ fn groups(appearance: &Appearance<'_>) -> (Vec<u8>, Vec<Vec<Channels>>) {
         let key = (prepared.object_of[triangle as usize], prepared.material_number(triangle));
         let group = known.iter().rev().find(|(other, _)| *other == key).map(|(_, group)| *group);
         groups[triangle as usize] = group.unwrap_or_else(|| {
-            let optics = appearance.optics(key.0, key.1);
-            let place = || prepared.place(triangle, [1.0 / 3.0; 3], Default::default());
+            let optics = appearance.bsdf(key.0, key.1);
+            let place = || prepared.texture_place(triangle, [1.0 / 3.0; 3], Default::default());
             let body = optics.interior.as_ref().filter(|_| appearance.clears && optics.is_clear());
             let chord = body.map(|_| mean_chord(prepared, key.0));
             let passes = |comb: usize| match body.zip(chord) {
                 Some((interior, chord)) => {
-                    let surface = optics.cleared(comb, 1.0, place);
+                    let surface = optics.clear_transmittance(comb, 1.0, place);
                     surface * surface * interior.absorption.of(comb).map(|absorption| (-absorption * chord).exp())
                 }
-                None => optics.passing(comb, 1.0, place),
+                None => optics.straight_transmittance(comb, 1.0, place),
             };
             let passes: Vec<Channels> = combs.clone().map(passes).collect();
             let is_opaque = passes.iter().all(|part| part.max() <= 0.0);

@@ -39,7 +39,7 @@ impl<'a> Reach<'a> {
     /// no such part.
     ///
     /// - `away`: from each end the direction in which light goes on, of any length.
-    pub(super) fn patch(&self, ends: [DVec3; 2], away: [DVec3; 2]) -> Option<PictureRegion> {
+    pub(super) fn region(&self, ends: [DVec3; 2], away: [DVec3; 2]) -> Option<PictureRegion> {
         let mut polygon = [DVec4::ZERO; MOST_CORNERS];
         polygon[..4].copy_from_slice(&[
             ends[0].extend(1.0),

@@ -1,7 +1,7 @@
 //! From the scene to the samples of the picture: columns, lines of samples, and nearness.
 
 use crate::numeric::bounds::Bounds;
-use crate::render::world::meet;
+use crate::render::world::plane_intersection;
 use crate::scene::{Projection, View};
 use glam::{DVec3, DVec4};
 
@@ -106,7 +106,7 @@ impl Screen {
                 let along = (rows[0].truncate().cross(rows[1].truncate())).try_normalize()?;
                 let is_perspective = rows[3].truncate().length() * bounds.diagonal().max(f64::MIN_POSITIVE)
                     > f64::EPSILON * rows[3].dot(bounds.center().extend(1.0)).abs();
-                eye = if is_perspective { Some(meet(rows[0], rows[1], rows[3])?) } else { None };
+                eye = if is_perspective { Some(plane_intersection(rows[0], rows[1], rows[3])?) } else { None };
                 let base = eye.unwrap_or(bounds.center()).extend(1.0);
                 let relative =
                     |row: DVec4, at_base: Option<f64>| row.truncate().extend(at_base.unwrap_or_else(|| row.dot(base)));

@@ -11,7 +11,7 @@ use crate::numeric::ray::Ray;
 use crate::numeric::triangle::weights;
 use crate::render::indirect::IrradiancePart as Light;
 use crate::render::tally::{PixelSample, Tally};
-use crate::render::world::{AHEAD, SurfaceElement, BoundedRay, diffuse};
+use crate::render::world::{AHEAD, SurfaceElement, BoundedRay, diffuse_albedo};
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
 
@@ -31,25 +31,25 @@ impl<'a> Shader<'a> {
             return tally.add_alike(&sample, pixel.count() as u32);
         }
         self.gather(pixel, strip, desk);
-        self.look(pixel, (strip, counts), desk);
+        self.find_visible(pixel, (strip, counts), desk);
         let PixelScratch { surfaces, parts, founds, mixtures, lit, samples, .. } = desk;
-        for comb in 0..self.appearance.wavelengths.combs() {
+        for comb in 0..self.appearance.wavelengths.count() {
             for surface in surfaces.iter_mut() {
                 let Some(index) = surface.found else { continue };
                 let found = &founds[index];
                 let painting = mixtures[index].as_ref().map(|mixture| mixture.at(comb));
-                let sighting = self.sighting(found, comb, painting.as_ref().map_or(&[], |painting| &painting[..]));
-                surface.own = self.own(found, &sighting);
-                surface.passed = through(found, &sighting);
+                let sighting = self.context(found, comb, painting.as_ref().map_or(&[], |painting| &painting[..]));
+                surface.own = self.unlit_radiance(found, &sighting);
+                surface.passed = straight_transmittance(found, &sighting);
                 for lit in &mut lit[surface.lit.clone()] {
-                    lit.adds = self.adds(lit, found, &sighting);
+                    lit.adds = self.lamp_radiance(lit, found, &sighting);
                 }
             }
             for i in 0..samples.len() {
                 if samples[i].like == i {
                     let light =
                         self.sample((surfaces, founds, lit), (samples, parts), (strip, counts), (pixel, i), comb);
-                    samples[i].light += self.appearance.wavelengths.seen(comb, light);
+                    samples[i].light += self.appearance.wavelengths.to_srgb(comb, light);
                 }
             }
         }
@@ -57,17 +57,17 @@ impl<'a> Shader<'a> {
     }
 
     /// Finds what the samples of a pixel see, by the light of which lamps, and which of them get the same light.
-    fn look(&self, pixel: &StripPixel<'_>, (strip, counts): (&Strip, &[Vec<i32>]), desk: &mut PixelScratch<'a>) {
+    fn find_visible(&self, pixel: &StripPixel<'_>, (strip, counts): (&Strip, &[Vec<i32>]), desk: &mut PixelScratch<'a>) {
         let PixelScratch { surfaces, parts, founds, mixtures, lit, samples, last } = desk;
         founds.clear();
         mixtures.clear();
         lit.clear();
         for (index, surface) in surfaces.iter_mut().enumerate() {
             let own = || parts.iter().filter(|part| part.surface == index);
-            surface.found = self.find(surface, own(), pixel, (founds, last));
+            surface.found = self.find_interaction(surface, own(), pixel, (founds, last));
             let begin = lit.len();
             if let Some(found) = surface.found.map(|found| &founds[found]) {
-                mixtures.push(found.optics.is_textured().then(|| found.optics.mix(&self.place(found))));
+                mixtures.push(found.optics.is_textured().then(|| found.optics.texture_mixture(&self.footprint(found))));
                 let is_dark =
                     |lit: &LampContribution| own().all(|part| self.is_shaded(lit, counts, (part.fragment, strip), found.triangle));
                 lit.extend(self.lights(found).filter(|lit| !is_dark(lit)));
@@ -75,17 +75,17 @@ impl<'a> Shader<'a> {
             surface.lit = begin..lit.len();
         }
         for i in 0..samples.len() {
-            let own = seen_by(samples, parts, i);
+            let own = fragments_of(samples, parts, i);
             samples[i].glow = if self.has_surfaces {
                 let before = own.iter().map(|part| (part, surfaces[part.surface].found.map(|found| &founds[found])));
-                self.glow_behind(pixel.place(i), before, strip)
+                self.fragments_before_light(pixel.place(i), before, strip)
             } else {
                 None
             };
             let is_like = |j: &usize| {
                 samples[*j].like == *j
                     && samples[*j].glow.is_none()
-                    && self.is_alike([seen_by(samples, parts, *j), own], strip, counts)
+                    && self.is_alike([fragments_of(samples, parts, *j), own], strip, counts)
             };
             if samples[i].glow.is_none()
                 && let Some(like) = (0..i).find(is_like)
@@ -98,7 +98,7 @@ impl<'a> Shader<'a> {
     /// Adds up what was found sample by sample.
     fn add_samples(&self, pixel: &StripPixel<'_>, desk: &PixelScratch<'a>, tally: &mut Tally) {
         let PixelScratch { surfaces, parts, founds, samples, .. } = desk;
-        let scale = (self.appearance.wavelengths.combs() as f64).recip();
+        let scale = (self.appearance.wavelengths.count() as f64).recip();
         let mut last: Option<(PixelSample, u32)> = None;
         for i in 0..pixel.count() {
             if i > 0
@@ -108,7 +108,7 @@ impl<'a> Shader<'a> {
                 *count += 1;
                 continue;
             }
-            let first = seen_by(samples, parts, i).first().map(|part| &surfaces[part.surface]);
+            let first = fragments_of(samples, parts, i).first().map(|part| &surfaces[part.surface]);
             let found = first.and_then(|seen| seen.found.map(|found| (seen, &founds[found])));
             let glow = samples[i].glow;
             let first = found.filter(|_| glow != Some(0)).map(|(seen, found)| self.first(seen, found));
@@ -145,17 +145,17 @@ impl<'a> Shader<'a> {
             return Some(PixelSample { radiance, ..PixelSample::default() });
         }
         let sight = self.eye.ray(pixel.middle(), [0.5; 2])?;
-        if !last.as_mut().is_some_and(|found| found.meet(triangle, &sight.ray)) {
+        if !last.as_mut().is_some_and(|found| found.move_to(triangle, &sight.ray)) {
             *last = Some(self.element(triangle, &sight, 0.0)?);
         }
         let found = last.as_ref()?;
-        let painting = found.optics.is_textured().then(|| found.optics.paint(&self.place(found), 0));
-        let sighting = self.sighting(found, 0, painting.as_ref().map_or(&[], |painting| &painting[..]));
-        let mut sum = self.own(found, &sighting);
+        let painting = found.optics.is_textured().then(|| found.optics.texture_values(&self.footprint(found), 0));
+        let sighting = self.context(found, 0, painting.as_ref().map_or(&[], |painting| &painting[..]));
+        let mut sum = self.unlit_radiance(found, &sighting);
         for lit in self.lights(found).filter(|lit| !self.is_shaded(lit, counts, (pixel.first, strip), triangle)) {
-            sum += self.adds(&lit, found, &sighting);
+            sum += self.lamp_radiance(&lit, found, &sighting);
         }
-        let radiance = self.appearance.wavelengths.seen(0, sum);
+        let radiance = self.appearance.wavelengths.to_srgb(0, sum);
         let mut nearness = [0.0; 2];
         for near in pixel.samples().map(|sample| strip.near[sample]) {
             nearness = [nearness[0] + near, nearness[1] + self.depth(near)];
@@ -200,8 +200,8 @@ impl<'a> Shader<'a> {
         let mut inside: Option<(&InteriorMedium, f64)> = None;
         let SampleSight { glow, .. } = samples[i];
         let at = pixel.place(i);
-        let shines = || self.glow(at, comb).map_or(Channels::ZERO, |(_, radiance)| radiance);
-        let parts = seen_by(samples, parts, i);
+        let shines = || self.nearest_light(at, comb).map_or(Channels::ZERO, |(_, radiance)| radiance);
+        let parts = fragments_of(samples, parts, i);
         for (order, part) in parts.iter().enumerate() {
             if glow == Some(order) {
                 return sum + passed * shines();
@@ -214,7 +214,7 @@ impl<'a> Shader<'a> {
             }
             let mut radiance = surface.own;
             for lit in &lit[surface.lit.clone()] {
-                radiance += lit.adds * self.arrived(lit, counts, (part.fragment, strip), found.triangle, comb);
+                radiance += lit.adds * self.lamp_transmittance(lit, counts, (part.fragment, strip), found.triangle, comb);
             }
             sum += passed * radiance;
             if part.fragment < strip.near.len() {
@@ -233,7 +233,7 @@ impl<'a> Shader<'a> {
             .eye
             .ray(at, [0.5; 2])
             .map_or(AHEAD, |BoundedRay { ray, .. }| Ray { direction: ray.direction.normalize(), ..ray });
-        sum + passed * self.appearance.beyond(&ray, None, comb, |_, _| 1.0)
+        sum + passed * self.appearance.escaped_radiance(&ray, None, comb, |_, _| 1.0)
     }
 
     /// In how many volumes of a group of casters a sample is.
@@ -255,7 +255,7 @@ impl<'a> Shader<'a> {
     }
 
     /// The part of a lamp's light that comes to a sample.
-    fn arrived(&self, lit: &LampContribution, counts: &[Vec<i32>], sample: (usize, &Strip), triangle: u32, comb: usize) -> Channels {
+    fn lamp_transmittance(&self, lit: &LampContribution, counts: &[Vec<i32>], sample: (usize, &Strip), triangle: u32, comb: usize) -> Channels {
         if self.is_shaded(lit, counts, sample, triangle) {
             return Channels::ZERO;
         }
@@ -271,14 +271,14 @@ impl<'a> Shader<'a> {
 
     /// The nearest light that is a surface and no object in a line of sight: where, in lengths of its direction, and its
     /// radiance.
-    fn glow(&self, at: [f64; 2], comb: usize) -> Option<(f64, Channels)> {
+    fn nearest_light(&self, at: [f64; 2], comb: usize) -> Option<(f64, Channels)> {
         let BoundedRay { ray, t_min, t_max, .. } = self.eye.ray(at, [0.5; 2])?;
-        self.appearance.glow(&ray, t_min, t_max, comb).map(|(_, glow)| (glow.t, glow.radiance))
+        self.appearance.intersect_lights(&ray, t_min, t_max, comb).map(|(_, glow)| (glow.t, glow.radiance))
     }
 
     /// How many of the parts of a line of sight are before the light that is met there; none if there is none, or something
     /// opaque is before it.
-    fn glow_behind<'p>(
+    fn fragments_before_light<'p>(
         &self,
         at: [f64; 2],
         parts: impl Iterator<Item = (&'p SampleFragment, Option<&'p PixelInteraction<'a>>)>,
@@ -287,7 +287,7 @@ impl<'a> Shader<'a> {
     where
         'a: 'p,
     {
-        let (t, _) = self.glow(at, 0)?;
+        let (t, _) = self.nearest_light(at, 0)?;
         let ray = self.eye.ray(at, [0.5; 2])?.ray;
         let mut before = 0;
         for (part, found) in parts {
@@ -309,14 +309,14 @@ impl<'a> Shader<'a> {
     }
 
     /// Where an element is in the patterns of its material.
-    fn place(&self, found: &PixelInteraction<'_>) -> TextureFootprint {
-        self.appearance.prepared.place(found.triangle, found.weights, found.sides)
+    fn footprint(&self, found: &PixelInteraction<'_>) -> TextureFootprint {
+        self.appearance.prepared.texture_place(found.triangle, found.weights, found.sides)
     }
 
     /// How an element is looked at.
     ///
     /// - `painted`: what the patterns of its material give.
-    fn sighting<'p>(&self, found: &PixelInteraction<'_>, comb: usize, painted: &'p [Channels]) -> ShadingContext<'p> {
+    fn context<'p>(&self, found: &PixelInteraction<'_>, comb: usize, painted: &'p [Channels]) -> ShadingContext<'p> {
         let index = found.optics.interior.as_ref().map_or(Channels::ONE, |interior| interior.index.of(comb));
         let side = match found.element.outside {
             true => InterfaceIndices { before: Channels::ONE, behind: index, inside: false },
@@ -326,42 +326,42 @@ impl<'a> Shader<'a> {
     }
 
     /// What an element sends to the eye without lamps.
-    fn own(&self, found: &PixelInteraction<'_>, sighting: &ShadingContext<'_>) -> Channels {
+    fn unlit_radiance(&self, found: &PixelInteraction<'_>, sighting: &ShadingContext<'_>) -> Channels {
         let PixelInteraction { element, optics, .. } = found;
         let mut own = optics.emission.as_ref().map_or(Channels::ZERO, |emission| emission.of(sighting.comb));
         if let Some(solution) = self.solution {
             // Elements of flat triangles are moved from pixel to pixel without their weights.
             let weights = weights(self.appearance.prepared.corners(found.triangle), element.position);
             let irradiance = solution.irradiance(found.triangle, element.outside, weights, Light::All);
-            return own + diffuse(optics, sighting.comb, sighting.painted) * irradiance * FRAC_1_PI;
+            return own + diffuse_albedo(optics, sighting.comb, sighting.painted) * irradiance * FRAC_1_PI;
         }
         if let Some(ambient) = &self.appearance.ambient {
-            own += (optics.ambient(sighting) + optics.surrounded(&from_outside(found, sighting)))
+            own += (optics.ambient(sighting) + optics.glossy_albedo(&from_outside(found, sighting)))
                 * ambient.of(sighting.comb);
         }
         if let Some(sky) = self.sky_light {
             let normal = if element.normal.dot(found.towards) > 0.0 { -element.normal } else { element.normal };
             let mirrored = found.towards.reflect(normal);
-            own += optics.diffuse(sighting) * sky.radiance(normal, sighting.comb);
-            own += optics.surrounded(&from_outside(found, sighting)) * sky.radiance(mirrored, sighting.comb);
+            own += optics.diffuse_albedo(sighting) * sky.radiance(normal, sighting.comb);
+            own += optics.glossy_albedo(&from_outside(found, sighting)) * sky.radiance(mirrored, sighting.comb);
         }
         own
     }
 
     /// The lamps that an element answers, and how their shadows are counted; what they add is not yet known.
     fn lights(&self, found: &PixelInteraction<'a>) -> impl Iterator<Item = LampContribution> {
-        let answers = self.solution.is_none() && found.optics.answers_lights();
+        let answers = self.solution.is_none() && found.optics.has_non_delta();
         let lamps = if answers { self.lamps } else { &[] };
         lamps.iter().enumerate().map(|(number, lamp)| self.between(number, lamp, found))
     }
 
     /// What a lamp adds where nothing stands between.
-    fn adds(&self, lit: &LampContribution, PixelInteraction { element, frame, optics, .. }: &PixelInteraction<'_>, sighting: &ShadingContext<'_>) -> Channels {
+    fn lamp_radiance(&self, lit: &LampContribution, PixelInteraction { element, frame, optics, .. }: &PixelInteraction<'_>, sighting: &ShadingContext<'_>) -> Channels {
         let lamp = &self.lamps[lit.lamp];
         let source = &self.appearance.sources[lamp.source].1;
-        let Some(beam) = source.beam_from(&lamp.point, element.position, sighting.comb) else { return Channels::ZERO };
+        let Some(beam) = source.incident_from(&lamp.point, element.position, sighting.comb) else { return Channels::ZERO };
         let light = frame.local(beam.towards);
-        let adds = optics.response(sighting, light) * beam.irradiance * light.z.abs();
+        let adds = optics.total_value(sighting, light) * beam.irradiance * light.z.abs();
         if adds.is_finite() { adds } else { Channels::ZERO }
     }
 
@@ -383,10 +383,10 @@ impl<'a> Shader<'a> {
 }
 
 /// The part of light that goes straight through an element.
-fn through(found: &PixelInteraction<'_>, sighting: &ShadingContext<'_>) -> Channels {
+fn straight_transmittance(found: &PixelInteraction<'_>, sighting: &ShadingContext<'_>) -> Channels {
     match &found.optics.interior {
-        Some(_) => Channels::ONE - found.optics.surrounded(&from_outside(found, sighting)),
-        None => found.optics.straight(sighting).map_or(Channels::ZERO, |onward| onward.weight),
+        Some(_) => Channels::ONE - found.optics.glossy_albedo(&from_outside(found, sighting)),
+        None => found.optics.straight_sample(sighting).map_or(Channels::ZERO, |onward| onward.weight),
     }
 }
 
@@ -401,6 +401,6 @@ fn from_outside<'p>(found: &PixelInteraction<'_>, sighting: &ShadingContext<'p>)
 }
 
 /// The parts of a sample of a pixel, from the nearest.
-fn seen_by<'p>(samples: &[SampleSight], parts: &'p [SampleFragment], i: usize) -> &'p [SampleFragment] {
+fn fragments_of<'p>(samples: &[SampleSight], parts: &'p [SampleFragment], i: usize) -> &'p [SampleFragment] {
     &parts[samples[i].begin..samples.get(i + 1).map_or(parts.len(), |next| next.begin)]
 }

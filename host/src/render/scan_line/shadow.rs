@@ -201,7 +201,7 @@ fn side(
     } else {
         screen.clip(corners, 0)?
     };
-    let within = reach.patch(ends, ends.map(|end| -light.from(end)))?;
+    let within = reach.region(ends, ends.map(|end| -light.from(end)))?;
     Some(ShadowPolygon { outline, within, weight: silhouette.weight * screen.handed(), group: silhouette.group })
 }
 

@@ -9,7 +9,7 @@ use glam::DVec3;
 /// Directions by which a sky is summed up, for each comb of wavelengths.
 const DIRECTIONS: u32 = 4096;
 /// What a cosine around the normal leaves of spherical harmonics of degree 0, 1 and 2.
-const KEPT: [f64; 9] = [1.0, 2.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0, 0.25, 0.25, 0.25, 0.25, 0.25];
+const COSINE_KERNEL: [f64; 9] = [1.0, 2.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0, 0.25, 0.25, 0.25, 0.25, 0.25];
 
 /// The irradiance of all skies of a scene, discs aside, by the direction of the normal.
 ///
@@ -34,16 +34,16 @@ impl SkyLight {
             let mut sums = [Channels::ZERO; 9];
             for sky in &skies {
                 for index in 0..DIRECTIONS {
-                    let Some(beam) = sky.beam(DVec3::ZERO, None, sequence.point(index, 0), comb) else { continue };
+                    let Some(beam) = sky.sample_incident(DVec3::ZERO, None, sequence.point(index, 0), comb) else { continue };
                     let harmonics = harmonics(beam.towards);
-                    for ((sum, harmonic), kept) in sums.iter_mut().zip(harmonics).zip(KEPT) {
+                    for ((sum, harmonic), kept) in sums.iter_mut().zip(harmonics).zip(COSINE_KERNEL) {
                         *sum += beam.irradiance * (harmonic * kept / f64::from(DIRECTIONS));
                     }
                 }
             }
             sums
         };
-        let combs = 0..appearance.wavelengths.combs();
+        let combs = 0..appearance.wavelengths.count();
         (!skies.is_empty()).then(|| SkyLight { coefficients: combs.map(of_comb).collect() })
     }
 

@@ -132,7 +132,7 @@ pub(super) struct PixelInteraction<'a> {
 impl PixelInteraction<'_> {
     /// Moves to where another line of sight meets a triangle, if it is the same, flat and without a texture.
     #[inline]
-    pub(super) fn meet(&mut self, triangle: u32, ray: &Ray) -> bool {
+    pub(super) fn move_to(&mut self, triangle: u32, ray: &Ray) -> bool {
         if !self.is_flat || triangle != self.triangle {
             return false;
         }

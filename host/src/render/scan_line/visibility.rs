@@ -166,7 +166,7 @@ impl<'a> ScreenTriangles<'a> {
     }
 
     /// Finds what the samples of some lines of a band see.
-    pub(super) fn see(&self, band: usize, lines: &SampleLines, strip: &mut Strip) {
+    pub(super) fn rasterize(&self, band: usize, lines: &SampleLines, strip: &mut Strip) {
         let samples = lines.range.len() * lines.width;
         let Strip { near, seen, farthest, layers, begins, spans } = strip;
         near.clear();

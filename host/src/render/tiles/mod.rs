@@ -68,9 +68,9 @@ impl Tiling {
         let looks = TileShading { solution, appearance: &appearance };
         let shown = |triangle: &u32| {
             let object = prepared.object_of[*triangle as usize];
-            let optics = appearance.optics(object, prepared.material_number(*triangle));
+            let optics = appearance.bsdf(object, prepared.material_number(*triangle));
             let [a, b, c] = prepared.corners(*triangle);
-            plan.keeps_object(object as usize) && !optics.is_passable() && (b - a).cross(c - a) != DVec3::ZERO
+            plan.includes_object(object as usize) && !optics.is_passable() && (b - a).cross(c - a) != DVec3::ZERO
         };
         let triangles: Vec<u32> = (0..prepared.triangles.len() as u32).filter(shown).collect();
         let trees: Vec<TileNode> = triangles.par_iter().map(|triangle| looks.tree(*triangle)).collect();
@@ -186,12 +186,12 @@ fn lamps(prepared: &Prepared, plan: &Plan, appearance: &Appearance<'_>) -> Vec<C
     let wavelengths = &appearance.wavelengths;
     let lamp = |(number, light): (usize, &Light)| {
         let Some((patch, radiance)) = light.surface() else { return Vec::new() };
-        if !plan.keeps_light(number) {
+        if !plan.includes_light(number) {
             return Vec::new();
         }
         let strength = wavelengths.light(radiance);
-        let combs = wavelengths.combs();
-        let seen: DVec3 = (0..combs).map(|comb| wavelengths.seen(comb, strength.of(comb))).sum();
+        let combs = wavelengths.count();
+        let seen: DVec3 = (0..combs).map(|comb| wavelengths.to_srgb(comb, strength.of(comb))).sum();
         let color = [srgb::encoded(seen / combs as f64), DVec3::ZERO];
         let tile = |corners: Vec<DVec3>| ColorTile { colors: vec![color; corners.len()], corners };
         patch.polygons(LAMP_SIDES).into_iter().map(tile).collect()

@@ -53,13 +53,13 @@ impl PointTree {
     pub(super) fn between(&self, [from, to]: [DVec3; 2], near: f64) -> Vec<(f64, DVec3)> {
         let mut found = Vec::new();
         if !self.boxes.is_empty() {
-            self.look(0, [from, to], near, &mut found);
+            self.collect(0, [from, to], near, &mut found);
         }
         found.sort_by(|a: &(f64, DVec3), b| a.0.total_cmp(&b.0));
         found
     }
 
-    fn look(&self, place: usize, [from, to]: [DVec3; 2], near: f64, found: &mut Vec<(f64, DVec3)>) {
+    fn collect(&self, place: usize, [from, to]: [DVec3; 2], near: f64, found: &mut Vec<(f64, DVec3)>) {
         let Enclosing { low, high, first, count, parts } = self.boxes[place];
         let along = to - from;
         let (mut begin, mut end) = (0.0f64, 1.0f64);
@@ -78,7 +78,7 @@ impl PointTree {
             return;
         }
         if parts != [0; 2] {
-            return parts.into_iter().for_each(|part| self.look(part, [from, to], near, found));
+            return parts.into_iter().for_each(|part| self.collect(part, [from, to], near, found));
         }
         for point in &self.points[first..first + count] {
             let part = (*point - from).dot(along) / along.length_squared();

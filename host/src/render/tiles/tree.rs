@@ -5,7 +5,7 @@ use crate::color::{Channels, srgb};
 use crate::numeric::triangle::weights;
 use crate::render::indirect::{IndirectLight, IrradiancePart};
 use crate::render::radiosity::{ElementTree, Radiosity};
-use crate::render::world::{Appearance, diffuse};
+use crate::render::world::{Appearance, diffuse_albedo};
 use glam::{DVec3, Vec3};
 use std::f64::consts::FRAC_1_PI;
 
@@ -121,7 +121,7 @@ impl TileShading<'_> {
     /// A triangle with all elements of both its sides.
     pub(super) fn tree(&self, triangle: u32) -> TileNode {
         let piece = TrianglePiece::whole(self.appearance.prepared.corners(triangle));
-        let sides = [true, false].map(|outside| self.solution.division(triangle, outside));
+        let sides = [true, false].map(|outside| self.solution.element_tree(triangle, outside));
         self.node(triangle, piece, sides.each_ref().map(Option::as_ref), &mut Vec::new())
     }
 
@@ -155,17 +155,17 @@ impl TileShading<'_> {
     /// The colours of a place of a triangle, as a display gets them.
     fn colors(&self, triangle: u32, weights: [f64; 3]) -> Colors {
         let Appearance { prepared, wavelengths, .. } = self.appearance;
-        let optics = self.appearance.optics(prepared.object_of[triangle as usize], prepared.material_number(triangle));
-        let mixture = optics.is_textured().then(|| optics.mix(&prepared.place(triangle, weights, Default::default())));
+        let optics = self.appearance.bsdf(prepared.object_of[triangle as usize], prepared.material_number(triangle));
+        let mixture = optics.is_textured().then(|| optics.texture_mixture(&prepared.texture_place(triangle, weights, Default::default())));
         let irradiance = [true, false].map(|outside| self.solution.irradiance(triangle, outside, weights, IrradiancePart::All));
         let mut seen = [DVec3::ZERO; 2];
-        let combs = wavelengths.combs();
+        let combs = wavelengths.count();
         for comb in 0..combs {
             let own = optics.emission.as_ref().map_or(Channels::ZERO, |emission| emission.of(comb));
             let painting = mixture.as_ref().map(|mixture| mixture.at(comb));
-            let reflectance = diffuse(optics, comb, painting.as_ref().map_or(&[], |painting| painting.as_slice()));
+            let reflectance = diffuse_albedo(optics, comb, painting.as_ref().map_or(&[], |painting| painting.as_slice()));
             for (seen, irradiance) in seen.iter_mut().zip(irradiance) {
-                *seen += wavelengths.seen(comb, own + reflectance * irradiance * FRAC_1_PI);
+                *seen += wavelengths.to_srgb(comb, own + reflectance * irradiance * FRAC_1_PI);
             }
         }
         seen.map(|seen| srgb::encoded(seen / combs as f64).as_vec3())

@@ -60,7 +60,7 @@ impl BoundingSphere {
     }
 
     /// Whether a ray from a point in a direction, unit length, meets it; from inside, whether at all.
-    pub(super) fn is_met(&self, from: DVec3, direction: DVec3) -> bool {
+    pub(super) fn is_hit(&self, from: DVec3, direction: DVec3) -> bool {
         let offset = self.center - from;
         let Some(cap) = self.cap(offset) else { return true };
         // 1 − cos of the angle to the middle, without the loss of digits of a difference.
@@ -68,7 +68,7 @@ impl BoundingSphere {
     }
 
     /// The density of [`Ball::direction`], 1/sr, and the point of the square that gives a direction; none beside the ball.
-    pub(super) fn density(&self, from: DVec3, direction: DVec3) -> Option<DirectionPdf> {
+    pub(super) fn pdf(&self, from: DVec3, direction: DVec3) -> Option<DirectionPdf> {
         let offset = self.center - from;
         let Some(cap) = self.cap(offset) else { return Some((0.5 / TAU, sphere_inverse(direction))) };
         let along = offset.dot(direction);
@@ -91,7 +91,7 @@ impl BoundingSphere {
     }
 
     /// The density of [`Ball::line`], one over an area, and the point of the square that gives a line; none beside the ball.
-    pub(super) fn line_density(&self, direction: DVec3, on: DVec3) -> Option<DirectionPdf> {
+    pub(super) fn line_pdf(&self, direction: DVec3, on: DVec3) -> Option<DirectionPdf> {
         let offset = on - self.center;
         let aside = offset - direction * offset.dot(direction);
         let square = self.radius * self.radius;
@@ -190,14 +190,14 @@ impl ProjectionMap {
     }
 
     /// A point of the square, more often where it is wanted.
-    pub(super) fn draw(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    pub(super) fn sample(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let (row, y) = within(&self.rows, y);
         let (column, x) = within(&self.columns[row * ProjectionMap::SIDE..(row + 1) * ProjectionMap::SIDE], x);
         [(column as f64 + x) / ProjectionMap::SIDE as f64, (row as f64 + y) / ProjectionMap::SIDE as f64]
     }
 
     /// The density of [`Guide::draw`].
-    pub(super) fn density(&self, place: [f64; 2]) -> f64 {
+    pub(super) fn pdf(&self, place: [f64; 2]) -> f64 {
         let [column, row] = place.map(|c| (c * ProjectionMap::SIDE as f64) as usize);
         let part = |below: &[f64], i: usize| below[i] - if i == 0 { 0.0 } else { below[i - 1] };
         let columns = &self.columns[row * ProjectionMap::SIDE..(row + 1) * ProjectionMap::SIDE];
@@ -213,7 +213,7 @@ fn within(below: &[f64], uniform: f64) -> (usize, f64) {
 }
 
 /// Balls around all triangles that a test chooses, as tight as so many allow.
-pub(super) fn balls(prepared: &Prepared, is_meant: impl Fn(u32) -> bool) -> Vec<BoundingSphere> {
+pub(super) fn bounding_spheres(prepared: &Prepared, is_meant: impl Fn(u32) -> bool) -> Vec<BoundingSphere> {
     let mut parts: Vec<Part> = Vec::new();
     for object in &prepared.objects {
         let triangles = object.first..object.first + object.count;
@@ -234,7 +234,7 @@ pub(super) fn balls(prepared: &Prepared, is_meant: impl Fn(u32) -> bool) -> Vec<
 }
 
 /// The ball around all triangles that a test chooses; none if there are none.
-pub(super) fn everything(prepared: &Prepared, is_meant: impl Fn(u32) -> bool) -> Option<BoundingSphere> {
+pub(super) fn bounding_sphere(prepared: &Prepared, is_meant: impl Fn(u32) -> bool) -> Option<BoundingSphere> {
     let meant: Vec<u32> = (0..prepared.triangles.len() as u32).filter(|triangle| is_meant(*triangle)).collect();
     (!meant.is_empty()).then(|| Part::new(prepared, meant).ball).filter(|ball| ball.radius > 0.0)
 }
@@ -303,36 +303,36 @@ mod tests {
         for i in 0..4096 {
             let direction = ball.direction(from, sequence.point(i, 1));
             assert!((direction.length() - 1.0).abs() < 1e-12);
-            let (density, place) = ball.density(from, direction).expect("towards the ball");
+            let (density, place) = ball.pdf(from, direction).expect("towards the ball");
             assert!((density * solid_angle - 1.0).abs() < 1e-9);
             assert!((ball.direction(from, place) - direction).length() < 1e-9);
             let on = ball.line(direction, sequence.point(i, 2));
-            let (density, place) = ball.line_density(direction, on).expect("through the ball");
+            let (density, place) = ball.line_pdf(direction, on).expect("through the ball");
             assert!((density * PI * 0.25 - 1.0).abs() < 1e-12);
             assert!((ball.line(direction, place) - on).length() < 1e-9);
-            let (density, place) = ball.density(ball.center, direction).expect("from inside");
+            let (density, place) = ball.pdf(ball.center, direction).expect("from inside");
             assert!(density == 0.5 / TAU && (ball.direction(ball.center, place) - direction).length() < 1e-9);
         }
-        assert_eq!(ball.density(from, -axis), None);
-        assert_eq!(ball.line_density(DVec3::Z, ball.center + DVec3::X), None);
+        assert_eq!(ball.pdf(from, -axis), None);
+        assert_eq!(ball.line_pdf(DVec3::Z, ball.center + DVec3::X), None);
     }
 
     #[test]
-    fn a_guide_draws_what_is_wanted_and_knows_how_often() {
+    fn a_projection_map_samples_what_is_wanted_and_knows_how_often() {
         let guide = ProjectionMap::around(&[[0.1, 0.2], [0.11, 0.99], [0.0, 0.0]]);
         let sequence = SobolSequence::new(3, 3);
         let count = 1 << 14;
         // The mean of what is drawn over its density is the integral over the square.
-        let drawn = || (0..count).map(|i| guide.draw(sequence.point(i, 0)));
+        let drawn = || (0..count).map(|i| guide.sample(sequence.point(i, 0)));
         let mean = |of: &dyn Fn([f64; 2]) -> f64| {
-            drawn().map(|place| of(place) / guide.density(place)).sum::<f64>() / f64::from(count)
+            drawn().map(|place| of(place) / guide.pdf(place)).sum::<f64>() / f64::from(count)
         };
         assert!((mean(&|_| 1.0) - 1.0).abs() < 2e-2 && (mean(&|[x, y]| x + 2.0 * y) - 1.5).abs() < 3e-2);
         let wanted = drawn().filter(|[x, y]| *x < 0.16 && (*y < 0.06 || (0.15..0.26).contains(y) || *y > 0.93)).count();
         assert!(wanted as f64 > 0.1 * f64::from(count), "{wanted}");
         let even = ProjectionMap::even();
-        assert!(drawn().all(|place| (even.density(place) - 1.0).abs() < 1e-9));
-        let there = even.draw([0.3, 0.7]);
+        assert!(drawn().all(|place| (even.pdf(place) - 1.0).abs() < 1e-9));
+        let there = even.sample([0.3, 0.7]);
         assert!((there[0] - 0.3).abs() < 1e-12 && (there[1] - 0.7).abs() < 1e-12);
     }
 }

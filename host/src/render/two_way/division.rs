@@ -36,7 +36,7 @@ struct PilotResult {
 
 impl PhotonMapper<'_> {
     /// How many ways from each of so many lamps, and to each of so many balls, are followed first.
-    pub(super) fn pilot(photons: u32, lamps: usize, balls: usize) -> u32 {
+    pub(super) fn pilot_paths(photons: u32, lamps: usize, balls: usize) -> u32 {
         let pilot = (photons / 8).clamp(*PILOT.start(), *PILOT.end());
         // A lamp more or less seldom matters to the others.
         let each = pilot >> lamps.next_power_of_two().trailing_zeros().min(31);
@@ -47,7 +47,7 @@ impl PhotonMapper<'_> {
     ///
     /// - `lamps`: indices into the sources. `everything`: the ball around what sends light on by broad turns; none if
     ///   nothing does.
-    pub(super) fn divide(&mut self, world: &World<'_>, lamps: &[usize], everything: Option<BoundingSphere>) {
+    pub(super) fn allocate_paths(&mut self, world: &World<'_>, lamps: &[usize], everything: Option<BoundingSphere>) {
         let photons = world.appearance.prepared.settings.photons.count;
         let wide = everything.map(|ball| {
             self.balls.push(ball);
@@ -63,14 +63,14 @@ impl PhotonMapper<'_> {
                 balls.push(self.balls.len());
                 self.balls.push(BoundingSphere::in_cone(at, axis * far, cosine));
             }
-            let (part, count) = (1.0 / balls.len() as f64, PhotonMapper::pilot(photons, lamps.len(), balls.len()));
+            let (part, count) = (1.0 / balls.len() as f64, PhotonMapper::pilot_paths(photons, lamps.len(), balls.len()));
             let aims = balls.into_iter().map(|ball| PhotonTarget { ball, part, count, guide: ProjectionMap::even() }).collect();
             self.lamps.push(PhotonSource { source: *lamp, aims, caught: None, name: None });
         }
         let chunks =
             (0..self.lamps.len()).flat_map(|lamp| (0..self.lamps[lamp].aims.len()).map(move |aim| (lamp, aim)));
         let chunks: Vec<PathBatch> = chunks.map(|(lamp, aim)| PathBatch { lamp, aim, number: 0 }).collect();
-        let found: Vec<PilotResult> = chunks.par_iter().map(|chunk| self.explore(world, chunk, wide)).collect();
+        let found: Vec<PilotResult> = chunks.par_iter().map(|chunk| self.trace_pilot(world, chunk, wide)).collect();
         let all: f64 = found.iter().map(|explored| explored.deviation).sum();
         if all <= 0.0 {
             self.lamps.clear();
@@ -99,12 +99,12 @@ impl PhotonMapper<'_> {
     }
 
     /// Follows a few ways from a lamp to a ball: what they bring, and where they have to be sent.
-    fn explore(&self, world: &World<'_>, chunk: &PathBatch, wide: Option<usize>) -> PilotResult {
+    fn trace_pilot(&self, world: &World<'_>, chunk: &PathBatch, wide: Option<usize>) -> PilotResult {
         let PhotonTarget { ball, count, part, .. } = self.lamps[chunk.lamp].aims[chunk.aim];
         let mut used = Vec::new();
         let (mut sum, mut squares) = (0.0, 0.0);
         for index in 0..count {
-            let balance = self.follow(world, PILOT_PASS, chunk, index..index + 1).balance;
+            let balance = self.trace_batch(world, PILOT_PASS, chunk, index..index + 1).balance;
             // What goes everywhere is of use everywhere: what little of it is found tells too little.
             let is_of_use = if Some(ball) == wide { balance.sent > 0.0 } else { balance.caught > 0.0 };
             if is_of_use {

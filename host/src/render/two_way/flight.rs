@@ -13,13 +13,13 @@ use serde::Serialize;
 use std::f64::consts::PI;
 
 /// Turns after which light is followed at least; the scene may ask for more.
-pub(super) const LEAST_TURNS: u32 = 128;
+pub(super) const LEAST_BOUNCES: u32 = 128;
 /// So many turns are followed whatever is left.
-const CERTAIN_TURNS: u32 = 8;
+const CERTAIN_BOUNCES: u32 = 8;
 /// Of what has less left than this part, only some is followed, and then counts for more.
 const FAINT: f64 = 1.0 / 64.0;
 /// Of what was spread and has less left than this part of what is caught in the mean, only some is followed.
-const FAINT_AGAIN: f64 = 0.25;
+const FAINT_BROAD: f64 = 0.25;
 /// Parts in which light is spread, and one more.
 const MOST_PARTS: u32 = 17;
 /// How wide light is on its way, as a part of the diagonal of the scene: hardly more than a point, but a relief is tilted by
@@ -229,7 +229,7 @@ impl PhotonTracer<'_> {
     }
 
     /// Follows light to its end.
-    pub(super) fn follow(&mut self, start: &EmittedPhoton, choices: &PhotonSampler) {
+    pub(super) fn trace(&mut self, start: &EmittedPhoton, choices: &PhotonSampler) {
         let EmittedPhoton { ray, flux, comb, time } = *start;
         self.balance.ways += 1;
         self.balance.sent += self.watts(flux);
@@ -250,7 +250,7 @@ impl PhotonTracer<'_> {
         };
         self.waiting.push(leg);
         while let Some(mut leg) = self.waiting.pop() {
-            self.survive(&mut leg, first, choices);
+            self.russian_roulette(&mut leg, first, choices);
             // Straight through panes it goes on as it was; a limit keeps even endless stacks of them from hanging.
             if leg.turns > self.turns || leg.legs > self.turns.saturating_mul(2) {
                 self.balance.stopped += self.watts(leg.flux);
@@ -260,18 +260,18 @@ impl PhotonTracer<'_> {
                 continue;
             }
             let sight = BoundedRay { ray: leg.ray, t_min: leg.t_min, t_max: f64::INFINITY, cone };
-            match self.world.meet(&sight, comb, time) {
+            match self.world.intersect(&sight, comb, time) {
                 RayHit::Nothing => self.balance.escaped += self.watts(leg.flux),
-                RayHit::Glow(..) => self.balance.absorbed += self.watts(leg.flux),
-                RayHit::Element(found) => {
+                RayHit::Light(..) => self.balance.absorbed += self.watts(leg.flux),
+                RayHit::Surface(found) => {
                     let length = found.distance - leg.t_min * leg.ray.direction.length();
                     leg.media.notice(&found);
-                    let left = leg.flux * leg.media.absorbed(self.world, length, comb);
+                    let left = leg.flux * leg.media.transmittance(self.world, length, comb);
                     self.balance.absorbed += self.watts(leg.flux) - self.watts(left);
                     leg.flux = left;
                     let crossing = leg.media.crossing(self.world, &found, &leg.ray);
                     if crossing.is_interface {
-                        self.arrive(&leg, &found, (comb, crossing), choices);
+                        self.scatter(&leg, &found, (comb, crossing), choices);
                     } else {
                         self.waiting.push(PhotonSegment { t_min: crossing.last, media: crossing.media, ..leg });
                     }
@@ -281,10 +281,10 @@ impl PhotonTracer<'_> {
     }
 
     /// Ends a leg by chance where it is faint, or gives it what others have lost.
-    fn survive(&mut self, leg: &mut PhotonSegment, first: f64, choices: &PhotonSampler) {
+    fn russian_roulette(&mut self, leg: &mut PhotonSegment, first: f64, choices: &PhotonSampler) {
         let faint = match leg.is_again {
-            true => (first * FAINT).max(FAINT_AGAIN * self.typical.unwrap_or(0.0)),
-            false if leg.turns > CERTAIN_TURNS => first * FAINT,
+            true => (first * FAINT).max(FAINT_BROAD * self.typical.unwrap_or(0.0)),
+            false if leg.turns > CERTAIN_BOUNCES => first * FAINT,
             false => return,
         };
         let part = leg.flux.max() / faint;
@@ -297,13 +297,13 @@ impl PhotonTracer<'_> {
     }
 
     /// Catches light on an element, and sends it on.
-    fn arrive(&mut self, leg: &PhotonSegment, found: &SurfaceInteraction<'_>, (comb, crossing): (usize, MediumInterface), choices: &PhotonSampler) {
+    fn scatter(&mut self, leg: &PhotonSegment, found: &SurfaceInteraction<'_>, (comb, crossing): (usize, MediumInterface), choices: &PhotonSampler) {
         let optics = found.optics;
         let incoming = self.watts(leg.flux);
         let towards = -leg.ray.direction.normalize();
-        if leg.is_beam && optics.takes() {
+        if leg.is_beam && optics.stores_photons() {
             self.caught.push(Photon {
-                position: self.world.place(found, &leg.ray),
+                position: self.world.hit_position(found, &leg.ray),
                 towards,
                 flux: leg.flux,
                 side: side_of(self.surfaces.of(found.triangle), found.element.outside),
@@ -312,10 +312,10 @@ impl PhotonTracer<'_> {
             });
         }
         let arrival = PhotonInteraction { leg, found, crossing, frame: found.frame(), comb, towards, choices };
-        let beam = (optics.throws() || optics.is_passable()).then(|| self.beam(&arrival)).flatten();
+        let beam = (optics.casts_caustics() || optics.is_passable()).then(|| self.scatter_narrow(&arrival)).flatten();
         // What does not go on is absorbed, or caught. What is spread was caught, too, and is sent again.
         let (expected, beam) = beam.unwrap_or((0.0, None));
-        match (leg.is_beam, optics.takes()) {
+        match (leg.is_beam, optics.stores_photons()) {
             (false, true) => self.balance.straight += incoming - expected,
             (true, true) => self.balance.caught += incoming - expected,
             _ => self.balance.absorbed += incoming - expected,
@@ -323,46 +323,46 @@ impl PhotonTracer<'_> {
         self.balance.gained += beam.as_ref().map_or(0.0, |leg| self.watts(leg.flux)) - expected;
         self.waiting.extend(beam);
         if optics.is_broad() {
-            self.spread(&arrival);
+            self.scatter_broad(&arrival);
         }
     }
 
     /// Where narrow lobes send light: the flux that is expected to go on, and one of the ways.
-    fn beam(&self, arrival: &PhotonInteraction<'_>) -> Option<(f64, Option<PhotonSegment>)> {
+    fn scatter_narrow(&self, arrival: &PhotonInteraction<'_>) -> Option<(f64, Option<PhotonSegment>)> {
         let PhotonInteraction { leg, found, comb, choices, .. } = arrival;
         let optics = found.optics;
         let [choice, parting] = choices.point(PhotonDimension::Choice, leg.number);
         // Where wavelengths part, the one that is left is drawn as it is seen.
         let alone = match leg.lane {
-            None if found.disperses() => leg.flux.drawn(self.world.appearance.wavelengths.visibility(*comb), parting),
+            None if found.disperses() => leg.flux.sample_lane(self.world.appearance.wavelengths.visibility(*comb), parting),
             _ => None,
         };
         let lane = leg.lane.or(alone.map(|(lane, _)| lane)).unwrap_or(0);
-        let sighting = self.sighting(arrival, lane);
+        let sighting = self.context(arrival, lane);
         let direction = choices.point(PhotonDimension::Direction, leg.number);
-        let drawn = optics.onward(&sighting, choice, direction, LobeSelection::Narrow);
+        let drawn = optics.sample(&sighting, choice, direction, LobeSelection::Narrow);
         let Some(mut drawn) = drawn.filter(|drawn| drawn.density.is_none() || arrival.is_sound(drawn)) else {
             return Some((0.0, None));
         };
-        arrival.turn(&sighting, LobeSelection::Narrow, &mut drawn);
-        let flux = leg.flux * passed(&sighting, &drawn);
+        arrival.make_adjoint(&sighting, LobeSelection::Narrow, &mut drawn);
+        let flux = leg.flux * flux_factor(&sighting, &drawn);
         let expected = match drawn.density {
             // Its own weight is all that is known of a spread one.
             Some(_) => self.watts(flux),
-            None => optics.mirrored(&sighting).map(|onward| self.watts(leg.flux * passed(&sighting, &onward))).sum(),
+            None => optics.specular_samples(&sighting).map(|onward| self.watts(leg.flux * flux_factor(&sighting, &onward))).sum(),
         };
         let (flux, lane) = match alone.filter(|_| drawn.light.z < 0.0 && !drawn.is_straight) {
-            Some((lane, alone)) => (alone * passed(&sighting, &drawn), Some(lane)),
+            Some((lane, alone)) => (alone * flux_factor(&sighting, &drawn), Some(lane)),
             None => (flux, leg.lane),
         };
-        Some((expected, Some(arrival.leg_on(&drawn, (flux, lane), leg.number.wrapping_mul(MOST_PARTS)))))
+        Some((expected, Some(arrival.next_segment(&drawn, (flux, lane), leg.number.wrapping_mul(MOST_PARTS)))))
     }
 
     /// Sends on what broad lobes spread: half of it to what mirrors or refracts, as far as it is known where that is.
-    fn spread(&mut self, arrival: &PhotonInteraction<'_>) {
+    fn scatter_broad(&mut self, arrival: &PhotonInteraction<'_>) {
         let PhotonInteraction { leg, found, frame, choices, .. } = arrival;
         let optics = found.optics;
-        let sighting = self.sighting(arrival, leg.lane.unwrap_or(0));
+        let sighting = self.context(arrival, leg.lane.unwrap_or(0));
         let from = found.element.position;
         let plane = found.element.plane(true);
         let balls = self.balls;
@@ -395,29 +395,29 @@ impl PhotonTracer<'_> {
                 })
             } else {
                 let [choice, _] = choices.point(PhotonDimension::Choice, number);
-                optics.onward(&sighting, choice, point, LobeSelection::Broad)
+                optics.sample(&sighting, choice, point, LobeSelection::Broad)
             };
             let Some(mut drawn) = drawn.filter(|drawn| arrival.is_sound(drawn)) else { continue };
             if all > 0.0 {
                 let direction = frame.world(drawn.light);
-                let aimed = balls.iter().zip(angles()).filter(|(b, angle)| *angle > 0.0 && b.is_met(from, direction));
-                let lobes = optics.density_among(LobeSelection::Broad, &sighting, drawn.light);
+                let aimed = balls.iter().zip(angles()).filter(|(b, angle)| *angle > 0.0 && b.is_hit(from, direction));
+                let lobes = optics.pdf_among(LobeSelection::Broad, &sighting, drawn.light);
                 drawn.density = Some(0.5 * (aimed.count() as f64 / all + lobes));
             }
-            arrival.turn(&sighting, LobeSelection::Broad, &mut drawn);
-            let flux = leg.flux * passed(&sighting, &drawn) * f64::from(parts).recip();
+            arrival.make_adjoint(&sighting, LobeSelection::Broad, &mut drawn);
+            let flux = leg.flux * flux_factor(&sighting, &drawn) * f64::from(parts).recip();
             if flux.max() > 0.0 && flux.is_finite() {
                 self.balance.again += self.watts(flux);
-                let leg = PhotonSegment { is_beam: false, is_again: true, ..arrival.leg_on(&drawn, (flux, leg.lane), number) };
+                let leg = PhotonSegment { is_beam: false, is_again: true, ..arrival.next_segment(&drawn, (flux, leg.lane), number) };
                 self.waiting.push(leg);
             }
         }
     }
 
-    fn sighting<'b>(&self, arrival: &PhotonInteraction<'b>, lane: usize) -> ShadingContext<'b> {
+    fn context<'b>(&self, arrival: &PhotonInteraction<'b>, lane: usize) -> ShadingContext<'b> {
         let PhotonInteraction { found, crossing, frame, comb, towards, .. } = arrival;
-        let side = crossing.side(self.world, *comb);
-        ShadingContext { view: frame.local(*towards), comb: *comb, side, lane, painted: found.painted() }
+        let side = crossing.indices(self.world, *comb);
+        ShadingContext { view: frame.local(*towards), comb: *comb, side, lane, painted: found.texture_values() }
     }
 }
 
@@ -443,7 +443,7 @@ impl PhotonInteraction<'_> {
 
     /// Gives a direction of a spread lobe the weight with which light goes from here to there, where that is not the same as
     /// from there to here.
-    fn turn(&self, sighting: &ShadingContext<'_>, among: LobeSelection, drawn: &mut BsdfSample) {
+    fn make_adjoint(&self, sighting: &ShadingContext<'_>, among: LobeSelection, drawn: &mut BsdfSample) {
         if let Some(density) = drawn.density.filter(|_| drawn.light.z > 0.0) {
             let back = ShadingContext { view: drawn.light, ..*sighting };
             drawn.weight = self.found.optics.value_among(among, &back, sighting.view) * (drawn.light.z / density);
@@ -451,7 +451,7 @@ impl PhotonInteraction<'_> {
     }
 
     /// The leg that goes on by a narrow turn.
-    fn leg_on(&self, drawn: &BsdfSample, (flux, lane): (Channels, Option<usize>), number: u32) -> PhotonSegment {
+    fn next_segment(&self, drawn: &BsdfSample, (flux, lane): (Channels, Option<usize>), number: u32) -> PhotonSegment {
         let PhotonInteraction { leg, found, frame, .. } = self;
         let legs = leg.legs + 1;
         if drawn.is_straight {
@@ -468,7 +468,7 @@ impl PhotonInteraction<'_> {
 }
 
 /// The part of flux that goes on: radiance grows as it enters what is denser; flux does not.
-fn passed(sighting: &ShadingContext<'_>, onward: &BsdfSample) -> Channels {
+fn flux_factor(sighting: &ShadingContext<'_>, onward: &BsdfSample) -> Channels {
     if onward.light.z >= 0.0 || onward.is_straight {
         return onward.weight;
     }

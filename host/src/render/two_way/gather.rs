@@ -55,7 +55,7 @@ pub(super) struct PhotonMap {
 }
 
 /// Marks what took a broad turn; combs are fewer.
-const AGAIN: u8 = 0x80;
+const HAD_BROAD: u8 = 0x80;
 
 /// A place that asks for the light around it.
 #[derive(Clone, Copy, Debug)]
@@ -175,7 +175,7 @@ impl PhotonMap {
             sides: sorted().map(|c| c.side).collect(),
             flux: sorted().flat_map_iter(|c| c.flux.0[..lanes].iter().map(|flux| *flux as f32)).collect(),
             strength: sorted().map(|c| (c.flux.0[..lanes].iter().sum::<f64>() / lanes as f64) as f32).collect(),
-            combs: sorted().map(|c| if c.is_again { c.comb | AGAIN } else { c.comb }).collect(),
+            combs: sorted().map(|c| if c.is_again { c.comb | HAD_BROAD } else { c.comb }).collect(),
             lanes,
             most: FEW.max((SHARE * (caught.len() as f64).powf(2.0 / 3.0)) as usize),
             points,
@@ -206,8 +206,8 @@ impl PhotonMap {
             visit(&PhotonContribution {
                 towards: DVec3::from_array(self.towards[number].map(f64::from)),
                 irradiance: Channels(irradiance) * weight,
-                comb: usize::from(self.combs[number] & !AGAIN),
-                is_again: self.combs[number] & AGAIN != 0,
+                comb: usize::from(self.combs[number] & !HAD_BROAD),
+                is_again: self.combs[number] & HAD_BROAD != 0,
             });
         }
         error
@@ -223,7 +223,7 @@ impl PhotonMap {
         for (number, distance) in near {
             let number = number as usize;
             let weight = 1.0 - f64::from(distance) / square;
-            let sum = &mut sums[usize::from(self.combs[number] & AGAIN != 0)];
+            let sum = &mut sums[usize::from(self.combs[number] & HAD_BROAD != 0)];
             sum.iter_mut().zip(self.flux_of(number)).for_each(|(lane, flux)| *lane += weight * f64::from(*flux));
         }
         (sums.map(|sum| Channels(sum) * factor), error)
@@ -242,7 +242,7 @@ impl PhotonMap {
             GatherDetail::Coarse => COARSE,
             GatherDetail::Smooth => SMOOTH * self.most,
         };
-        let around = self.points.around(place.position, surroundings.reach, most);
+        let around = self.points.nearby(place.position, surroundings.reach, most);
         if around.count == 0 {
             return None;
         }
@@ -260,7 +260,7 @@ impl PhotonMap {
         }
         let (x, y) = place.outside.any_orthonormal_pair();
         let flat = (around.reach, [x, y]);
-        let walls = self.keep_seen(&mut near, place, flat, surroundings);
+        let walls = self.keep_visible(&mut near, place, flat, surroundings);
         let Disc { square, part, error } = self.disc(&near, &walls, place, flat, surroundings)?;
         near.retain(|(_, distance)| f64::from(*distance) < square);
         // In scene units.
@@ -272,7 +272,7 @@ impl PhotonMap {
     /// there.
     ///
     /// All ways along the surface lie in one plane: walls are cut with it, and then stand in the way as segments.
-    fn keep_seen(
+    fn keep_visible(
         &self,
         near: &mut Vec<(u32, f32)>,
         place: &GatherPoint,

@@ -35,11 +35,11 @@ use crate::numeric::ray::Ray;
 use crate::numeric::sequence::SobolSequence;
 use crate::octree::TriangleBvh;
 use crate::render::state::after;
-use crate::render::world::{SurfaceInteraction, World, mean_diffuse};
+use crate::render::world::{SurfaceInteraction, World, mean_diffuse_albedo};
 use crate::render::{Progress, Watch};
 use crate::scene::Prepared;
 use aim::{DirectionPdf, BoundingSphere};
-use flight::{Photon, PhotonSampler, PhotonTracer, LEAST_TURNS, PhotonDimension, EmittedPhoton};
+use flight::{Photon, PhotonSampler, PhotonTracer, LEAST_BOUNCES, PhotonDimension, EmittedPhoton};
 use gather::{PhotonMap, GatherDetail, GatherPoint, GatherContext};
 use glam::DVec3;
 use lamps::{PhotonTarget, PhotonSource};
@@ -131,26 +131,26 @@ impl<'s> PhotonMapper<'s> {
         let settings = &prepared.settings;
         let of = |triangle: u32| {
             let object = prepared.object_of[triangle as usize];
-            (keeps(object as usize), appearance.optics(object, prepared.material_number(triangle)))
+            (keeps(object as usize), appearance.bsdf(object, prepared.material_number(triangle)))
         };
-        let throws = |triangle: u32| matches!(of(triangle), (true, optics) if optics.throws());
-        let balls = aim::balls(prepared, throws);
+        let throws = |triangle: u32| matches!(of(triangle), (true, optics) if optics.casts_caustics());
+        let balls = aim::bounding_spheres(prepared, throws);
         let lamps: Vec<usize> =
-            (0..appearance.sources.len()).filter(|i| appearance.sources[*i].1.is_caught()).collect();
+            (0..appearance.sources.len()).filter(|i| appearance.sources[*i].1.emits_photons()).collect();
         if balls.is_empty() || lamps.is_empty() {
             return None;
         }
         let takes = |object: usize| {
             let materials = 0..prepared.objects[object].materials.len() as u32;
-            keeps(object) && materials.into_iter().any(|m| appearance.optics(object as u32, m).takes())
+            keeps(object) && materials.into_iter().any(|m| appearance.bsdf(object as u32, m).stores_photons())
         };
         let opaque = |triangle: u32| of(triangle).0 && world.is_opaque(triangle);
         let mut two_way = PhotonMapper {
             surfaces: SmoothSurfaces::new(prepared, takes),
             opaque: TriangleBvh::new(&prepared.vertices, &prepared.triangles).only(opaque),
             lamps: Vec::new(),
-            turns: settings.light.reflection_depth.max(LEAST_TURNS),
-            reach: settings.photons.radius.unwrap_or_else(|| widest_disc(prepared)),
+            turns: settings.light.reflection_depth.max(LEAST_BOUNCES),
+            reach: settings.photons.radius.unwrap_or_else(|| greatest_gather_radius(prepared)),
             seed: settings.image.seed,
             kept: Mutex::new(Vec::new()),
             shelf,
@@ -158,11 +158,11 @@ impl<'s> PhotonMapper<'s> {
             balls,
         };
         let spreads = |triangle: u32| matches!(of(triangle), (true, optics) if optics.is_broad());
-        two_way.divide(world, &lamps, aim::everything(prepared, spreads));
+        two_way.allocate_paths(world, &lamps, aim::bounding_sphere(prepared, spreads));
         if let Some(shelf) = shelf {
             let (photons, lamps) = (settings.photons.count, lamps.len());
             for lamp in &mut two_way.lamps {
-                let pilot = PhotonMapper::pilot(photons, lamps, lamp.aims.len());
+                let pilot = PhotonMapper::pilot_paths(photons, lamps, lamp.aims.len());
                 lamp.name = Some(shelf.name(world, lamp, &keeps, pilot));
             }
         }
@@ -172,7 +172,7 @@ impl<'s> PhotonMapper<'s> {
     /// Follows all ways of a pass; none if it was cancelled. What was followed until then is on the shelf, if there is one.
     ///
     /// - `pass`: counts from 0. The more of them, the smaller the discs over which light is spread.
-    pub(in crate::render) fn caught<'a>(
+    pub(in crate::render) fn trace_pass<'a>(
         &'a self,
         world: &'a World<'a>,
         pass: u32,
@@ -186,7 +186,7 @@ impl<'s> PhotonMapper<'s> {
         if let Some(capture) = kept().iter().find(|capture| capture.pass == pass) {
             return Some(shown(capture.clone()));
         }
-        let capture = Arc::new(self.capture(world, pass, watch)?);
+        let capture = Arc::new(self.photon_pass(world, pass, watch)?);
         let mut kept = kept();
         let bytes: usize = kept.iter().map(|capture| capture.light.bytes()).sum();
         // Half of what is left is for the work that goes on.
@@ -197,9 +197,9 @@ impl<'s> PhotonMapper<'s> {
         Some(shown(capture))
     }
 
-    fn capture(&self, world: &World<'_>, pass: u32, watch: &Watch<'_>) -> Option<PhotonPass> {
+    fn photon_pass(&self, world: &World<'_>, pass: u32, watch: &Watch<'_>) -> Option<PhotonPass> {
         let lanes = world.appearance.wavelengths.lanes();
-        let before = self.before(pass, lanes);
+        let before = self.stored_blocks(pass, lanes);
         let mut wanted: Vec<PathBatch> = Vec::new();
         for (lamp, PhotonSource { aims, .. }) in self.lamps.iter().enumerate() {
             for (aim, PhotonTarget { count, .. }) in aims.iter().enumerate() {
@@ -221,7 +221,7 @@ impl<'s> PhotonMapper<'s> {
             let done = AtomicU64::new(blocks.iter().flatten().count() as u64);
             blocks.par_iter_mut().zip(&wanted).filter(|(block, _)| block.is_none()).for_each(|(block, chunk)| {
                 if !pauses() {
-                    *block = Some(self.follow(world, u64::from(pass), chunk, ways(chunk)));
+                    *block = Some(self.trace_batch(world, u64::from(pass), chunk, ways(chunk)));
                     (watch.progress)(Progress::of(done.fetch_add(1, Ordering::Relaxed) + 1, all, "parts"));
                 }
             });
@@ -233,7 +233,7 @@ impl<'s> PhotonMapper<'s> {
                 let begin = Instant::now();
                 let whole = wanted.iter().zip(&blocks).filter(|(chunk, _)| is_whole(chunk));
                 let whole = whole.filter_map(|(chunk, block)| Some((*chunk, block.as_ref()?)));
-                self.keep(world, pass, whole.collect(), &before);
+                self.store_blocks(world, pass, whole.collect(), &before);
                 kept = Instant::now();
                 due = self.shelf.map(|shelf| after(shelf.every, begin));
             }
@@ -256,14 +256,14 @@ impl<'s> PhotonMapper<'s> {
     }
 
     /// What of the light of a pass was followed in other runs.
-    fn before(&self, pass: u32, lanes: usize) -> HashMap<PathBatch, BatchResult> {
+    fn stored_blocks(&self, pass: u32, lanes: usize) -> HashMap<PathBatch, BatchResult> {
         let Some(shelf) = self.shelf else { return HashMap::new() };
         let named = self.lamps.iter().enumerate().filter_map(|(lamp, PhotonSource { name, .. })| Some((lamp, name.as_ref()?)));
         named.flat_map(|(lamp, name)| shelf.load(&format!("{name}-{pass}"), lamp, lanes)).collect()
     }
 
     /// Keeps light of a pass for other runs, with what was kept before, of each lamp of which something is new.
-    fn keep(&self, world: &World<'_>, pass: u32, now: HashMap<PathBatch, &BatchResult>, before: &HashMap<PathBatch, BatchResult>) {
+    fn store_blocks(&self, world: &World<'_>, pass: u32, now: HashMap<PathBatch, &BatchResult>, before: &HashMap<PathBatch, BatchResult>) {
         let Some(shelf) = self.shelf else { return };
         for (number, lamp) in self.lamps.iter().enumerate() {
             let Some(name) = &lamp.name else { continue };
@@ -278,7 +278,7 @@ impl<'s> PhotonMapper<'s> {
     }
 
     /// Follows some ways from a lamp.
-    fn follow(&self, world: &World<'_>, pass: u64, chunk: &PathBatch, ways: Range<u32>) -> BatchResult {
+    fn trace_batch(&self, world: &World<'_>, pass: u64, chunk: &PathBatch, ways: Range<u32>) -> BatchResult {
         let lamp = &self.lamps[chunk.lamp];
         let mut flight = PhotonTracer {
             world,
@@ -293,8 +293,8 @@ impl<'s> PhotonMapper<'s> {
         let sequence = self.sequence(world, pass, chunk);
         for index in ways {
             let choices = PhotonSampler::new(sequence, index);
-            match self.start(world, lamp, &lamp.aims[chunk.aim], &choices) {
-                Some(start) if start.flux.max() > 0.0 && start.flux.is_finite() => flight.follow(&start, &choices),
+            match self.emit(world, lamp, &lamp.aims[chunk.aim], &choices) {
+                Some(start) if start.flux.max() > 0.0 && start.flux.is_finite() => flight.trace(&start, &choices),
                 _ => flight.balance.ways += 1,
             }
         }
@@ -312,26 +312,26 @@ impl<'s> PhotonMapper<'s> {
     }
 
     /// Light as it leaves a lamp, as if this were all of it.
-    fn start(&self, world: &World<'_>, lamp: &PhotonSource, aim: &PhotonTarget, choices: &PhotonSampler) -> Option<EmittedPhoton> {
+    fn emit(&self, world: &World<'_>, lamp: &PhotonSource, aim: &PhotonTarget, choices: &PhotonSampler) -> Option<EmittedPhoton> {
         let appearance = &world.appearance;
         let source = &appearance.sources[lamp.source].1;
         let [comb, time] = choices.point(PhotonDimension::Wavelengths, 0);
-        let comb = appearance.wavelengths.comb(comb);
+        let comb = appearance.wavelengths.set_at(comb);
         let time = if world.moves() { (time - 0.5) * appearance.prepared.settings.geometry.shutter } else { 0.0 };
-        let place = aim.guide.draw(choices.point(PhotonDimension::Aim, 0));
+        let place = aim.guide.sample(choices.point(PhotonDimension::Aim, 0));
         let ball = &self.balls[aim.ball];
         // However a way might have been drawn.
         let all = |density: &dyn Fn(&BoundingSphere) -> Option<DirectionPdf>| -> f64 {
             let of = |other: &PhotonTarget| {
                 let (density, place) = density(&self.balls[other.ball])?;
-                Some(other.part * density * other.guide.density(place))
+                Some(other.part * density * other.guide.pdf(place))
             };
             lamp.aims.iter().filter_map(of).sum()
         };
-        match source.start(choices.point(PhotonDimension::Start, 0), comb)? {
-            EmissionSample::Place { at, normal, area } => {
+        match source.sample_emission(choices.point(PhotonDimension::Start, 0), comb)? {
+            EmissionSample::Point { at, normal, area } => {
                 let direction = ball.direction(at, place);
-                let density = all(&|ball| ball.density(at, direction));
+                let density = all(&|ball| ball.pdf(at, direction));
                 let flux = source.intensity(normal, direction, comb) * density.recip();
                 // Clear of the lamp itself.
                 let largest = at.abs().max_element() + area.sqrt();
@@ -340,7 +340,7 @@ impl<'s> PhotonMapper<'s> {
             }
             EmissionSample::Parallel { direction, irradiance } => {
                 let on = ball.line(direction, place);
-                let density = all(&|ball| ball.line_density(direction, on));
+                let density = all(&|ball| ball.line_pdf(direction, on));
                 let bounds = &appearance.prepared.bounds;
                 let far = 2.0 * bounds.diagonal() + on.distance(bounds.center());
                 let ray = Ray { origin: on - direction * far, direction };
@@ -351,7 +351,7 @@ impl<'s> PhotonMapper<'s> {
 }
 
 /// The radius of the largest disc over which caught light is spread, unless the scene has one, scene units.
-pub fn widest_disc(prepared: &Prepared) -> f64 {
+pub fn greatest_gather_radius(prepared: &Prepared) -> f64 {
     REACH * prepared.bounds.diagonal()
 }
 
@@ -366,11 +366,11 @@ impl PhotonEstimator<'_> {
     pub(in crate::render) fn exitance(&self, triangle: u32, outside: bool, at: DVec3) -> Channels {
         let appearance = &self.world.appearance;
         let prepared = appearance.prepared;
-        let optics = appearance.optics(prepared.object_of[triangle as usize], prepared.material_number(triangle));
+        let optics = appearance.bsdf(prepared.object_of[triangle as usize], prepared.material_number(triangle));
         let corners = prepared.corners(triangle);
         let [a, b, c] = corners;
         let normal = (b - a).cross(c - a).try_normalize();
-        let Some(normal) = normal.filter(|_| optics.takes()) else { return Channels::ZERO };
+        let Some(normal) = normal.filter(|_| optics.stores_photons()) else { return Channels::ZERO };
         let surface = self.two_way.surfaces.of(triangle);
         let lift = LIFT * (at.abs().max_element() + prepared.bounds.diagonal());
         let place = GatherPoint {
@@ -380,18 +380,18 @@ impl PhotonEstimator<'_> {
             surface,
             side: flight::side_of(surface, outside),
         };
-        let ([narrow, broad], _) = self.capture.light.irradiance(&place, &self.surroundings(GatherDetail::Smooth));
+        let ([narrow, broad], _) = self.capture.light.irradiance(&place, &self.gather_context(GatherDetail::Smooth));
         let irradiance = narrow + broad;
         if irradiance == Channels::ZERO {
             return irradiance;
         }
         let weights = crate::numeric::triangle::weights(corners, at);
         let size = normal.any_orthonormal_pair();
-        let place = optics.is_textured().then(|| prepared.place(triangle, weights, [size.0 * lift, size.1 * lift]));
-        mean_diffuse(optics, place.as_ref(), appearance.wavelengths.combs()) * irradiance
+        let place = optics.is_textured().then(|| prepared.texture_place(triangle, weights, [size.0 * lift, size.1 * lift]));
+        mean_diffuse_albedo(optics, place.as_ref(), appearance.wavelengths.count()) * irradiance
     }
 
-    fn surroundings(&self, detail: GatherDetail) -> GatherContext<'_> {
+    fn gather_context(&self, detail: GatherDetail) -> GatherContext<'_> {
         GatherContext {
             world: self.world,
             surfaces: &self.two_way.surfaces,
@@ -409,7 +409,7 @@ impl PhotonEstimator<'_> {
     /// - Returns what comes to the eye in the lanes of the ray; and what comes at other wavelengths, linear sRGB: of light
     ///   that took narrow turns only, and of light that took broad ones among them. And the standard error of all of it,
     ///   over it.
-    pub(in crate::render) fn seen(
+    pub(in crate::render) fn radiance_estimate(
         &self,
         found: &SurfaceInteraction<'_>,
         sighting: &ShadingContext<'_>,
@@ -428,11 +428,11 @@ impl PhotonEstimator<'_> {
             side: flight::side_of(surface, element.outside),
         };
         let appearance = &self.world.appearance;
-        let surroundings = self.surroundings(if coarse { GatherDetail::Coarse } else { GatherDetail::Fine });
+        let surroundings = self.gather_context(if coarse { GatherDetail::Coarse } else { GatherDetail::Fine });
         let frame = found.frame();
         let wavelengths = &appearance.wavelengths;
         let is_one_color = !wavelengths.is_spectral() || is_parted;
-        if let Some(value) = found.optics.even_value(sighting).filter(|_| is_one_color) {
+        if let Some(value) = found.optics.constant_value(sighting).filter(|_| is_one_color) {
             let (irradiance, error) = self.capture.light.irradiance(&place, &surroundings);
             return (irradiance.map(|irradiance| (passed * value * irradiance, DVec3::ZERO)), error);
         }
@@ -441,13 +441,13 @@ impl PhotonEstimator<'_> {
             let light = frame.local(arriving.towards);
             let (sum, elsewhere) = &mut found_light[usize::from(arriving.is_again)];
             if is_one_color {
-                *sum += found.optics.spread_value(sighting, light) * arriving.irradiance;
+                *sum += found.optics.non_narrow_value(sighting, light) * arriving.irradiance;
             } else {
                 // The light has other wavelengths than the ray.
                 let at = ShadingContext { comb: arriving.comb, ..*sighting };
-                let passed = between(passed, sighting.comb, arriving.comb, wavelengths.combs());
-                let radiance = found.optics.spread_value(&at, light) * arriving.irradiance * passed;
-                *elsewhere += wavelengths.seen(arriving.comb, radiance);
+                let passed = between(passed, sighting.comb, arriving.comb, wavelengths.count());
+                let radiance = found.optics.non_narrow_value(&at, light) * arriving.irradiance * passed;
+                *elsewhere += wavelengths.to_srgb(arriving.comb, radiance);
             }
         });
         (found_light.map(|(sum, elsewhere)| (passed * sum, elsewhere)), error)

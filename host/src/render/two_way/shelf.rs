@@ -28,7 +28,7 @@ const MOST_BYTES: u64 = 4 << 30;
 /// Rises when light is followed in another way, so that records of before are not taken.
 const FORM: u32 = 1;
 /// Marks light that took a broad turn; combs are fewer.
-const AGAIN: u8 = 0x80;
+const HAD_BROAD: u8 = 0x80;
 
 /// Where caught light of a scene is kept.
 #[derive(Clone, Debug)]
@@ -144,9 +144,9 @@ impl PhotonStore {
 
     /// Light of a lamp that was followed before, block by block; of more, the first blocks.
     pub(super) fn load(&self, name: &str, lamp: usize, lanes: usize) -> HashMap<PathBatch, BatchResult> {
-        let found = Store::open(&self.path).and_then(|store| store.find(RecordKind::CaughtLight, name));
+        let found = Store::open(&self.path).and_then(|store| store.find(RecordKind::Photons, name));
         let caught = match found {
-            Ok(Some(Record { content: RecordContent::CaughtLight(caught), .. })) => *caught,
+            Ok(Some(Record { content: RecordContent::Photons(caught), .. })) => *caught,
             Ok(_) => return HashMap::new(),
             Err(error) => {
                 tracing::warn!("caught light is not read: {error}");
@@ -166,7 +166,7 @@ impl PhotonStore {
         let mut sorted: Vec<_> = blocks.iter().collect();
         sorted.sort_by_key(|(chunk, _)| (chunk.number, chunk.aim));
         let blocks: Vec<PhotonBlock> = sorted.into_iter().map(|(chunk, block)| written(chunk, block, lanes)).collect();
-        let content = RecordContent::CaughtLight(Box::new(StoredPhotons { lanes: lanes as u8, blocks }));
+        let content = RecordContent::Photons(Box::new(StoredPhotons { lanes: lanes as u8, blocks }));
         let origin = Origin { what, source: "two-way ray tracing".into(), terms: String::new() };
         let record = Record { name: name.into(), origin, content };
         if let Err(error) = Store::open_to_write(&self.path).and_then(|store| self.add(&store, record)) {
@@ -175,12 +175,12 @@ impl PhotonStore {
     }
 
     fn add(&self, store: &Store, record: Record) -> Result<(), DatabaseError> {
-        let entries = store.entries(Some(RecordKind::CaughtLight))?;
+        let entries = store.entries(Some(RecordKind::Photons))?;
         let mut bytes: u64 = entries.iter().map(|entry| entry.bytes).sum();
         if bytes > MOST_BYTES {
             let others = || entries.iter().filter(|entry| !entry.name.starts_with(&self.prefix()));
             bytes -= others().map(|entry| entry.bytes).sum::<u64>();
-            store.remove(&others().map(|entry| (RecordKind::CaughtLight, &*entry.name)).collect::<Vec<_>>())?;
+            store.remove(&others().map(|entry| (RecordKind::Photons, &*entry.name)).collect::<Vec<_>>())?;
         }
         if bytes > MOST_BYTES { Ok(()) } else { store.add(&[record], true) }
     }
@@ -199,7 +199,7 @@ fn written(chunk: &PathBatch, block: &BatchResult, lanes: usize) -> PhotonBlock 
         towards: all().map(|caught| caught.towards.as_vec3().to_array()).collect(),
         flux: all().flat_map(|caught| caught.flux.0[..lanes].iter().map(|flux| *flux as f32)).collect(),
         sides: all().map(|caught| caught.side).collect(),
-        combs: all().map(|caught| if caught.is_again { caught.comb | AGAIN } else { caught.comb }).collect(),
+        combs: all().map(|caught| if caught.is_again { caught.comb | HAD_BROAD } else { caught.comb }).collect(),
     }
 }
 
@@ -212,8 +212,8 @@ fn read(block: &PhotonBlock, lanes: usize) -> BatchResult {
             towards: DVec3::from_array(block.towards[k].map(f64::from)),
             flux: Channels(flux),
             side: block.sides[k],
-            comb: block.combs[k] & !AGAIN,
-            is_again: block.combs[k] & AGAIN != 0,
+            comb: block.combs[k] & !HAD_BROAD,
+            is_again: block.combs[k] & HAD_BROAD != 0,
         }
     };
     let [sent, again, gained, straight, all, absorbed, escaped, stopped] = block.balance;

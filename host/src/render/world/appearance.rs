@@ -4,7 +4,7 @@ use crate::color::{Channels, SpectralTable, WavelengthSets};
 use crate::illumination::Material;
 use crate::illumination::light::{LightHit, LightSource};
 use crate::illumination::optics::{InteriorMedium, Interreflection, BsdfBuilder, Bsdf};
-use crate::numeric::print_of;
+use crate::numeric::debug_hash;
 use crate::numeric::ray::Ray;
 use crate::plan::{Plan, Stage};
 use crate::render::RenderError;
@@ -66,14 +66,14 @@ impl<'a> Appearance<'a> {
             wavelengths,
         };
         appearance.add_materials(plan)?;
-        for (number, light) in prepared.lights.iter().enumerate().filter(|(number, _)| plan.keeps_light(*number)) {
+        for (number, light) in prepared.lights.iter().enumerate().filter(|(number, _)| plan.includes_light(*number)) {
             appearance
                 .sources
                 .push((number, LightSource::new(light, &appearance.wavelengths).with_portals(&prepared.portals)));
         }
         appearance.add_emitters(plan);
         appearance.passing = appearance.optics.iter().any(Bsdf::is_passable);
-        let is_followed = plan.needs(Stage::CaughtLight) || prepared.settings.light.caustics == Caustics::PathTraced;
+        let is_followed = plan.needs(Stage::PhotonMap) || prepared.settings.light.caustics == Caustics::PathTraced;
         appearance.clears = !is_followed && appearance.optics.iter().any(Bsdf::is_clear);
         let is_transparent =
             |numbers: &&Vec<u32>| numbers.iter().any(|number| appearance.optics[*number as usize].interior.is_some());
@@ -91,7 +91,7 @@ impl<'a> Appearance<'a> {
         for object in &self.prepared.objects {
             let mut numbers = Vec::with_capacity(object.materials.len());
             for material in &object.materials {
-                let alike = known.entry(print_of(material)).or_default();
+                let alike = known.entry(debug_hash(material)).or_default();
                 if let Some((_, number)) = alike.iter().find(|(other, _)| *other == material) {
                     numbers.push(*number);
                     continue;
@@ -104,7 +104,7 @@ impl<'a> Appearance<'a> {
                     _ => Interreflection::LeftOut,
                 };
                 let number = self.optics.len() as u32;
-                self.optics.push(library.optics(material, diffuse).map_err(failed)?);
+                self.optics.push(library.bsdf(material, diffuse).map_err(failed)?);
                 alike.push((material, number));
                 numbers.push(number);
             }
@@ -121,7 +121,7 @@ impl<'a> Appearance<'a> {
     /// Objects that emit are lights, too.
     fn add_emitters(&mut self, plan: &Plan) {
         let prepared = self.prepared;
-        for (index, object) in prepared.objects.iter().enumerate().filter(|(index, _)| plan.keeps_object(*index)) {
+        for (index, object) in prepared.objects.iter().enumerate().filter(|(index, _)| plan.includes_object(*index)) {
             for (number, optics) in self.optics_of[index].iter().enumerate() {
                 let Some(emission) = &self.optics[*optics as usize].emission else { continue };
                 let of = |triangle: &u32| prepared.material_number(*triangle) == number as u32;
@@ -136,13 +136,13 @@ impl<'a> Appearance<'a> {
     }
 
     /// The material of a number of an object.
-    pub(in crate::render) fn optics(&self, object: u32, material: u32) -> &Bsdf {
+    pub(in crate::render) fn bsdf(&self, object: u32, material: u32) -> &Bsdf {
         &self.optics[self.optics_of[object as usize][material as usize] as usize]
     }
 
     /// What is inside a material of an object, if it is transparent.
     pub(in crate::render) fn interior(&self, object: u32, material: u32) -> Option<&InteriorMedium> {
-        self.optics(object, material).interior.as_ref()
+        self.bsdf(object, material).interior.as_ref()
     }
 
     /// Of transparent bodies in one place, that of the greatest is there: of the greatest priority; of several with the same
@@ -157,24 +157,24 @@ impl<'a> Appearance<'a> {
     /// - `ray`: from where it is seen, of unit length.
     /// - `normal`: of the element from which it is seen, if there is one.
     /// - `part`: how much a sky counts that would have drawn the direction with a density.
-    pub(in crate::render) fn beyond(
+    pub(in crate::render) fn escaped_radiance(
         &self,
         ray: &Ray,
         normal: Option<DVec3>,
         comb: usize,
         part: impl Fn(&LightSource, f64) -> f64,
     ) -> Channels {
-        let skies = self.sources.iter().filter_map(|(_, sky)| Some((sky, sky.sky(ray, normal, comb)?)));
+        let skies = self.sources.iter().filter_map(|(_, sky)| Some((sky, sky.sky_radiance(ray, normal, comb)?)));
         let sum = skies.map(|(sky, glow)| glow.radiance * part(sky, glow.density)).reduce(|a, b| a + b);
         sum.unwrap_or_else(|| self.background.of(comb))
     }
 
     /// The nearest surface that emits and is no object, and which of the lights it is.
-    pub(in crate::render) fn glow(&self, ray: &Ray, t_min: f64, t_max: f64, comb: usize) -> Option<(usize, LightHit)> {
+    pub(in crate::render) fn intersect_lights(&self, ray: &Ray, t_min: f64, t_max: f64, comb: usize) -> Option<(usize, LightHit)> {
         let mut nearest: Option<(usize, LightHit)> = None;
         for (index, (_, source)) in self.sources.iter().enumerate().filter(|(_, (_, source))| source.is_surface()) {
             let limit = nearest.map_or(t_max, |(_, glow)| glow.t);
-            nearest = source.glow(ray, t_min, limit, comb).map(|glow| (index, glow)).or(nearest);
+            nearest = source.intersect(ray, t_min, limit, comb).map(|glow| (index, glow)).or(nearest);
         }
         nearest
     }
@@ -186,7 +186,7 @@ impl<'a> Appearance<'a> {
         material: u32,
         comb: usize,
     ) -> Option<(Channels, Option<usize>)> {
-        let emission = self.optics(object, material).emission.as_ref()?.of(comb);
+        let emission = self.bsdf(object, material).emission.as_ref()?.of(comb);
         let key = (object, material);
         let index = self.emitters.iter().find(|(emitter, _)| *emitter == key).map(|(_, index)| *index);
         Some((emission, index))

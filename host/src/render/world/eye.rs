@@ -171,11 +171,11 @@ fn line(rows: &[DVec4; 4], x: f64, y: f64, radius: f64, depth_clipping: bool) ->
     let w_slope = row_w.truncate().dot(direction);
     let (direction, origin) = if w_slope.abs() > f64::EPSILON * row_w.truncate().length() {
         // Perspective: all lines meet where w = 0, and go on to where it is positive.
-        let eye = meet(a, b, *row_w)?;
+        let eye = plane_intersection(a, b, *row_w)?;
         (if w_slope > 0.0 { direction } else { -direction }, eye)
     } else {
         let z_slope = row_z.truncate().dot(direction) * row_w.w;
-        let nearest = meet(a, b, direction.extend(0.0))?;
+        let nearest = plane_intersection(a, b, direction.extend(0.0))?;
         let forward = if z_slope < 0.0 { -direction } else { direction };
         // From before the whole scene.
         (forward, nearest - forward * (2.0 * radius))
@@ -207,7 +207,7 @@ fn clip(range: &mut [f64; 2], [slope, value]: [f64; 2]) {
 }
 
 /// The point that three planes share.
-pub(in crate::render) fn meet(a: DVec4, b: DVec4, c: DVec4) -> Option<DVec3> {
+pub(in crate::render) fn plane_intersection(a: DVec4, b: DVec4, c: DVec4) -> Option<DVec3> {
     let unit = |p: DVec4| {
         let length = p.truncate().length();
         (length > 0.0).then(|| p / length)

@@ -10,9 +10,9 @@ use glam::DVec3;
 /// What a ray meets first.
 pub(in crate::render) enum RayHit<'a> {
     /// An element of an object.
-    Element(SurfaceInteraction<'a>),
+    Surface(SurfaceInteraction<'a>),
     /// A surface that emits, and which of the lights it is.
-    Glow(usize, LightHit),
+    Light(usize, LightHit),
     /// Nothing.
     Nothing,
 }
@@ -41,7 +41,7 @@ impl SurfaceInteraction<'_> {
     /// The frame in which its optics has directions.
     pub(in crate::render) fn frame(&self) -> ShadingFrame {
         let normal = self.element.normal;
-        self.along.map_or_else(|| ShadingFrame::about(normal), |along| ShadingFrame::brushed(normal, along))
+        self.along.map_or_else(|| ShadingFrame::from_normal(normal), |along| ShadingFrame::brushed(normal, along))
     }
 
     /// Whether wavelengths part that go through it.
@@ -50,7 +50,7 @@ impl SurfaceInteraction<'_> {
     }
 
     /// What the patterns of the material give.
-    pub(in crate::render) fn painted(&self) -> &[Channels] {
+    pub(in crate::render) fn texture_values(&self) -> &[Channels] {
         &self.painting
     }
 }

@@ -37,13 +37,13 @@ impl<'a> World<'a> {
     /// # Errors
     /// [`RenderError`].
     pub fn new(prepared: &'a Prepared, plan: &Plan) -> Result<World<'a>, RenderError> {
-        let keeps = |object: usize| plan.needs(Stage::Octree) && plan.keeps_object(object);
+        let keeps = |object: usize| plan.needs(Stage::Octree) && plan.includes_object(object);
         let objects = (0..prepared.objects.len()).map(keeps).collect();
         let acceleration = prepared.acceleration(AccelerationKey { objects, motions: plan.needs(Stage::Motion) })?;
         let appearance = Appearance::new(prepared, plan)?;
         let light_buffer = acceleration.still.as_ref().filter(|_| plan.needs(Stage::LightBuffer)).map(|still| {
             let is_opaque = |t: u32| {
-                let optics = appearance.optics(prepared.object_of[t as usize], prepared.material_number(t));
+                let optics = appearance.bsdf(prepared.object_of[t as usize], prepared.material_number(t));
                 !(optics.is_passable() || appearance.clears && optics.is_clear())
             };
             let has_open = appearance.passing || appearance.clears;
@@ -56,7 +56,7 @@ impl<'a> World<'a> {
                 let triangle = still.triangle(triangle);
                 let (object, material) = (prepared.object_of[triangle as usize], prepared.material_number(triangle));
                 // Rays go on straight through panes, and would meet them again.
-                (!appearance.optics(object, material).is_passable()).then_some((object, material))
+                (!appearance.bsdf(object, material).is_passable()).then_some((object, material))
             };
             SurfacePoints::new(&still.octree, settings.photons.point_depth.unwrap_or(0), surface, settings.image.seed)
         });
@@ -87,13 +87,13 @@ impl<'a> World<'a> {
     pub(in crate::render) fn is_opaque(&self, triangle: u32) -> bool {
         let prepared = self.appearance.prepared;
         let object = prepared.object_of[triangle as usize];
-        let optics = self.appearance.optics(object, prepared.material_number(triangle));
+        let optics = self.appearance.bsdf(object, prepared.material_number(triangle));
         !optics.is_passable() && optics.interior.is_none()
     }
 
     /// What stands still between a point and a light, if the light buffer knows.
-    pub(in crate::render) fn way(&self, from: DVec3, light: usize) -> Option<&Occluders> {
-        self.light_buffer.as_ref()?.way(self.octree()?, from, light)
+    pub(in crate::render) fn occluders(&self, from: DVec3, light: usize) -> Option<&Occluders> {
+        self.light_buffer.as_ref()?.occluders(self.octree()?, from, light)
     }
 
     /// Whether something moves, so that samples need a time.
@@ -120,16 +120,16 @@ impl<'a> World<'a> {
     }
 
     /// The first triangle that a ray meets in the middle of the time in which the shutter is open.
-    pub(in crate::render) fn struck(&self, ray: &Ray, t_min: f64) -> Option<(Hit, u32)> {
+    pub(in crate::render) fn first_triangle(&self, ray: &Ray, t_min: f64) -> Option<(Hit, u32)> {
         self.first(ray, [t_min, f64::INFINITY], 0.0).map(|(hit, triangle, _)| (hit, triangle))
     }
 
     /// What is first in sight at a time.
-    pub(in crate::render) fn meet(&self, sight: &BoundedRay, comb: usize, time: f64) -> RayHit<'_> {
+    pub(in crate::render) fn intersect(&self, sight: &BoundedRay, comb: usize, time: f64) -> RayHit<'_> {
         let first = self.first(&sight.ray, [sight.t_min, sight.t_max], time);
         let t_max = first.map_or(sight.t_max, |(hit, ..)| hit.t);
-        if let Some((index, glow)) = self.appearance.glow(&sight.ray, sight.t_min, t_max, comb) {
-            return RayHit::Glow(index, glow);
+        if let Some((index, glow)) = self.appearance.intersect_lights(&sight.ray, sight.t_min, t_max, comb) {
+            return RayHit::Light(index, glow);
         }
         let Some((hit, triangle, moved)) = first else { return RayHit::Nothing };
         let prepared = self.appearance.prepared;
@@ -147,7 +147,7 @@ impl<'a> World<'a> {
         };
         let object = prepared.object_of[triangle as usize];
         let material = prepared.material_number(triangle);
-        let optics = self.appearance.optics(object, material);
+        let optics = self.appearance.bsdf(object, material);
         let length = ray.direction.length();
         let distance = hit.t * length;
         let exact = if self.appearance.exact {
@@ -160,12 +160,12 @@ impl<'a> World<'a> {
         let painting = if optics.is_textured() {
             let towards = ray.direction / length;
             let sides = footprint(element.face, towards, sight.cone.at(distance));
-            let mut place = prepared.place(triangle, weights(&hit), sides);
+            let mut place = prepared.texture_place(triangle, weights(&hit), sides);
             if let Some(on) = exact {
                 (place.uv, place.own) = (on.uv, on.own);
             }
             element.tilt(-towards, |normal| optics.tilted(&place, normal));
-            optics.paint(&place, comb)
+            optics.texture_values(&place, comb)
         } else {
             TextureValues::new()
         };
@@ -174,11 +174,11 @@ impl<'a> World<'a> {
             element.carry(&moved);
             along = along.map(|along| moved.vector(along));
         }
-        RayHit::Element(SurfaceInteraction { element, optics, triangle, object, material, distance, depth, t: hit.t, painting, along })
+        RayHit::Surface(SurfaceInteraction { element, optics, triangle, object, material, distance, depth, t: hit.t, painting, along })
     }
 
     /// Where a ray met an element: where a point stands for the surface, not all rays come to one place.
-    pub(in crate::render) fn place(&self, found: &SurfaceInteraction<'_>, ray: &Ray) -> DVec3 {
+    pub(in crate::render) fn hit_position(&self, found: &SurfaceInteraction<'_>, ray: &Ray) -> DVec3 {
         self.points.as_ref().map_or(found.element.position, |_| ray.at(found.t))
     }
 
@@ -196,7 +196,7 @@ impl<'a> World<'a> {
         let cosine = towards.dot(found.element.face);
         let counted = |index: usize| {
             let source = &self.appearance.sources[index].1;
-            part(source, source.density_on_triangle(found.distance, cosine))
+            part(source, source.pdf_on_triangle(found.distance, cosine))
         };
         Some((emission, index.map_or(1.0, counted)))
     }
@@ -206,7 +206,7 @@ impl<'a> World<'a> {
     fn contact(&self, ray: &Ray, triangle: u32, hit: &Hit) -> Option<(Hit, u32)> {
         let prepared = self.appearance.prepared;
         let optics = |triangle: u32| {
-            self.appearance.optics(prepared.object_of[triangle as usize], prepared.material_number(triangle))
+            self.appearance.bsdf(prepared.object_of[triangle as usize], prepared.material_number(triangle))
         };
         let still = self.still().filter(|_| optics(triangle).interior.is_some())?;
         let width = clearance(prepared.corners(triangle)) / slope(prepared.corners(triangle), ray.direction).abs();
@@ -292,7 +292,7 @@ impl<'a> World<'a> {
     ///
     /// - `index`: of the light that the way leads to, which is not in the way of itself. `way`: what is known of what stands
     ///   still there. `time`: when.
-    pub(in crate::render) fn passed(
+    pub(in crate::render) fn transmittance(
         &self,
         ray: &Ray,
         t_max: f64,
@@ -300,7 +300,7 @@ impl<'a> World<'a> {
         (comb, time): (usize, f64),
     ) -> (Channels, bool) {
         let blocks = |(other, (_, source)): (usize, &(usize, LightSource))| {
-            other != index && source.is_surface() && source.glow(ray, 0.0, t_max, comb).is_some()
+            other != index && source.is_surface() && source.intersect(ray, 0.0, t_max, comb).is_some()
         };
         if self.appearance.sources.iter().enumerate().any(blocks) {
             return (Channels::ZERO, false);
@@ -312,10 +312,10 @@ impl<'a> World<'a> {
         };
         let still = self.still();
         let (mut part, mut is_cleared) =
-            still.map_or((Channels::ONE, false), |still| self.passed_by(still, shaft, ray, t_max, comb));
+            still.map_or((Channels::ONE, false), |still| self.octree_transmittance(still, shaft, ray, t_max, comb));
         for (motion, carried) in &self.acceleration.moving {
             if part != Channels::ZERO {
-                let (passed, cleared) = self.passed_by(carried, None, &motion.at(time).still(ray), t_max, comb);
+                let (passed, cleared) = self.octree_transmittance(carried, None, &motion.at(time).still(ray), t_max, comb);
                 part *= passed;
                 is_cleared |= cleared;
             }
@@ -324,7 +324,7 @@ impl<'a> World<'a> {
     }
 
     /// The part of light that the triangles of an octree let pass, or those of a shaft.
-    fn passed_by(
+    fn octree_transmittance(
         &self,
         over: &SceneOctree,
         shaft: Option<&Shaft>,
@@ -342,7 +342,7 @@ impl<'a> World<'a> {
         let prepared = self.appearance.prepared;
         let of = |hit: &Hit| over.triangle(hit.triangle);
         let optics = |triangle: u32| {
-            self.appearance.optics(prepared.object_of[triangle as usize], prepared.material_number(triangle))
+            self.appearance.bsdf(prepared.object_of[triangle as usize], prepared.material_number(triangle))
         };
         let mut hits: Vec<Hit> = Vec::new();
         let clears = self.appearance.clears;
@@ -375,13 +375,13 @@ impl<'a> World<'a> {
             let triangle = of(hit);
             let optics = optics(triangle);
             let slope = slope(prepared.corners(triangle), ray.direction) / length;
-            let place = || prepared.place(triangle, weights(hit), Default::default());
+            let place = || prepared.texture_place(triangle, weights(hit), Default::default());
             let Some(interior) = optics.interior.as_ref().filter(|_| !optics.is_passable()) else {
-                return part * optics.passing(comb, slope.abs(), place);
+                return part * optics.straight_transmittance(comb, slope.abs(), place);
             };
             is_cleared = true;
             let object = prepared.object_of[triangle as usize];
-            let mut part = part * optics.cleared(comb, slope.abs(), place);
+            let mut part = part * optics.clear_transmittance(comb, slope.abs(), place);
             match (slope > 0.0, inside.iter().rposition(|(other, ..)| *other == object)) {
                 // It began within the body, if it did not come into it.
                 (true, entered) => {

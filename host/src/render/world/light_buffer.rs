@@ -100,7 +100,7 @@ impl LightBuffer {
     }
 
     /// What stands between a point and a light, if that is known.
-    pub(in crate::render) fn way(&self, octree: &Octree, from: DVec3, light: usize) -> Option<&Occluders> {
+    pub(in crate::render) fn occluders(&self, octree: &Octree, from: DVec3, light: usize) -> Option<&Occluders> {
         let place = self.lights[light].as_ref()?;
         let at = (from - self.origin) / self.side;
         let end = DVec3::from_array(self.along.map(|bricks| (bricks * BRICK) as f64));

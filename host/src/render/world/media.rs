@@ -79,11 +79,11 @@ impl Media {
         let mut sight = BoundedRay { ray, t_min: 0.0, t_max: f64::INFINITY, cone: RayCone::default() };
         let (mut left, mut entered) = (Media::default(), Media::default());
         loop {
-            let met = world.meet(&sight, 0, 0.0);
+            let met = world.intersect(&sight, 0, 0.0);
             let (t, found) = match met {
                 RayHit::Nothing => return left,
-                RayHit::Glow(_, glow) => (glow.t, None),
-                RayHit::Element(found) => (found.t, Some(found)),
+                RayHit::Light(_, glow) => (glow.t, None),
+                RayHit::Surface(found) => (found.t, Some(found)),
             };
             sight.t_min = t.next_up();
             if let Some(found) = found {
@@ -111,7 +111,7 @@ impl Media {
     }
 
     /// The part of light that comes through a length of what is here.
-    pub(in crate::render) fn absorbed(&self, world: &World<'_>, length: f64, comb: usize) -> Channels {
+    pub(in crate::render) fn transmittance(&self, world: &World<'_>, length: f64, comb: usize) -> Channels {
         match self.present(world).and_then(|body| body.interior(world)) {
             Some(interior) if interior.absorption.max() > 0.0 => {
                 interior.absorption.of(comb).map(|absorption| (-absorption * length).exp())
@@ -184,7 +184,7 @@ impl Media {
 
 impl MediumInterface {
     /// The refractive indices before and behind the element; 1 where there is no body.
-    pub(in crate::render) fn side(&self, world: &World<'_>, comb: usize) -> InterfaceIndices {
+    pub(in crate::render) fn indices(&self, world: &World<'_>, comb: usize) -> InterfaceIndices {
         let [before, behind] = [self.before, self.behind].map(|body| {
             let interior = body.and_then(|body| body.interior(world));
             interior.map_or(Channels::ONE, |interior| interior.index.of(comb))

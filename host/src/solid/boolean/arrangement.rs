@@ -168,7 +168,7 @@ impl Arrangement {
         }
         arrangement.contents[divided..].iter_mut().for_each(|content| content.is_touched = true);
         arrangement.cross();
-        arrangement.order();
+        arrangement.sort_points();
         arrangement.corners();
         arrangement.counts.points = arrangement.points.len() as u64;
         arrangement
@@ -488,7 +488,7 @@ impl Arrangement {
     }
 
     /// Orders the points of every carrier, and joins those that are one.
-    fn order(&mut self) {
+    fn sort_points(&mut self) {
         let points = &self.points;
         self.carriers.par_iter_mut().with_min_len(64).for_each(|carrier| {
             carrier.points.sort_by(|&a, &b| along(&points[a as usize], &points[b as usize]));

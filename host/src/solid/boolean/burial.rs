@@ -93,7 +93,7 @@ fn buried_of(operands: &Operands, cores: &[Option<InteriorGrid>], mut standing: 
         standing.set(other, None);
         let Some(core) = cores[other as usize].as_ref().filter(|core| !core.bounds().is_empty()) else { continue };
         sorted.touching_boxes(core.bounds(), |triangle, bounds| {
-            if core.holds(bounds) {
+            if core.contains(bounds) {
                 held.push((triangle, other));
             }
         });

@@ -33,7 +33,7 @@ const ROUNDS: usize = 64;
 const FEW: usize = 32;
 
 /// What was made of a result of which no more is known than of which triangles its triangles are part.
-pub fn all_made(operands: &Operands, outcome: &Outcome) -> NewTriangles {
+pub fn all_new(operands: &Operands, outcome: &Outcome) -> NewTriangles {
     let mesh = &outcome.mesh;
     let mut is_free = vec![true; mesh.vertices.len()];
     for (triangle, [operand, source]) in outcome.sources.iter().enumerate() {
@@ -182,7 +182,7 @@ impl<'a> Collapsing<'a> {
         (chosen, left)
     }
 
-    fn tile(&self, names: [u32; 3]) -> NamedTriangle {
+    fn named_triangle(&self, names: [u32; 3]) -> NamedTriangle {
         NamedTriangle { names, corners: names.map(|vertex| self.outcome.mesh.vertices[vertex as usize]) }
     }
 
@@ -196,7 +196,7 @@ impl<'a> Collapsing<'a> {
             of_triangle.extend(collapse.gone.iter().map(|triangle| (*triangle, number)));
             for &(triangle, corners) in &collapse.stay {
                 of_triangle.insert(triangle, number);
-                let tile = self.tile(corners).with_plane();
+                let tile = self.named_triangle(corners).with_plane();
                 let from = mesh.vertices[collapse.vertex as usize];
                 new.push(New { tile, from, vertex: collapse.vertex, collapse: number });
             }
@@ -205,7 +205,7 @@ impl<'a> Collapsing<'a> {
         let mut verdicts = vec![Verdict::Fine; chosen.len()];
         let own = sorted.pairs_within(|a, b| {
             let (one, two) = (&new[a as usize], &new[b as usize]);
-            one.meets(two.tile.tile()) || two.meets(one.tile.tile())
+            one.meets(two.tile.triangle()) || two.meets(one.tile.triangle())
         });
         // The later one waits.
         for [a, b] in own {
@@ -219,7 +219,7 @@ impl<'a> Collapsing<'a> {
         let is_met = |a: u32, triangle: u32| {
             let one = &new[a as usize];
             of_triangle.get(&triangle) != Some(&one.collapse)
-                && one.meets(&self.tile(mesh.triangles[triangle as usize]))
+                && one.meets(&self.named_triangle(mesh.triangles[triangle as usize]))
         };
         refuse(self.near_still(&sorted, is_met));
         let is_left = |triangle: &u32| self.states[*triangle as usize - first] == State::Changed;
@@ -234,7 +234,7 @@ impl<'a> Collapsing<'a> {
             refuse(sorted.pairs_if(&all, |a, b| {
                 let name = |vertex: u32| kept.of_vertex[(first_vertex + vertex) as usize];
                 let corners = mesh.corners(b as usize);
-                kept.is_kept(first + b)
+                kept.contains(first + b)
                     && new[a as usize].meets(&NamedTriangle { names: mesh.triangles[b as usize].map(name), corners })
             }));
         }
@@ -362,7 +362,7 @@ struct New {
 impl New {
     /// The box of all that it sweeps over, as two corners.
     fn bounds(&self) -> [DVec3; 2] {
-        let [a, b, c] = self.tile.tile().corners;
+        let [a, b, c] = self.tile.triangle().corners;
         [a.min(b).min(c).min(self.from), a.max(b).max(c).max(self.from)]
     }
 
@@ -375,7 +375,7 @@ impl New {
 
     /// Whether a point is in the tetrahedron between the triangle and its former first corner.
     fn sweeps_over(&self, name: u32, p: DVec3) -> bool {
-        let NamedTriangle { names, corners: [a, b, c] } = *self.tile.tile();
+        let NamedTriangle { names, corners: [a, b, c] } = *self.tile.triangle();
         let v = self.from;
         if name == self.vertex || names.contains(&name) || [a, b, c, v].contains(&p) {
             return false;
@@ -394,8 +394,8 @@ impl New {
 #[cfg(test)]
 mod tests {
     use super::super::operand::{Operand, Operands};
-    use super::super::work::{Evaluation, work};
-    use super::super::{Expression, Outcome, mates};
+    use super::super::work::{Evaluation, evaluate_once};
+    use super::super::{Expression, Outcome, quad_partners};
     use super::*;
     use crate::mesh::Mesh;
     use crate::solid::Solid;
@@ -476,7 +476,7 @@ mod tests {
             let (meshes, surfaces): (Vec<Mesh>, Vec<_>) = meshes.into_iter().unzip();
             let solids: Vec<Solid> =
                 meshes.iter().zip(&turns).map(|(mesh, by)| Solid::new(mesh.transformed(by)).unwrap()).collect();
-            let mates: Vec<Vec<u32>> = solids.iter().map(|solid| mates(solid.mesh())).collect();
+            let mates: Vec<Vec<u32>> = solids.iter().map(|solid| quad_partners(solid.mesh())).collect();
             let operand = |k: usize| Operand {
                 mesh: solids[k].mesh(),
                 sorted: solids[k].sorted(),
@@ -485,7 +485,7 @@ mod tests {
             };
             let operands = Operands::new((0..count).map(operand).collect(), true);
             for expression in expressions(count) {
-                let Evaluation { outcome: old, made, must_settle, .. } = work(&operands, &expression);
+                let Evaluation { outcome: old, made, must_settle, .. } = evaluate_once(&operands, &expression);
                 if must_settle {
                     continue;
                 }

@@ -52,7 +52,7 @@ impl ConvexFace {
     /// one line.
     pub fn is_convex_with(&self, corner: DVec3) -> bool {
         let [first, second, third] = self.plane();
-        let turns = |a, b, c| flat_turn(self.axis, a, b, c) == self.turn;
+        let turns = |a, b, c| planar_orientation(self.axis, a, b, c) == self.turn;
         self.plane.side(corner) == 0.0
             && turns(second, third, corner)
             && turns(third, corner, first)
@@ -101,9 +101,9 @@ impl ConvexFace {
     }
 
     /// Which way its corners turn, seen along an axis.
-    pub fn turn_along(&self, axis: usize) -> f64 {
+    pub fn orientation_along(&self, axis: usize) -> f64 {
         let [a, b, c] = self.plane();
-        flat_turn(axis, a, b, c)
+        planar_orientation(axis, a, b, c)
     }
 
     /// The ends of the edge from corner `k` to the next.
@@ -276,7 +276,7 @@ impl Contact {
 
     /// Proper crossings of the edges of two faces in one plane.
     fn crossings_in_plane(&mut self, one: &ConvexFace, two: &ConvexFace) {
-        let turn = |a: DVec3, b: DVec3, c: DVec3| flat_turn(one.axis, a, b, c);
+        let turn = |a: DVec3, b: DVec3, c: DVec3| planar_orientation(one.axis, a, b, c);
         for k in one.numbers() {
             let [p, q] = one.ends(k.into());
             for j in two.numbers() {
@@ -295,7 +295,7 @@ pub fn crossing(one: EdgeKey, two: EdgeKey) -> PointKey {
 }
 
 /// Which way three given points turn, seen along an axis.
-pub fn flat_turn(axis: usize, a: DVec3, b: DVec3, c: DVec3) -> f64 {
+pub fn planar_orientation(axis: usize, a: DVec3, b: DVec3, c: DVec3) -> f64 {
     let [x, y] = others(axis);
     let coord = |p: DVec3| Coord { x: p[x], y: p[y] };
     let turn = orient2d(coord(a), coord(b), coord(c));
@@ -313,7 +313,7 @@ fn locate(face: &ConvexFace, point: DVec3) -> Option<Feature> {
     let mut turns = [0.0; 4];
     for (k, turn) in turns[..face.sides].iter_mut().enumerate() {
         let [a, b] = face.ends(k);
-        *turn = flat_turn(face.axis, a, b, point) * face.turn;
+        *turn = planar_orientation(face.axis, a, b, point) * face.turn;
         if *turn < 0.0 {
             return None;
         }

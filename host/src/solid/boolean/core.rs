@@ -180,7 +180,7 @@ impl InteriorGrid {
 
     /// Whether a box lies in the operand as a whole; `false` where that is not known.
     #[inline]
-    pub fn holds(&self, bounds: Bounds) -> bool {
+    pub fn contains(&self, bounds: Bounds) -> bool {
         self.range(bounds).is_some_and(|range| self.inside.has_all(range))
     }
 
@@ -193,7 +193,7 @@ impl InteriorGrid {
 
     /// Whether a box touches a marked cell.
     pub fn is_marked(&self, bounds: Bounds) -> bool {
-        let (low, high) = (self.place(bounds.min), self.place(bounds.max));
+        let (low, high) = (self.to_cell(bounds.min), self.to_cell(bounds.max));
         let size = self.marked.size;
         let along = |axis: usize| {
             let (low, high) = (low[axis], high[axis]);
@@ -206,13 +206,13 @@ impl InteriorGrid {
 
     /// A point in cells from the first on; the whole part tells which. No coordinate ever falls when one of the point
     /// rises: whatever the roundings, a point between two others has a cell between theirs.
-    fn place(&self, point: DVec3) -> DVec3 {
+    fn to_cell(&self, point: DVec3) -> DVec3 {
         (point - self.min) * self.density
     }
 
     /// The cells that a box touches; `None` unless all are in the grid.
     fn range(&self, bounds: Bounds) -> Option<Range> {
-        let (low, high) = (self.place(bounds.min), self.place(bounds.max));
+        let (low, high) = (self.to_cell(bounds.min), self.to_cell(bounds.max));
         let size = self.marked.size;
         let is_in = |axis: usize| low[axis] >= 0.0 && low[axis] <= high[axis] && high[axis] < size[axis] as f64;
         let along = |axis: usize| [low[axis] as usize, high[axis] as usize];
@@ -275,7 +275,7 @@ mod tests {
                 let farthest = corners.corners().map(DVec3::length).into_iter().fold(0.0, f64::max);
                 let nearest = DVec3::ZERO.clamp(corners.min, corners.max).length();
                 let place = |point: DVec3| point * stretch + shift;
-                if core.holds(Bounds { min: place(corners.min), max: place(corners.max) }) {
+                if core.contains(Bounds { min: place(corners.min), max: place(corners.max) }) {
                     assert!(farthest < 1.0 + 1e-8 && nearest > 0.39, "{corners:?}");
                     held += 1;
                 } else {

@@ -1,14 +1,14 @@
 //! Evaluates expressions: on a lattice where that must be, made simple again where rounding made the result cross itself.
 
-use super::collapse::{all_made, collapse};
+use super::collapse::{all_new, collapse};
 use super::expression::Expression;
 use super::lattice::Lattice;
 use super::operand::{Operand, Operands};
 use super::overlaps::overlapping;
-use super::quads::mates;
+use super::quads::quad_partners;
 use super::result::{Outcome, CornerTables};
-use super::simple::{Resolution, resolve, settled};
-use super::work::{Evaluation, work};
+use super::simple::{Resolution, resolve, without_self_intersections};
+use super::work::{Evaluation, evaluate_once};
 use crate::mesh::Mesh;
 use crate::octree::TriangleBvh;
 use crate::solid::SolidError;
@@ -28,10 +28,10 @@ pub fn evaluate(solids: Vec<Operand<'_>>, expression: &Expression) -> Result<Out
 /// Evaluates an expression over meshes with coordinates that predicates can be exact with.
 fn evaluate_on_lattice(solids: Vec<Operand<'_>>, expression: &Expression) -> Result<Outcome, SolidError> {
     let operands = Operands::new(solids, true);
-    let Evaluation { outcome, made, must_settle, .. } = work(&operands, expression);
+    let Evaluation { outcome, made, must_settle, .. } = evaluate_once(&operands, expression);
     let (mut outcome, made) = if must_settle {
-        let outcome = settled(outcome)?;
-        let made = all_made(&operands, &outcome);
+        let outcome = without_self_intersections(outcome)?;
+        let made = all_new(&operands, &outcome);
         (outcome, made)
     } else {
         (outcome, made)
@@ -64,7 +64,7 @@ impl Lattice {
         let back = |error: SolidError| error.brought_back(self);
         let laid = solids.par_iter().map(|solid| self.laid(solid.mesh).map_err(back));
         let laid: Vec<(Mesh, Vec<u32>)> = laid.collect::<Result<_, _>>()?;
-        let filed = laid.par_iter().map(|(mesh, _)| (TriangleBvh::new(&mesh.vertices, &mesh.triangles), mates(mesh)));
+        let filed = laid.par_iter().map(|(mesh, _)| (TriangleBvh::new(&mesh.vertices, &mesh.triangles), quad_partners(mesh)));
         let filed: Vec<(TriangleBvh, Vec<u32>)> = filed.collect();
         let operands =
             laid.iter().zip(&filed).map(|((mesh, _), (sorted, mates))| Operand { mesh, sorted, mates, overlaps: &[] });

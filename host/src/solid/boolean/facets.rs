@@ -1,7 +1,7 @@
 //! Touched faces, divided along all that lies in them.
 
 use super::arrangement::Arrangement;
-use super::triangulation::{NONE, ROOM, IncrementalTriangulation};
+use super::triangulation::{NONE, TYPICAL_POINTS, IncrementalTriangulation};
 use crate::numeric::implicit::{PointDefinition, ImplicitPoint, others};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -50,7 +50,7 @@ pub fn divide(arrangement: &Arrangement) -> Vec<Facet> {
         .with_min_len(16)
         .map(|faces| match faces[..] {
             [face] => divide_face(arrangement, face),
-            _ => divide_sheet(arrangement, faces),
+            _ => divide_coplanar(arrangement, faces),
         })
         .collect();
     facets.into_iter().flatten().collect()
@@ -135,7 +135,7 @@ fn divide_face(arrangement: &Arrangement, face: u32) -> Vec<Facet> {
     let mut sheet = NumberedTriangulation {
         arrangement,
         triangulation: IncrementalTriangulation::new(shape.axis, &places[..shape.sides]),
-        inside: FxHashMap::with_capacity_and_hasher(ROOM, Default::default()),
+        inside: FxHashMap::with_capacity_and_hasher(TYPICAL_POINTS, Default::default()),
         outside: corners[..shape.sides].to_vec(),
     };
     sheet.inside.extend(sheet.outside.iter().copied().zip(0..));
@@ -155,7 +155,7 @@ fn divide_face(arrangement: &Arrangement, face: u32) -> Vec<Facet> {
     (0..sheet.triangulation.triangles.len()).map(facet).collect()
 }
 
-fn divide_sheet(arrangement: &Arrangement, faces: &[u32]) -> Vec<Facet> {
+fn divide_coplanar(arrangement: &Arrangement, faces: &[u32]) -> Vec<Facet> {
     let first = &arrangement.faces[faces[0] as usize];
     let helpers = around(first.axis, faces.iter().flat_map(|&f| arrangement.faces[f as usize].corners().to_vec()));
     let mut sheet = NumberedTriangulation {
@@ -168,7 +168,7 @@ fn divide_sheet(arrangement: &Arrangement, faces: &[u32]) -> Vec<Facet> {
     let closed = |border: &Vec<u32>| border.iter().chain(&border[..1]).copied().collect();
     sheet.fill(borders.iter().map(closed).collect(), faces);
     // Faces of one plane may have been seen along different axes.
-    let turn = |face: u32| arrangement.faces[face as usize].turn_along(first.axis);
+    let turn = |face: u32| arrangement.faces[face as usize].orientation_along(first.axis);
     // Triangles are counted operand by operand.
     let mut ordered: Vec<(u32, &[u32])> = faces.iter().copied().zip(borders.iter().map(Vec::as_slice)).collect();
     ordered.sort_unstable_by_key(|&(face, _)| arrangement.triangles[face as usize]);

@@ -41,7 +41,7 @@ pub struct Fan {
 }
 
 impl Fan {
-    fn leaves(&self) -> impl Iterator<Item = &FanTriangle> {
+    fn triangles(&self) -> impl Iterator<Item = &FanTriangle> {
         self.disks.iter().flatten()
     }
 }
@@ -185,14 +185,14 @@ impl CollapseCriteria<'_> {
     /// The best of the neighbours of a vertex onto which it may be moved, unless `is_refused`.
     pub fn collapse(&self, mut fan: Fan, is_refused: impl Fn(u32) -> bool) -> Option<Collapse> {
         let mut sources: Vec<[u32; 2]> =
-            fan.leaves().map(|leaf| self.outcome.sources[leaf.triangle as usize]).collect();
+            fan.triangles().map(|leaf| self.outcome.sources[leaf.triangle as usize]).collect();
         sources.sort_unstable();
         sources.dedup();
         let planes: Vec<[DVec3; 3]> = sources
             .iter()
             .map(|[operand, source]| self.operands.meshes()[*operand as usize].corners(*source as usize))
             .collect();
-        let around = fan.leaves().map(|leaf| self.at(leaf.second)).chain([self.at(fan.vertex)]);
+        let around = fan.triangles().map(|leaf| self.at(leaf.second)).chain([self.at(fan.vertex)]);
         let reach = UNITS * f64::EPSILON * size_of(around.chain(planes.iter().copied().flatten()), 0.0);
         // What lies exactly in a face that is square to an axis stays there.
         let own = self.at(fan.vertex);
@@ -214,7 +214,7 @@ impl CollapseCriteria<'_> {
     }
 
     fn mark_borders(&self, fan: &mut Fan) {
-        let mut seconds: Vec<u32> = fan.leaves().map(|leaf| leaf.second).collect();
+        let mut seconds: Vec<u32> = fan.triangles().map(|leaf| leaf.second).collect();
         seconds.sort_unstable();
         let is_common = |second: u32| seconds.iter().filter(|other| **other == second).count() > 1;
         for disk in &mut fan.disks {
@@ -239,12 +239,12 @@ impl CollapseCriteria<'_> {
         (!has_normals || mesh.corner_normals[one][a].distance(mesh.corner_normals[two][b]) < ALIKE)
             && (!has_parameters || {
                 let [p, q] = [mesh.corner_parameters[one][a], mesh.corner_parameters[two][b]];
-                p.distance(q) <= ALIKE * (1.0 + p.length()) + self.doubt(one) + self.doubt(two)
+                p.distance(q) <= ALIKE * (1.0 + p.length()) + self.parameter_error(one) + self.parameter_error(two)
             })
     }
 
     /// What roundings of corners may make of the parameters in a triangle: much where it is part of a long and thin one.
-    fn doubt(&self, triangle: usize) -> f64 {
+    fn parameter_error(&self, triangle: usize) -> f64 {
         let [operand, source] = self.outcome.sources[triangle];
         let corners = self.source(triangle as u32);
         let [a, b, c] = corners;
@@ -256,7 +256,7 @@ impl CollapseCriteria<'_> {
     }
 
     /// Whether the borders in a disk stay where they are if the vertex is moved onto neighbour `k`.
-    fn keeps_borders(&self, vertex: u32, disk: &[FanTriangle], k: usize, reach: f64) -> bool {
+    fn preserves_borders(&self, vertex: u32, disk: &[FanTriangle], k: usize, reach: f64) -> bool {
         let [from, to] = [vertex, disk[k].second].map(|vertex| self.at(vertex));
         let borders: Vec<usize> = (0..disk.len()).filter(|&j| disk[j].is_border).collect();
         match borders[..] {
@@ -292,7 +292,7 @@ impl CollapseCriteria<'_> {
         let (mut gone, mut stay, mut like) = (Vec::new(), Vec::new(), Vec::new());
         for disk in &fan.disks {
             let (count, k) = (disk.len(), disk.iter().position(|leaf| leaf.second == onto)?);
-            if !is_short && !self.keeps_borders(fan.vertex, disk, k, reach) {
+            if !is_short && !self.preserves_borders(fan.vertex, disk, k, reach) {
                 return None;
             }
             // From the neighbour on, all around to it again.
@@ -348,7 +348,7 @@ impl CollapseCriteria<'_> {
         };
         let source = self.outcome.sources[triangle as usize];
         let is_other = |other: &u32| *other != triangle && self.outcome.sources[*other as usize] == source;
-        let others = || fan.leaves().map(|leaf| leaf.triangle).filter(is_other).find_map(turn);
+        let others = || fan.triangles().map(|leaf| leaf.triangle).filter(is_other).find_map(turn);
         turn(triangle).or_else(others).map(|turn| normal * turn.signum())
     }
 }

@@ -1,6 +1,6 @@
 //! Triangles that fill loops in a plane.
 
-use super::contact::flat_turn;
+use super::contact::planar_orientation;
 use super::facets::around;
 use super::triangulation::{NONE, IncrementalTriangulation};
 use crate::numeric::implicit::{PointDefinition, ImplicitPoint, others};
@@ -87,7 +87,7 @@ fn are_apart(axis: usize, places: &[DVec3], sides: &[[u32; 2]]) -> bool {
 /// Whether two sides, seen along an axis, have more in common than a corner with one name.
 fn meet(axis: usize, places: &[DVec3], one: [u32; 2], two: [u32; 2]) -> bool {
     let at = |point: u32| places[point as usize];
-    let turn = |side: [u32; 2], point: u32| flat_turn(axis, at(side[0]), at(side[1]), at(point));
+    let turn = |side: [u32; 2], point: u32| planar_orientation(axis, at(side[0]), at(side[1]), at(point));
     let is_common = |point: u32| one.contains(&point) && two.contains(&point);
     let (own, other) = (one.map(|point| turn(two, point)), two.map(|point| turn(one, point)));
     if one.iter().any(|&point| is_common(point)) {

@@ -72,7 +72,7 @@ impl Lattice {
     }
 
     /// The place that a point of the lattice stands for.
-    pub fn place(&self, point: DVec3) -> DVec3 {
+    pub fn from_lattice(&self, point: DVec3) -> DVec3 {
         point.to_array().map(|x| times(x, -self.power)).into()
     }
 
@@ -88,7 +88,7 @@ impl Lattice {
 
     /// Brings a mesh back to where it belongs.
     pub fn bring_back(&self, mesh: &mut Mesh) {
-        mesh.vertices.iter_mut().for_each(|vertex| *vertex = self.place(*vertex));
+        mesh.vertices.iter_mut().for_each(|vertex| *vertex = self.from_lattice(*vertex));
     }
 }
 
@@ -96,21 +96,21 @@ impl SolidError {
     /// An error of the mesh that was put on a lattice, in the coordinates that the mesh had before.
     pub(in crate::solid) fn brought_back(mut self, lattice: &Lattice) -> SolidError {
         match &mut self {
-            SolidError::Mesh(_) | SolidError::Tangled { .. } | SolidError::BoundsNothing => {}
+            SolidError::Mesh(_) | SolidError::TooManyIntersections { .. } | SolidError::BoundsNothing => {}
             SolidError::NotClosed { edges, .. } => {
-                edges.iter_mut().flatten().for_each(|end| *end = lattice.place(*end));
+                edges.iter_mut().flatten().for_each(|end| *end = lattice.from_lattice(*end));
             }
             SolidError::Open { loops } => {
                 for open in loops {
-                    open.near = lattice.place(open.near);
+                    open.near = lattice.from_lattice(open.near);
                     open.length = lattice.length(open.length);
                 }
             }
             SolidError::InsideOut { volume, near, .. } => {
                 *volume = lattice.volume(*volume);
-                *near = lattice.place(*near);
+                *near = lattice.from_lattice(*near);
             }
-            SolidError::Crossing { near, .. } | SolidError::Unsettled { near, .. } => *near = lattice.place(*near),
+            SolidError::Crossing { near, .. } | SolidError::SelfIntersecting { near, .. } => *near = lattice.from_lattice(*near),
         }
         self
     }
@@ -137,7 +137,7 @@ mod tests {
 
     fn turned(contour: [[f64; 2]; 3]) -> Solid {
         let contours = vec![contour.map(DVec2::from).to_vec()];
-        let body = Primitive::Turning { contours, turn: 1.0 }.body().unwrap();
+        let body = Primitive::RevolvedPolygon { contours, turn: 1.0 }.body().unwrap();
         Solid::resolved(body.tessellate(Tolerance::new(0.02, 90.0)).unwrap()).unwrap().0
     }
 

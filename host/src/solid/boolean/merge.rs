@@ -28,9 +28,9 @@ pub struct ResultTriangle {
 }
 
 /// The facets that stay, in as few pieces as their points and borders allow.
-pub fn pieces(operands: &Operands, arrangement: &Arrangement, facets: &[Facet], parts: &Parts) -> Vec<ResultTriangle> {
+pub fn result_triangles(operands: &Operands, arrangement: &Arrangement, facets: &[Facet], parts: &Parts) -> Vec<ResultTriangle> {
     let kept: Vec<ResultTriangle> =
-        facets.iter().enumerate().filter_map(|(index, facet)| piece(facet, parts.of_facet(index))).collect();
+        facets.iter().enumerate().filter_map(|(index, facet)| result_triangle(facet, parts.of_facet(index))).collect();
     let plan = MergePlan::new(operands, arrangement, &kept);
     let mut members: Vec<(u32, u32)> = (0..kept.len() as u32).map(|index| (plan.regions.root(index), index)).collect();
     members.par_sort_unstable();
@@ -43,12 +43,12 @@ pub fn pieces(operands: &Operands, arrangement: &Arrangement, facets: &[Facet], 
     merged.concat()
 }
 
-fn piece(facet: &Facet, fate: FaceClassification) -> Option<ResultTriangle> {
+fn result_triangle(facet: &Facet, fate: FaceClassification) -> Option<ResultTriangle> {
     // Of faces that coincide the first that looks the right way gives its surface.
     let wanted = match fate {
-        FaceClassification::Dropped => return None,
+        FaceClassification::Discarded => return None,
         FaceClassification::Kept => true,
-        FaceClassification::Turned => false,
+        FaceClassification::Reversed => false,
     };
     let cover = facet.cover().find(|c| c.is_along == wanted);
     let [a, b, c] = facet.corners;

@@ -63,7 +63,7 @@ pub(super) use lattice::Lattice;
 pub(super) use operand::Operand;
 pub(super) use overlap::{NamedTriangle, overlap};
 pub(super) use overlaps::overlapping_up_to;
-pub(super) use quads::mates;
+pub(super) use quads::quad_partners;
 pub use result::Outcome;
 pub(super) use simple::{Resolution, resolve};
 pub(super) use winding::passes;

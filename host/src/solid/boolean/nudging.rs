@@ -18,7 +18,7 @@ use rustc_hash::FxHashMap;
 /// Rounds over the points of all triangles that overlap.
 const ROUNDS: usize = 3;
 /// Places that are tried for a point in a round.
-const PLACES: usize = 6;
+const CANDIDATES: usize = 6;
 /// 1/g, 1/g² and 1/g³ of the real root g of g⁴ = g + 1.
 const STEPS: DVec3 = DVec3::new(0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_9);
 
@@ -35,7 +35,7 @@ pub fn nudge(mesh: &mut Mesh, pairs: &[[u32; 2]], most: f64) {
         let mut vertices: Vec<u32> = left.iter().flatten().flat_map(|t| search.mesh.triangles[*t as usize]).collect();
         vertices.sort_unstable();
         vertices.dedup();
-        vertices.into_iter().for_each(|vertex| search.settle(vertex, round));
+        vertices.into_iter().for_each(|vertex| search.place_vertex(vertex, round));
         left.retain(|[one, two]| search.is_overlap(*one, *two));
         if left.is_empty() {
             return;
@@ -67,25 +67,25 @@ impl<'a> Search<'a> {
         Search { mesh, sorted, at, near: FxHashMap::default(), home: FxHashMap::default(), most }
     }
 
-    fn tile(&self, triangle: u32) -> NamedTriangle {
+    fn named_triangle(&self, triangle: u32) -> NamedTriangle {
         NamedTriangle { names: self.mesh.triangles[triangle as usize], corners: self.mesh.corners(triangle as usize) }
     }
 
     fn is_overlap(&self, one: u32, two: u32) -> bool {
-        let [one, two] = [one, two].map(|triangle| self.tile(triangle));
+        let [one, two] = [one, two].map(|triangle| self.named_triangle(triangle));
         overlap(&one.with_plane(), &two, || two.with_plane())
     }
 
     /// Tries places for a vertex, and leaves it at the best.
-    fn settle(&mut self, vertex: u32, round: usize) {
+    fn place_vertex(&mut self, vertex: u32, round: usize) {
         let home = *self.home.entry(vertex).or_insert(self.mesh.vertices[vertex as usize]);
         let size = 2.0 * self.most * home.abs().max_element();
         let mut least = self.overlaps(vertex, usize::MAX);
-        for place in 0..PLACES {
+        for place in 0..CANDIDATES {
             if least == 0 {
                 return;
             }
-            let number = (vertex as usize * ROUNDS + round) * PLACES + place;
+            let number = (vertex as usize * ROUNDS + round) * CANDIDATES + place;
             let before = self.mesh.vertices[vertex as usize];
             self.mesh.vertices[vertex as usize] = home + ((STEPS * number as f64).fract() - 0.5) * size;
             let count = self.overlaps(vertex, least);
@@ -104,15 +104,15 @@ impl<'a> Search<'a> {
         for place in 0..self.at[&vertex].len() {
             let triangle = self.at[&vertex][place];
             self.find_near(triangle);
-            let one = self.tile(triangle).with_plane();
+            let one = self.named_triangle(triangle).with_plane();
             if one.is_flat() {
                 return usize::MAX;
             }
-            let bounds = Bounds::of(one.tile().corners);
+            let bounds = Bounds::of(one.triangle().corners);
             // Two at the vertex are counted once.
             let is_counted = |other: u32| other < triangle && self.mesh.triangles[other as usize].contains(&vertex);
             for other in self.near[&triangle].iter().filter(|other| !is_counted(**other)) {
-                let two = self.tile(*other);
+                let two = self.named_triangle(*other);
                 if Bounds::of(two.corners).touches(bounds) && overlap(&one, &two, || two.with_plane()) {
                     count += 1;
                     if count > limit {

@@ -4,7 +4,7 @@
 //! names of their corners; that they have no more, from the side on which the others lie, from which way they face, or from
 //! a line that parts them.
 
-use super::contact::{Contact, ConvexFace, Feature, flat_turn};
+use super::contact::{Contact, ConvexFace, Feature, planar_orientation};
 use crate::numeric::implicit::projection;
 use crate::numeric::plane::Plane;
 use glam::DVec3;
@@ -12,7 +12,7 @@ use std::borrow::Borrow;
 
 /// Units in the last place of the largest coordinate within which a corner may lie on the other side of an edge or a plane
 /// than before it was rounded.
-const THIN: f64 = 8.0;
+const ROUNDINGS: f64 = 8.0;
 
 /// A triangle of a surface.
 #[derive(Clone, Copy, Debug)]
@@ -47,7 +47,7 @@ impl NamedTriangle {
 
 impl PlaneTriangle {
     /// The triangle.
-    pub fn tile(&self) -> &NamedTriangle {
+    pub fn triangle(&self) -> &NamedTriangle {
         &self.tile
     }
 
@@ -59,7 +59,7 @@ impl PlaneTriangle {
     /// What is near here.
     fn near(&self) -> f64 {
         let [a, b, c] = self.tile.corners.map(DVec3::abs);
-        THIN * f64::EPSILON * a.max(b).max(c).max_element()
+        ROUNDINGS * f64::EPSILON * a.max(b).max(c).max_element()
     }
 
     /// Whether a corner is near the side opposite to it, but for roundings.
@@ -73,7 +73,7 @@ impl PlaneTriangle {
     /// Whether another triangle with a common edge is folded back onto this one: its third corner is near the plane, on the
     /// side of the edge where this one is.
     #[inline]
-    fn is_lain_on(&self, other: &NamedTriangle) -> bool {
+    fn is_folded_onto(&self, other: &NamedTriangle) -> bool {
         let corners = &self.tile.corners;
         let third = self.tile.others_in(other).trailing_zeros() as usize;
         let height = self.plane.normal.dot(other.corners[third] - corners[0]);
@@ -111,17 +111,17 @@ impl PlaneTriangle {
     }
 
     /// Whether an edge of this triangle parts it from another where both are seen along an axis.
-    fn parts(&self, other: &NamedTriangle, axis: usize) -> bool {
+    fn separates(&self, other: &NamedTriangle, axis: usize) -> bool {
         let NamedTriangle { names, corners } = self.tile;
         let mut facing = self.plane.facing(axis);
         if facing == 0.0 {
-            facing = flat_turn(axis, corners[0], corners[1], corners[2]);
+            facing = planar_orientation(axis, corners[0], corners[1], corners[2]);
         }
         facing != 0.0
             && [[0, 1], [1, 2], [2, 0]].into_iter().any(|[p, q]| {
                 (0..3).all(|k| {
                     let is_end = |end: usize| other.names[k] == names[end] || other.corners[k] == corners[end];
-                    is_end(p) || is_end(q) || flat_turn(axis, corners[p], corners[q], other.corners[k]) * facing < 0.0
+                    is_end(p) || is_end(q) || planar_orientation(axis, corners[p], corners[q], other.corners[k]) * facing < 0.0
                 })
             })
     }
@@ -140,7 +140,7 @@ pub fn overlap<P: Borrow<PlaneTriangle>>(one: &PlaneTriangle, two: &NamedTriangl
 #[inline(always)]
 pub fn nearly_overlap<P: Borrow<PlaneTriangle>>(one: &PlaneTriangle, two: &NamedTriangle, plane_two: impl FnOnce() -> P) -> bool {
     let own = one.tile.others_in(two);
-    own.count_ones() == 1 && one.is_lain_on(two) || overlap_of(one, two, own, plane_two)
+    own.count_ones() == 1 && one.is_folded_onto(two) || overlap_of(one, two, own, plane_two)
 }
 
 /// Whether two triangles with an area overlap.
@@ -163,7 +163,7 @@ fn overlap_of<P: Borrow<PlaneTriangle>>(one: &PlaneTriangle, two: &NamedTriangle
     // Neighbours in one plane or nearly so, of which a division is full, are mostly parted where they are seen best.
     let normal = one.plane.normal.abs();
     let axis = if normal.max_element() == normal.x { 0 } else { if normal.y >= normal.z { 1 } else { 2 } };
-    if (axis..axis + 3).any(|axis| one.parts(&two.tile, axis % 3) || two.parts(&one.tile, axis % 3)) {
+    if (axis..axis + 3).any(|axis| one.separates(&two.tile, axis % 3) || two.separates(&one.tile, axis % 3)) {
         return false;
     }
     overlap_exactly(one.tile.corners, two.tile.corners)

@@ -15,11 +15,11 @@ use rustc_hash::FxHashMap;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaceClassification {
     /// It is no border of the result.
-    Dropped,
+    Discarded,
     /// It is, with the result behind it.
     Kept,
     /// It is, with the result in front of it.
-    Turned,
+    Reversed,
 }
 
 /// The parts of the surfaces.
@@ -45,7 +45,7 @@ struct Sample {
 
 impl Sample {
     /// A point of the part, rounded.
-    fn place(&self, operands: &Operands, arrangement: &Arrangement, facets: &[Facet]) -> DVec3 {
+    fn position(&self, operands: &Operands, arrangement: &Arrangement, facets: &[Facet]) -> DVec3 {
         let corners = match (self.triangle, self.facet) {
             (Some(triangle), _) => operands.corners(triangle).1,
             (None, Some(facet)) => facets[facet as usize].corners.map(|p| arrangement.points[p as usize].near()),
@@ -93,30 +93,30 @@ impl Parts {
                 let mut rays = 0;
                 let windings = windings(operands, arrangement, facets, sample, &mut rays);
                 let odd = windings.as_flattened().iter().copied().filter(|winding| !(0..=1).contains(winding)).min();
-                (fate(&windings, &inside), odd.unwrap_or(0), rays)
+                (classify(&windings, &inside), odd.unwrap_or(0), rays)
             })
             .collect();
         let rays = judged.iter().map(|(.., rays)| rays).sum();
         let count = samples.len() as u64;
         let all_odd = samples.iter().zip(&judged).filter(|(_, (_, odd, _))| *odd != 0);
         let odd = all_odd.min_by_key(|(_, (_, odd, _))| *odd > 0);
-        let odd = odd.map(|(sample, (_, odd, _))| (*odd, sample.place(operands, arrangement, facets)));
+        let odd = odd.map(|(sample, (_, odd, _))| (*odd, sample.position(operands, arrangement, facets)));
         let fates = samples.iter().zip(&judged).map(|(sample, (fate, ..))| (sample.root, *fate)).collect();
         Parts { nodes, vertices, fates, count, rays, odd }
     }
 
     /// Whether all are borders of the result, with the result behind them.
-    pub fn are_all_kept(&self) -> bool {
+    pub fn keep_everything(&self) -> bool {
         self.fates.values().all(|fate| *fate == FaceClassification::Kept)
     }
 
     /// What becomes of each triangle, counted over all operands; those that are not whole are dropped.
     pub fn of_triangles(&self, operands: &Operands, is_whole: &[bool]) -> Vec<FaceClassification> {
-        let mut fates = vec![FaceClassification::Dropped; is_whole.len()];
+        let mut fates = vec![FaceClassification::Discarded; is_whole.len()];
         for (operand, mesh) in (0..).zip(operands.meshes()) {
             let [first_vertex, first] = [operands.first_vertex(operand), operands.first_triangle(operand)];
             // Neighbours in the list are mostly of one part.
-            let mut last = (u32::MAX, FaceClassification::Dropped);
+            let mut last = (u32::MAX, FaceClassification::Discarded);
             let own = first as usize..first as usize + mesh.triangles.len();
             let slots = fates[own.clone()].iter_mut().zip(&is_whole[own]);
             for (triangle, (fate, _)) in mesh.triangles.iter().zip(slots).filter(|(_, (_, whole))| **whole) {
@@ -136,7 +136,7 @@ impl Parts {
     }
 
     fn of_root(&self, root: u32) -> FaceClassification {
-        self.fates.get(&root).copied().unwrap_or(FaceClassification::Dropped)
+        self.fates.get(&root).copied().unwrap_or(FaceClassification::Discarded)
     }
 }
 
@@ -235,12 +235,12 @@ fn windings(
 }
 
 /// What becomes of a part between windings behind it and in front of it.
-fn fate(windings: &[[i32; 2]], inside: impl Fn(&[bool]) -> bool) -> FaceClassification {
+fn classify(windings: &[[i32; 2]], inside: impl Fn(&[bool]) -> bool) -> FaceClassification {
     let [behind, before] =
         [0, 1].map(|side| inside(&windings.iter().map(|winding| winding[side] > 0).collect::<Vec<_>>()));
     match (behind, before) {
         (true, false) => FaceClassification::Kept,
-        (false, true) => FaceClassification::Turned,
-        _ => FaceClassification::Dropped,
+        (false, true) => FaceClassification::Reversed,
+        _ => FaceClassification::Discarded,
     }
 }

@@ -15,7 +15,7 @@ pub const NONE: u32 = u32::MAX;
 /// are no such halves.
 ///
 /// Two triangles make one only across a side that is the longest of both.
-pub fn mates(mesh: &Mesh) -> Vec<u32> {
+pub fn quad_partners(mesh: &Mesh) -> Vec<u32> {
     // The longest side of each triangle.
     let longest = |triangle: usize| {
         let corners = mesh.corners(triangle);
@@ -26,16 +26,16 @@ pub fn mates(mesh: &Mesh) -> Vec<u32> {
     };
     let longest: Vec<[u32; 2]> = (0..mesh.triangles.len()).into_par_iter().with_min_len(4096).map(longest).collect();
     let sides = HalfEdges::new(mesh.vertices.len(), longest.iter().copied().zip(0..));
-    let mut mates = Vec::new();
+    let mut partners = Vec::new();
     for (_, beside) in sides.edges() {
         if let &[(_, one), (_, two)] = beside
             && is_face(mesh, one, two)
         {
-            mates.resize(mesh.triangles.len(), NONE);
-            (mates[one as usize], mates[two as usize]) = (two, one);
+            partners.resize(mesh.triangles.len(), NONE);
+            (partners[one as usize], partners[two as usize]) = (two, one);
         }
     }
-    mates
+    partners
 }
 
 /// Whether the triangles on both sides of an edge make a convex face of one plane and one surface.
@@ -72,7 +72,7 @@ mod tests {
         let square = [[0.0, 0.0, 0.1], [1.0, 0.0, 0.1], [1.0, 1.0, 0.1], [0.0, 1.0, 0.1]];
         for triangles in [[[0, 1, 2], [0, 2, 3]], [[2, 0, 1], [3, 0, 2]], [[1, 2, 0], [2, 3, 0]]] {
             let square = mesh(&square, &triangles);
-            assert_eq!(mates(&square), [1, 0]);
+            assert_eq!(quad_partners(&square), [1, 0]);
             let mut vertices = ring(&square, 0, 1).unwrap();
             let first = vertices.iter().position(|v| *v == 0).unwrap();
             vertices.rotate_left(first);
@@ -84,7 +84,7 @@ mod tests {
     fn what_is_bent_folded_concave_or_of_two_surfaces_stays_two() {
         let alone = |points: &[[f64; 3]; 4], triangles: [[u32; 3]; 2]| {
             let mesh = mesh(points, &triangles);
-            assert!(mates(&mesh).is_empty(), "{points:?}");
+            assert!(quad_partners(&mesh).is_empty(), "{points:?}");
         };
         let ring = [[0, 1, 2], [0, 2, 3]];
         alone(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 1e-17]], ring);
@@ -94,6 +94,6 @@ mod tests {
         alone(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]], [[0, 1, 2], [0, 3, 2]]);
         let mut two = mesh(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]], &ring);
         two.surfaces = vec![0, 1];
-        assert!(mates(&two).is_empty());
+        assert!(quad_partners(&two).is_empty());
     }
 }

@@ -57,7 +57,7 @@ fn relevant_of(
         let end = touched.partition_point(|t| t.1 <= partner);
         let touched = touched[begin..end].iter().map(|t| t.2);
         let tell = |triangle, place| places.push((triangle, partner, place));
-        known_places(operands, burial, operand, partner, touched, tell);
+        known_classifications(operands, burial, operand, partner, touched, tell);
     }
     places.par_sort_unstable_by_key(|&(triangle, partner, _)| (triangle, partner));
     standing.set(operand, None);
@@ -75,7 +75,7 @@ fn relevant_of(
 
 /// Tells of the triangles of an operand near another that are not buried whether they lie in that; it is not known of
 /// those that it touches, or that may touch what is buried of it.
-fn known_places(
+fn known_classifications(
     operands: &Operands,
     burial: &BuriedTriangles,
     operand: u32,

@@ -2,7 +2,7 @@
 
 use super::arrangement::{Arrangement, Counts};
 use super::facets::Facet;
-use super::merge::pieces;
+use super::merge::result_triangles;
 use super::operand::Operands;
 use super::parts::{FaceClassification, Parts};
 use super::rounding::{self, WholeTriangles, NewTriangles};
@@ -37,13 +37,13 @@ pub fn assemble(
     let tables = CornerTables::of(operands.meshes());
     let mut outcome = Outcome { counts, ..Outcome::default() };
     let fates = parts.of_triangles(operands, is_whole);
-    outcome.reserve(fates.iter().filter(|fate| **fate != FaceClassification::Dropped).count() + facets.len());
+    outcome.reserve(fates.iter().filter(|fate| **fate != FaceClassification::Discarded).count() + facets.len());
     let mut of_vertex = vec![u32::MAX; operands.vertex_count()];
     for (operand, mesh) in operands.meshes().iter().enumerate() {
         let operand = operand as u32;
         let [first_vertex, first] = [operands.first_vertex(operand), operands.first_triangle(operand)];
         for (index, (triangle, &fate)) in mesh.triangles.iter().zip(&fates[first as usize..]).enumerate() {
-            if fate == FaceClassification::Dropped {
+            if fate == FaceClassification::Discarded {
                 continue;
             }
             let corners = triangle.map(|vertex| {
@@ -62,7 +62,7 @@ pub fn assemble(
     let mut of_point: FxHashMap<u32, u32> = FxHashMap::default();
     let mut is_moved = vec![false; outcome.mesh.vertices.len()];
     let first_vertex = is_moved.len() as u32;
-    for piece in pieces(operands, arrangement, facets, parts) {
+    for piece in result_triangles(operands, arrangement, facets, parts) {
         let corners = piece.corners.map(|point| {
             let number = match arrangement.vertices[point as usize] {
                 Some(vertex) => &mut of_vertex[vertex as usize],
@@ -78,12 +78,12 @@ pub fn assemble(
         let operand = operands.of_triangle(arrangement.triangles[piece.face as usize]);
         let place = corners.map(|corner| outcome.mesh.vertices[corner as usize]);
         let triangle_at = |face: u32, place: DVec3| {
-            half_at(operands, arrangement.triangles[face as usize], place) - operands.first_triangle(operand)
+            quad_half_at(operands, arrangement.triangles[face as usize], place) - operands.first_triangle(operand)
         };
         let source = triangle_at(piece.face, (place[0] + place[1] + place[2]) / 3.0);
         let at = [0, 1, 2].map(|k| triangle_at(piece.at[k], place[k]) as usize);
         outcome.push(corners, piece.fate, [operand, source]);
-        let at = if piece.fate == FaceClassification::Turned { [at[0], at[2], at[1]] } else { at };
+        let at = if piece.fate == FaceClassification::Reversed { [at[0], at[2], at[1]] } else { at };
         let mesh = operands.meshes()[operand as usize];
         tables.interpolate(&mut outcome.mesh, mesh, operand, source as usize, at);
     }
@@ -94,7 +94,7 @@ pub fn assemble(
 }
 
 /// The triangle of a face that a point lies in; the face is given by its lower triangle.
-fn half_at(operands: &Operands, triangle: u32, place: DVec3) -> u32 {
+fn quad_half_at(operands: &Operands, triangle: u32, place: DVec3) -> u32 {
     let mut halves = operands.halves(triangle);
     let (Some(low), Some(high)) = (halves.next(), halves.next()) else { return triangle };
     let ((names, corners), (beyond, _)) = (operands.corners(low), operands.corners(high));
@@ -126,7 +126,7 @@ impl Outcome {
     }
 
     fn push(&mut self, [a, b, c]: [u32; 3], fate: FaceClassification, source: [u32; 2]) {
-        self.mesh.triangles.push(if fate == FaceClassification::Turned { [a, c, b] } else { [a, b, c] });
+        self.mesh.triangles.push(if fate == FaceClassification::Reversed { [a, c, b] } else { [a, b, c] });
         self.sources.push(source);
     }
 }
@@ -170,7 +170,7 @@ impl CornerTables {
 
     /// For a whole triangle.
     fn copy(&self, result: &mut Mesh, mesh: &Mesh, operand: u32, triangle: usize, fate: FaceClassification) {
-        let is_turned = fate == FaceClassification::Turned;
+        let is_turned = fate == FaceClassification::Reversed;
         if self.normals {
             let [a, b, c] = mesh.corner_normals[triangle];
             result.corner_normals.push(if is_turned { [-a, -c, -b] } else { [a, b, c] });

@@ -18,8 +18,8 @@ pub struct WholeTriangles {
 impl WholeTriangles {
     /// Whether a triangle of the operands, counted through, is in the result as it is.
     #[inline]
-    pub fn is_kept(&self, triangle: u32) -> bool {
-        self.fates[triangle as usize] != FaceClassification::Dropped
+    pub fn contains(&self, triangle: u32) -> bool {
+        self.fates[triangle as usize] != FaceClassification::Discarded
     }
 }
 
@@ -64,7 +64,7 @@ pub fn crosses(operands: &Operands, result: &Mesh, first: usize, is_moved: &[boo
     let of_moved = |triangle: u32| &tiles[triangle as usize];
     let is_overlap = |a: u32, two: NamedTriangle| nearly_overlap(of_moved(a), &two, || two.with_plane());
     let sorted = TriangleBvh::new(&result.vertices, &moved);
-    let is_own = |a: u32, b: u32| nearly_overlap(of_moved(a), of_moved(b).tile(), || of_moved(b));
+    let is_own = |a: u32, b: u32| nearly_overlap(of_moved(a), of_moved(b).triangle(), || of_moved(b));
     if !sorted.pairs_within(is_own).is_empty() {
         return true;
     }
@@ -79,7 +79,7 @@ pub fn crosses(operands: &Operands, result: &Mesh, first: usize, is_moved: &[boo
             names: mesh.triangles[triangle as usize].map(|vertex| kept.of_vertex[(first_vertex + vertex) as usize]),
             corners: mesh.corners(triangle as usize),
         };
-        let is_kept = |triangle: u32| kept.is_kept(first + triangle);
+        let is_kept = |triangle: u32| kept.contains(first + triangle);
         let sorted_operand = operands.sorted(operand);
         // To find all that were kept pays only where more than a few are asked for.
         let is_large = mesh.triangles.len() > 64 * moved.len();

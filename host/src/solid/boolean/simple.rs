@@ -10,7 +10,7 @@ use super::overlaps::{Overlaps, overlapping};
 use super::result::Outcome;
 use super::sides::HalfEdges;
 use super::snapping::{Scope, snapped};
-use super::work::{Evaluation, work};
+use super::work::{Evaluation, evaluate_once};
 use crate::mesh::{Mesh, bits};
 use crate::numeric::bounds::Bounds;
 use crate::numeric::triangle;
@@ -45,7 +45,7 @@ const ATTEMPTS: [Attempt; 6] = [
 /// How far points of a settled surface may be from the rounded one, in units in the last place of the largest coordinate.
 const MOST: f64 = 64.0;
 /// How often points are drawn together and nudged in an attempt at most.
-const TURNS: usize = 6;
+const ROUNDS: usize = 6;
 /// An attempt is given up if a turn leaves more than this part of the pairs of triangles that overlapped before it.
 const LEFT: f64 = 0.85;
 
@@ -69,7 +69,7 @@ pub fn resolve(mesh: &Mesh, overlaps: &[[u32; 2]]) -> Result<Resolution, SolidEr
     let mesh = separated(mesh);
     let Evaluation { mut outcome, is_all_kept, odd, .. } = divided(&mesh, overlaps);
     outcome.clean();
-    Ok(Resolution { outcome: settled(outcome)?, is_same: is_all_kept, odd })
+    Ok(Resolution { outcome: without_self_intersections(outcome)?, is_same: is_all_kept, odd })
 }
 
 /// The outcome made simple where rounding made it cross itself or turned parts of it inside out.
@@ -85,7 +85,7 @@ pub fn resolve(mesh: &Mesh, overlaps: &[[u32; 2]]) -> Result<Resolution, SolidEr
 ///
 /// # Errors
 /// [`SolidError::Unsettled`] if none of the attempts succeeds.
-pub fn settled(mut outcome: Outcome) -> Result<Outcome, SolidError> {
+pub fn without_self_intersections(mut outcome: Outcome) -> Result<Outcome, SolidError> {
     outcome.clean();
     let first = overlapping(&outcome.mesh);
     if first.is_empty() {
@@ -102,7 +102,7 @@ pub fn settled(mut outcome: Outcome) -> Result<Outcome, SolidError> {
         };
         let from =
             if attempt.goes_on { best.clone() } else { Trial { outcome: outcome.clone(), pairs: first.clone() } };
-        let trial = from.made_simple(attempt);
+        let trial = from.apply(attempt);
         if trial.pairs.is_empty() {
             // What was turned inside out goes now. All that stays is whole; that is looked at all the same.
             let (mut settled, is_simple) = match right_side_out(&trial.outcome) {
@@ -121,7 +121,7 @@ pub fn settled(mut outcome: Outcome) -> Result<Outcome, SolidError> {
         }
     }
     let [near, ..] = outcome.mesh.corners(first[0][0] as usize);
-    Err(SolidError::Unsettled { overlaps: first.len(), near, most: MOST })
+    Err(SolidError::SelfIntersecting { overlaps: first.len(), near, most: MOST })
 }
 
 /// A surface and the pairs of triangles of it that overlap.
@@ -133,9 +133,9 @@ struct Trial {
 
 impl Trial {
     /// What an attempt makes of it: without pairs if it succeeds, and otherwise with the fewest that it came to.
-    fn made_simple(mut self, attempt: &Attempt) -> Trial {
+    fn apply(mut self, attempt: &Attempt) -> Trial {
         let mut best = self.clone();
-        for _ in 0..TURNS {
+        for _ in 0..ROUNDS {
             let before = self.pairs.len();
             let known = Overlaps::new(&self.outcome.mesh, &self.pairs);
             self.outcome = snapped(self.outcome, &self.pairs, attempt.most, attempt.scope);
@@ -207,7 +207,7 @@ fn is_near(settled: &Mesh, rounded: &Mesh) -> bool {
 fn divided(mesh: &Mesh, overlaps: &[[u32; 2]]) -> Evaluation {
     let sorted = TriangleBvh::new(&mesh.vertices, &mesh.triangles);
     let operand = Operand { mesh, sorted: &sorted, mates: &[], overlaps };
-    work(&Operands::new(vec![operand], false), &Expression::Operand(0))
+    evaluate_once(&Operands::new(vec![operand], false), &Expression::Operand(0))
 }
 
 /// The mesh with vertices of their own for all that is not joined by edges of two triangles.

@@ -83,7 +83,7 @@ fn is_collapsed(t: [u32; 3]) -> bool {
 }
 
 /// Boxes by place.
-fn filed(boxes: impl Iterator<Item = [DVec3; 2]>) -> TriangleBvh {
+fn sorted_boxes(boxes: impl Iterator<Item = [DVec3; 2]>) -> TriangleBvh {
     let corners: Vec<DVec3> = boxes.flatten().collect();
     let boxes: Vec<[u32; 3]> = (0..corners.len() as u32 / 2).map(|k| [2 * k, 2 * k + 1, 2 * k + 1]).collect();
     TriangleBvh::new(&corners, &boxes)
@@ -116,7 +116,7 @@ fn clustered(mesh: &Mesh, involved: &[u32], reach: SnapDistance) -> Vec<u32> {
     vertices.sort_unstable();
     vertices.dedup();
     let place = |k: u32| mesh.vertices[vertices[k as usize] as usize];
-    let near = filed(vertices.iter().map(|&v| reach.around(&[mesh.vertices[v as usize]])));
+    let near = sorted_boxes(vertices.iter().map(|&v| reach.around(&[mesh.vertices[v as usize]])));
     let mut pairs = near.pairs_within(|a, b| place(a).distance(place(b)) <= reach.at(place(a)));
     pairs.sort_unstable();
     for pair in pairs {
@@ -184,15 +184,15 @@ impl Incidences {
         let mut vertices: Vec<u32> = self.edges.as_flattened().to_vec();
         vertices.sort_unstable();
         vertices.dedup();
-        let of_edges = filed(self.edges.iter().map(|edge| reach.around(&edge.map(|v| mesh.vertices[v as usize]))));
+        let of_edges = sorted_boxes(self.edges.iter().map(|edge| reach.around(&edge.map(|v| mesh.vertices[v as usize]))));
         self.pass_near(mesh, &vertices, &of_edges, reach);
         let new = self.meet(mesh, &of_edges, reach);
         self.pass_near(mesh, &new, &of_edges, reach);
         self.agree(mesh);
         vertices.extend(new);
         let faces: Vec<[u32; 3]> = involved.iter().map(|&t| mesh.triangles[t as usize]).collect();
-        let of_faces = filed(faces.iter().map(|t| reach.around(&t.map(|v| mesh.vertices[v as usize]))));
-        let of_vertices = filed(vertices.iter().map(|&v| [mesh.vertices[v as usize]; 2]));
+        let of_faces = sorted_boxes(faces.iter().map(|t| reach.around(&t.map(|v| mesh.vertices[v as usize]))));
+        let of_vertices = sorted_boxes(vertices.iter().map(|&v| [mesh.vertices[v as usize]; 2]));
         let inside = of_vertices.pairs_if(&of_faces.all(), |vertex, face| {
             let (vertex, t) = (vertices[vertex as usize], faces[face as usize]);
             if is_collapsed(t) || sides(t).iter().any(|edge| self.is_on(self.number[edge], vertex)) {
@@ -232,7 +232,7 @@ impl Incidences {
 
     /// Makes edges pass through vertices that are near.
     fn pass_near(&mut self, mesh: &Mesh, vertices: &[u32], of_edges: &TriangleBvh, reach: SnapDistance) {
-        let of_vertices = filed(vertices.iter().map(|&v| [mesh.vertices[v as usize]; 2]));
+        let of_vertices = sorted_boxes(vertices.iter().map(|&v| [mesh.vertices[v as usize]; 2]));
         let pairs = of_vertices.pairs_if(&of_edges.all(), |vertex, edge| {
             let (vertex, edge) = (vertices[vertex as usize], self.edges[edge as usize]);
             let p = mesh.vertices[vertex as usize];
@@ -246,11 +246,11 @@ impl Incidences {
     /// Gives edges that pass near each other, and have no vertex in common, one; returns those that are new.
     fn meet(&mut self, mesh: &mut Mesh, of_edges: &TriangleBvh, reach: SnapDistance) -> Vec<u32> {
         let first = mesh.vertices.len() as u32;
-        let mut pairs = of_edges.pairs_within(|one, two| self.meeting(mesh, [one, two], reach).is_some());
+        let mut pairs = of_edges.pairs_within(|one, two| self.near_crossing(mesh, [one, two], reach).is_some());
         pairs.sort_unstable();
         for [one, two] in pairs {
             // An earlier pair may have given them one.
-            let Some(place) = self.meeting(mesh, [one, two], reach) else { continue };
+            let Some(place) = self.near_crossing(mesh, [one, two], reach) else { continue };
             let known = [one, two].into_iter().flat_map(|edge| &self.on_edges[edge as usize]).map(|(_, v)| *v);
             let near = |v: &u32| mesh.vertices[*v as usize].distance(place) <= reach.at(place);
             let vertex = known.into_iter().find(near).unwrap_or(mesh.vertices.len() as u32);
@@ -264,7 +264,7 @@ impl Incidences {
     }
 
     /// Where two edges pass near each other away from their ends, if they have no vertex in common.
-    fn meeting(&self, mesh: &Mesh, [one, two]: [u32; 2], reach: SnapDistance) -> Option<DVec3> {
+    fn near_crossing(&self, mesh: &Mesh, [one, two]: [u32; 2], reach: SnapDistance) -> Option<DVec3> {
         let [[a, b], [p, q]] = [one, two].map(|edge| self.edges[edge as usize].map(|v| mesh.vertices[v as usize]));
         let (d, g) = (b - a, q - p);
         let normal = d.cross(g);

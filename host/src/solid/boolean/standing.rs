@@ -8,9 +8,9 @@ enum Rule {
     /// It is known from outside.
     Operand,
     /// One child of this value settles it: a union or an intersection.
-    Settled(bool),
+    Absorbing(bool),
     /// It is whether an odd number of them are true.
-    Odd,
+    Parity,
 }
 
 /// A part of the expression.
@@ -33,21 +33,21 @@ impl ExpressionNode {
         let open = (self.unknown == 0).then_some(());
         match self.rule {
             Rule::Operand => self.value,
-            Rule::Settled(true) => {
+            Rule::Absorbing(true) => {
                 if self.truths > 0 {
                     Some(true)
                 } else {
                     open.map(|()| false)
                 }
             }
-            Rule::Settled(false) => {
+            Rule::Absorbing(false) => {
                 if self.truths + self.unknown < self.children {
                     Some(false)
                 } else {
                     open.map(|()| true)
                 }
             }
-            Rule::Odd => open.map(|()| self.truths % 2 == 1),
+            Rule::Parity => open.map(|()| self.truths % 2 == 1),
         }
     }
 
@@ -75,10 +75,10 @@ impl PartialEvaluation {
     fn add(&mut self, expression: &Expression, parent: Option<u32>, is_negated: bool) {
         let (rule, children): (Rule, &[Expression]) = match expression {
             Expression::Operand(_) => (Rule::Operand, &[]),
-            Expression::Union(all) => (Rule::Settled(true), all),
-            Expression::Intersection(all) => (Rule::Settled(false), all),
-            Expression::Difference(both) => (Rule::Settled(false), &both[..]),
-            Expression::SymmetricDifference(all) => (Rule::Odd, all),
+            Expression::Union(all) => (Rule::Absorbing(true), all),
+            Expression::Intersection(all) => (Rule::Absorbing(false), all),
+            Expression::Difference(both) => (Rule::Absorbing(false), &both[..]),
+            Expression::SymmetricDifference(all) => (Rule::Parity, all),
         };
         let place = self.parts.len();
         let value = (rule == Rule::Operand).then_some(false);
@@ -131,9 +131,9 @@ impl PartialEvaluation {
         let above = &self.parts[parent as usize];
         let own = part.for_parent();
         let settling = match above.rule {
-            Rule::Settled(true) => above.truths - u32::from(own == Some(true)),
-            Rule::Settled(false) => above.children - above.truths - above.unknown - u32::from(own == Some(false)),
-            Rule::Operand | Rule::Odd => 0,
+            Rule::Absorbing(true) => above.truths - u32::from(own == Some(true)),
+            Rule::Absorbing(false) => above.children - above.truths - above.unknown - u32::from(own == Some(false)),
+            Rule::Operand | Rule::Parity => 0,
         };
         settling == 0 && self.decides(parent as usize)
     }

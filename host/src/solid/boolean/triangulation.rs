@@ -36,10 +36,10 @@ pub struct IncrementalTriangulation<'a> {
 }
 
 /// Points that most triangulations have at most.
-pub const ROOM: usize = 13;
+pub const TYPICAL_POINTS: usize = 13;
 
 /// A list with room for more.
-fn roomy<T: Clone>(first: &[T], room: usize) -> Vec<T> {
+fn with_capacity<T: Clone>(first: &[T], room: usize) -> Vec<T> {
     let mut list = Vec::with_capacity(first.len().max(room));
     list.extend_from_slice(first);
     list
@@ -55,15 +55,15 @@ impl<'a> IncrementalTriangulation<'a> {
         let is_quad = corners.len() == 4;
         IncrementalTriangulation {
             axis,
-            points: roomy(corners, ROOM),
-            sides: roomy(if is_quad { &[0b1001, 0b0011, 0b0110, 0b1100] } else { &[0b101, 0b011, 0b110] }, ROOM),
+            points: with_capacity(corners, TYPICAL_POINTS),
+            sides: with_capacity(if is_quad { &[0b1001, 0b0011, 0b0110, 0b1100] } else { &[0b101, 0b011, 0b110] }, TYPICAL_POINTS),
             corners: corners.len() as u32,
-            triangles: roomy(if is_quad { &[[0, 1, 2], [2, 3, 0]] } else { &[[0, 1, 2]] }, 2 * ROOM),
-            beyond: roomy(if is_quad { &[[NONE, NONE, 1], [NONE, NONE, 0]] } else { &[[NONE; 3]] }, 2 * ROOM),
-            at: roomy(&[0, 0, 0, 1][..corners.len()], ROOM),
+            triangles: with_capacity(if is_quad { &[[0, 1, 2], [2, 3, 0]] } else { &[[0, 1, 2]] }, 2 * TYPICAL_POINTS),
+            beyond: with_capacity(if is_quad { &[[NONE, NONE, 1], [NONE, NONE, 0]] } else { &[[NONE; 3]] }, 2 * TYPICAL_POINTS),
+            at: with_capacity(&[0, 0, 0, 1][..corners.len()], TYPICAL_POINTS),
             fixed: FxHashSet::default(),
             last: 0,
-            changed: Vec::with_capacity(ROOM),
+            changed: Vec::with_capacity(TYPICAL_POINTS),
         }
     }
 
@@ -152,7 +152,7 @@ impl<'a> IncrementalTriangulation<'a> {
         }
     }
 
-    fn room(&mut self) -> u32 {
+    fn new_slot(&mut self) -> u32 {
         self.triangles.push([0; 3]);
         self.beyond.push([NONE; 3]);
         self.triangles.len() as u32 - 1
@@ -166,7 +166,7 @@ impl<'a> IncrementalTriangulation<'a> {
     fn split_inside(&mut self, triangle: u32, p: u32) {
         let [a, b, c] = self.triangles[triangle as usize];
         let [ab, bc, ca] = self.beyond[triangle as usize];
-        let (second, third) = (self.room(), self.room());
+        let (second, third) = (self.new_slot(), self.new_slot());
         self.put(triangle, [a, b, p], [ab, second, third]);
         self.put(second, [b, c, p], [bc, third, triangle]);
         self.put(third, [c, a, p], [ca, triangle, second]);
@@ -182,7 +182,7 @@ impl<'a> IncrementalTriangulation<'a> {
         if self.fixed.remove(&sorted(a, b)) {
             self.fixed.extend([sorted(a, p), sorted(p, b)]);
         }
-        let second = self.room();
+        let second = self.new_slot();
         self.changed.extend([triangle, second]);
         if across == NONE {
             self.put(triangle, [a, p, c], [NONE, second, ca]);
@@ -191,7 +191,7 @@ impl<'a> IncrementalTriangulation<'a> {
             let j = self.side(across, b);
             let d = self.triangles[across as usize][(j + 2) % 3];
             let [ad, db] = [self.beyond[across as usize][(j + 1) % 3], self.beyond[across as usize][(j + 2) % 3]];
-            let fourth = self.room();
+            let fourth = self.new_slot();
             self.put(triangle, [a, p, c], [across, second, ca]);
             self.put(second, [p, b, c], [fourth, bc, triangle]);
             self.put(across, [p, a, d], [triangle, ad, fourth]);

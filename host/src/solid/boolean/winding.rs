@@ -1,6 +1,6 @@
 //! How often a closed surface winds around a point, by one ray.
 
-use super::contact::flat_turn;
+use super::contact::planar_orientation;
 use super::operand::Operands;
 use crate::numeric::bounds::Bounds;
 use crate::numeric::implicit::{PointDefinition, ImplicitPoint, side_of, turn};
@@ -28,13 +28,13 @@ pub fn winding(operands: &Operands, operand: u32, point: &ImplicitPoint, rays: &
 /// 1 if the ray along x leaves through the front of a triangle, -1 if through its back, 0 if not at all.
 pub fn passes(point: &ImplicitPoint, corners: [DVec3; 3]) -> i32 {
     let [a, b, c] = corners;
-    let facing = flat_turn(0, a, b, c);
+    let facing = planar_orientation(0, a, b, c);
     if facing == 0.0 {
         return 0;
     }
     for (p, q) in [(a, b), (b, c), (c, a)] {
         let mut turns = match point.definition() {
-            &PointDefinition::Given(point) => flat_turn(0, point, p, q),
+            &PointDefinition::Given(point) => planar_orientation(0, point, p, q),
             _ => turn(0, point, &ImplicitPoint::new(PointDefinition::Given(p)), &ImplicitPoint::new(PointDefinition::Given(q))),
         };
         if turns == 0.0 {

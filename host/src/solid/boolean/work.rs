@@ -23,7 +23,7 @@ pub struct Evaluation {
 }
 
 /// Evaluates an expression once.
-pub fn work(operands: &Operands, expression: &Expression) -> Evaluation {
+pub fn evaluate_once(operands: &Operands, expression: &Expression) -> Evaluation {
     let mut arrangement = Arrangement::new(operands, expression);
     let facets = facets::divide(&arrangement);
     // Triangles that stay whole, if they stay.
@@ -38,6 +38,6 @@ pub fn work(operands: &Operands, expression: &Expression) -> Evaluation {
     (counts.parts, counts.rays) = (parts.count, parts.rays);
     let (outcome, made, must_settle) = result::assemble(operands, &arrangement, &facets, &is_whole, &parts, counts);
     // Of those that lie on each other, one is kept.
-    let is_all_kept = parts.are_all_kept() && facets.iter().all(|facet| facet.others.is_empty());
+    let is_all_kept = parts.keep_everything() && facets.iter().all(|facet| facet.others.is_empty());
     Evaluation { outcome, made, must_settle, is_all_kept, odd: parts.odd }
 }

@@ -21,7 +21,7 @@ pub enum PrimitiveError {
     },
     /// Two measures that contradict each other.
     #[error("{what} {value} is not {than} {other}")]
-    Order {
+    Contradiction {
         /// What the first measures.
         what: &'static str,
         /// The first.
@@ -118,7 +118,7 @@ pub(super) fn length_or_zero(what: &'static str, value: f64) -> Result<f64, Prim
 /// # Errors
 /// [`PrimitiveError::Order`] unless `value` is greater than `other`.
 pub(super) fn above(what: &'static str, value: f64, than: &'static str, other: f64) -> Result<(), PrimitiveError> {
-    if value > other { Ok(()) } else { Err(PrimitiveError::Order { what, value, than, other }) }
+    if value > other { Ok(()) } else { Err(PrimitiveError::Contradiction { what, value, than, other }) }
 }
 
 /// # Errors

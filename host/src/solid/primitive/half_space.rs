@@ -7,7 +7,7 @@ use crate::solid::{Body, Face};
 use glam::DVec3;
 
 /// How much farther than what it must cover a half-space reaches.
-const REACH: f64 = 8.0;
+const OVERSIZE: f64 = 8.0;
 
 /// The part of a half-space behind the plane through `at` that covers `bounds`: a tetrahedron with one face in the plane.
 ///
@@ -27,7 +27,7 @@ pub fn half_space(normal: DVec3, at: DVec3, bounds: &Bounds) -> Result<Body, Pri
     // Summed in this order, planes across an axis stay where they are to the bit.
     let foot = at + (middle - at - normal * height);
     let near = if bounds.is_empty() { 1.0 } else { bounds.diagonal() + height.abs() };
-    let size = if near > 0.0 { near * REACH } else { REACH };
+    let size = if near > 0.0 { near * OVERSIZE } else { OVERSIZE };
     let (along, across) = normal.any_orthonormal_pair();
     let corner = |x: f64, y: f64| foot + along * (x * size) + across * (y * size);
     let [a, b, c] = [corner(-1.0, -1.0), corner(2.0, 0.0), corner(-1.0, 1.0)];

@@ -73,7 +73,7 @@ pub enum Primitive {
         height: f64,
     },
     /// A hyperboloid of one sheet; see [`hyperboloid`].
-    Hyperboloid {
+    HyperboloidOfOneSheet {
         /// Its least radius.
         waist: f64,
         /// Radius of its discs.
@@ -82,7 +82,7 @@ pub enum Primitive {
         height: f64,
     },
     /// A hyperboloid of two sheets; see [`bowls`].
-    Bowls {
+    HyperboloidOfTwoSheets {
         /// Between the tips.
         gap: f64,
         /// Radius of its discs.
@@ -103,12 +103,12 @@ pub enum Primitive {
         profile: Vec<DVec3>,
     },
     /// A smooth profile that turned about the y axis; see [`smooth_revolution`].
-    Lathe {
+    SmoothRevolution {
         /// Control points (r, y).
         profile: Vec<DVec2>,
     },
     /// A polygon that turned about the y axis; see [`turned_polygon`].
-    Turning {
+    RevolvedPolygon {
         /// Corners of the polygon.
         contours: Vec<Vec<DVec2>>,
         /// How far it turned; turns.
@@ -140,12 +140,12 @@ impl Primitive {
             Primitive::Cylinder { .. } => "cylinder",
             Primitive::Cone { .. } => "cone",
             Primitive::Paraboloid { .. } => "paraboloid",
-            Primitive::Hyperboloid { .. } => "hyperboloid",
-            Primitive::Bowls { .. } => "bowls",
+            Primitive::HyperboloidOfOneSheet { .. } => "hyperboloid",
+            Primitive::HyperboloidOfTwoSheets { .. } => "bowls",
             Primitive::Torus { .. } => "torus",
             Primitive::Revolution { .. } => "revolution",
-            Primitive::Lathe { .. } => "lathe",
-            Primitive::Turning { .. } => "turning",
+            Primitive::SmoothRevolution { .. } => "lathe",
+            Primitive::RevolvedPolygon { .. } => "turning",
             Primitive::Sweep { .. } => "sweep",
         }
     }
@@ -165,12 +165,12 @@ impl Primitive {
             Primitive::Cylinder { radius, height } => cylinder(*radius, *height),
             Primitive::Cone { radius, top, height } => frustum(*radius, *top, *height),
             Primitive::Paraboloid { radius, height } => paraboloid(*radius, *height),
-            Primitive::Hyperboloid { waist, radius, height } => hyperboloid(*waist, *radius, *height),
-            Primitive::Bowls { gap, radius, height } => bowls(*gap, *radius, *height),
+            Primitive::HyperboloidOfOneSheet { waist, radius, height } => hyperboloid_of_one_sheet(*waist, *radius, *height),
+            Primitive::HyperboloidOfTwoSheets { gap, radius, height } => hyperboloid_of_two_sheets(*gap, *radius, *height),
             Primitive::Torus { ring, tube } => torus(*ring, *tube),
             Primitive::Revolution { profile } => revolution(profile),
-            Primitive::Lathe { profile } => smooth_revolution(profile),
-            Primitive::Turning { contours, turn } => turned_polygon(contours, *turn),
+            Primitive::SmoothRevolution { profile } => smooth_revolution(profile),
+            Primitive::RevolvedPolygon { contours, turn } => revolved_polygon(contours, *turn),
             Primitive::Sweep { contours, path, twist, taper } => {
                 sweep(contours, SplineCurve::clone(path), TwistAndTaper { turns: *twist, scale: *taper })
             }

@@ -17,8 +17,8 @@ pub use flat::{block, prism, pyramid, wedge};
 pub use half_space::half_space;
 pub use kind::Primitive;
 pub use patches::sculptured;
-pub use revolution::{revolution, smooth_revolution, turned_polygon};
-pub use round::{bowls, cylinder, ellipsoid, frustum, hyperboloid, paraboloid, sphere, torus};
+pub use revolution::{revolution, smooth_revolution, revolved_polygon};
+pub use round::{hyperboloid_of_two_sheets, cylinder, ellipsoid, frustum, hyperboloid_of_one_sheet, paraboloid, sphere, torus};
 pub use sweep::{path, sweep};
 
 #[cfg(test)]

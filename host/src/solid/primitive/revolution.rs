@@ -127,7 +127,7 @@ fn check_simple(outline: &[DVec2], point_of: impl Fn(usize) -> usize) -> Result<
 /// towards the x axis, in turns above 0 and up to 1.
 ///
 /// Contours may run either way; what lies in an odd number of them is inside.
-pub fn turned_polygon<C: AsRef<[DVec2]>>(contours: &[C], turn: f64) -> Result<Body, PrimitiveError> {
+pub fn revolved_polygon<C: AsRef<[DVec2]>>(contours: &[C], turn: f64) -> Result<Body, PrimitiveError> {
     if !(turn > 0.0 && turn <= 1.0) {
         let value = turn * 360.0;
         return Err(PrimitiveError::Measure { what: "angle", value, range: "above 0 and at most 360 degrees" });
@@ -149,7 +149,7 @@ pub fn turned_polygon<C: AsRef<[DVec2]>>(contours: &[C], turn: f64) -> Result<Bo
     }
     let mut faces = Vec::new();
     if turn < 1.0 {
-        let at = |turns: f64| corners.iter().map(|corner| SurfaceOfRevolution::turned(*corner, turns)).collect::<Vec<_>>();
+        let at = |turns: f64| corners.iter().map(|corner| SurfaceOfRevolution::revolve(*corner, turns)).collect::<Vec<_>>();
         let turned = base.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
         faces = vec![Face::new(at(0.0), base.triangles.clone()), Face::new(at(turn), turned)];
     }

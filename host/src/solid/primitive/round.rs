@@ -32,7 +32,7 @@ pub fn ellipsoid(radii: DVec3) -> Result<Body, PrimitiveError> {
     for (what, value) in [("radius along x", radii.x), ("radius along y", radii.y), ("radius along z", radii.z)] {
         length(what, value)?;
     }
-    Ok(sphere(1.0)?.placed(DAffine3::from_scale(radii)))
+    Ok(sphere(1.0)?.transformed(DAffine3::from_scale(radii)))
 }
 
 /// A cylinder.
@@ -58,26 +58,26 @@ pub fn paraboloid(radius: f64, height: f64) -> Result<Body, PrimitiveError> {
 }
 
 /// A hyperboloid of one sheet between discs of equal radius.
-pub fn hyperboloid(waist: f64, radius: f64, height: f64) -> Result<Body, PrimitiveError> {
+pub fn hyperboloid_of_one_sheet(waist: f64, radius: f64, height: f64) -> Result<Body, PrimitiveError> {
     length("waist", waist)?;
     length("height", height)?;
     above("radius", length("radius", radius)?, "greater than the waist", waist)?;
     // sinh t at the rim, where cosh t = radius / waist.
     let slope = ((radius - waist) / waist * ((radius + waist) / waist)).sqrt();
     let reach = slope.asinh();
-    Ok(capped(Profile::Waist { across: waist, along: height * 0.5 / slope, reach: [-reach, reach] }))
+    Ok(capped(Profile::HyperbolaOneSheet { across: waist, along: height * 0.5 / slope, reach: [-reach, reach] }))
 }
 
 /// A hyperboloid of two sheets: two bowls that turn their tips to each other, `gap` apart, with discs outside; together
 /// as high as `height`.
-pub fn bowls(gap: f64, radius: f64, height: f64) -> Result<Body, PrimitiveError> {
+pub fn hyperboloid_of_two_sheets(gap: f64, radius: f64, height: f64) -> Result<Body, PrimitiveError> {
     length("gap", gap)?;
     length("radius", radius)?;
     above("height", length("height", height)?, "greater than the gap", gap)?;
     let slope = ((height - gap) / gap * ((height + gap) / gap)).sqrt();
     let (across, along, reach) = (radius / slope, gap * 0.5, slope.asinh());
-    let upper = Profile::Bowl { across, along, reach: [0.0, reach] };
-    let lower = Profile::Bowl { across, along: -along, reach: [reach, 0.0] };
+    let upper = Profile::HyperbolaTwoSheets { across, along, reach: [0.0, reach] };
+    let lower = Profile::HyperbolaTwoSheets { across, along: -along, reach: [reach, 0.0] };
     let disc = |rim: DVec2| Profile::line(rim, DVec2::new(0.0, rim.y));
     let (top, bottom) = (disc(upper.point(1.0)), disc(lower.point(0.0)).reversed());
     Ok(turned([bottom, lower, upper, top]))

@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// Most points of a path, and most surfaces of a sweep.
 const MAX_SURFACES: usize = 1 << 20;
 /// Places on each span where the bend is compared with the section.
-const LOOKS: usize = 16;
+const BEND_SAMPLES: usize = 16;
 
 /// The curve of a path: the cubic B-spline of its points, which begins in the first and ends in the last, or the closed
 /// one.
@@ -66,7 +66,7 @@ pub fn sweep<C: AsRef<[DVec2]>>(
         }
     }
     let mut faces = Vec::new();
-    let cap = |t: f64| corners.iter().map(|corner| spine.place(*corner, widening, t)).collect::<Vec<_>>();
+    let cap = |t: f64| corners.iter().map(|corner| spine.point_at(*corner, widening, t)).collect::<Vec<_>>();
     if !is_closed {
         let turned = base.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
         faces.push(Face::new(cap(breaks[0]), turned));
@@ -82,14 +82,14 @@ pub fn sweep<C: AsRef<[DVec2]>>(
 fn check_bend(spine: &Spine, corners: &[DVec2], widening: TwistAndTaper, breaks: &[f64]) -> Result<(), PrimitiveError> {
     let [low, high] = [breaks[0], breaks[breaks.len() - 1]];
     for part in breaks.windows(2) {
-        for look in 0..=LOOKS {
-            let t = part[0] + (part[1] - part[0]) * look as f64 / LOOKS as f64;
-            let bend = spine.bend(widening, t);
+        for look in 0..=BEND_SAMPLES {
+            let t = part[0] + (part[1] - part[0]) * look as f64 / BEND_SAMPLES as f64;
+            let bend = spine.curvature_in_section(widening, t);
             let scale = 1.0 + (widening.scale - 1.0) * (t - low) / (high - low);
             let most = corners.iter().map(|corner| corner.dot(bend) * scale).fold(0.0, f64::max);
             if most >= 1.0 {
                 let radius = 1.0 / bend.length();
-                let at = spine.place(DVec2::ZERO, widening, t);
+                let at = spine.point_at(DVec2::ZERO, widening, t);
                 return Err(PrimitiveError::Bend { at, radius, reach: most * radius });
             }
         }

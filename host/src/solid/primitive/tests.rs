@@ -73,10 +73,10 @@ fn pages() -> Vec<Book> {
         book("paraboloid", paraboloid(r, h), PI * r * r * h / 2.0, h / 2.0 - 2.0 * h / 3.0)
             .area(PI * r * r + paraboloid_area(h / r / r, r))
             .about(r * r / 3.0, r * r / 6.0 + h * h / 18.0),
-        book("hyperboloid", hyperboloid(t, r, h), waisted(t), 0.0),
+        book("hyperboloid", hyperboloid_of_one_sheet(t, r, h), waisted(t), 0.0),
         book(
             "bowls",
-            bowls(0.5, r, h),
+            hyperboloid_of_two_sheets(0.5, r, h),
             {
                 // Two caps of the height d over the half gap g: PI a^2 d^2 (3 g + d) / (3 g^2).
                 let (g, d) = (0.25, h / 2.0 - 0.25);
@@ -89,8 +89,8 @@ fn pages() -> Vec<Book> {
             .area(4.0 * PI * PI * r * t)
             .about(r * r + 0.75 * t * t, 0.5 * r * r + 0.625 * t * t),
         book("prism", prism(&[&square, &hole], [0.0, 2.0]), 1.5, 0.5).area(1.5 + 12.0),
-        book("square ring", turned_polygon(&[&square, &hole], 1.0), TAU * 1.5 * 0.75, 0.5).area(TAU * 1.5 * 6.0),
-        book("part of it", turned_polygon(&[&square, &hole], 0.3), 0.3 * TAU * 1.5 * 0.75, 0.5)
+        book("square ring", revolved_polygon(&[&square, &hole], 1.0), TAU * 1.5 * 0.75, 0.5).area(TAU * 1.5 * 6.0),
+        book("part of it", revolved_polygon(&[&square, &hole], 0.3), 0.3 * TAU * 1.5 * 0.75, 0.5)
             .area(0.3 * TAU * 1.5 * 6.0 + 1.5),
         book("half ring", revolution(&half), TAU * PI / 8.0 * (1.5), -2.0 / 3.0 / PI)
             .area(TAU * 1.5 * (PI / 2.0 + 1.0)),
@@ -182,7 +182,7 @@ fn extreme_measures_give_closed_solids_of_the_right_volume() {
         cases.push((ellipsoid(DVec3::new(1.0, ratio, 2.0)), 8.0 / 3.0 * PI * ratio));
         cases.push((paraboloid(1.0, ratio), PI / 2.0 * ratio));
         cases.push((torus(1.0 + ratio, 1.0), 2.0 * PI * PI * (1.0 + ratio)));
-        cases.push((hyperboloid(1.0, 1.0 + ratio, 1.0), PI / 3.0 * (2.0 + (1.0 + ratio) * (1.0 + ratio))));
+        cases.push((hyperboloid_of_one_sheet(1.0, 1.0 + ratio, 1.0), PI / 3.0 * (2.0 + (1.0 + ratio) * (1.0 + ratio))));
         cases.push((sphere(ratio * 1e6), 4.0 / 3.0 * PI * (ratio * 1e6).powi(3)));
     }
     for (case, (body, volume)) in cases.into_iter().enumerate() {
@@ -217,7 +217,7 @@ fn profiles_may_be_smooth_run_either_way_and_are_refused_with_the_place_if_they_
     );
     assert!(error(&[[1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [3.0, 0.0, 0.0]]).contains("no area"));
     assert!(error(&[[1.0, 0.0, 0.0], [1.5, f64::NAN, 0.0], [3.0, 0.0, 0.0]]).starts_with("point 1 is"));
-    assert!(turned_polygon(&[vase], 1.5).is_err());
+    assert!(revolved_polygon(&[vase], 1.5).is_err());
 }
 
 fn square(size: f64) -> Vec<DVec2> {
@@ -293,8 +293,8 @@ fn bad_measures_are_refused_in_words() {
     assert_eq!(words(cylinder(1.0, f64::NAN)), "height NaN is not a length above 0");
     assert_eq!(words(sphere(f64::INFINITY)), "radius inf is not within 1e-60 to 1e60");
     assert_eq!(words(torus(1.0, 2.0)), "ring 1 is not greater than the tube 2");
-    assert_eq!(words(hyperboloid(1.0, 1.0, 1.0)), "radius 1 is not greater than the waist 1");
-    assert_eq!(words(bowls(2.0, 1.0, 1.0)), "height 1 is not greater than the gap 2");
+    assert_eq!(words(hyperboloid_of_one_sheet(1.0, 1.0, 1.0)), "radius 1 is not greater than the waist 1");
+    assert_eq!(words(hyperboloid_of_two_sheets(2.0, 1.0, 1.0)), "height 1 is not greater than the gap 2");
     assert_eq!(words(frustum(0.0, 0.0, 1.0)), "the greater radius 0 is not a length above 0");
     assert_eq!(words(pyramid(2, 1.0, 1.0)), "2 sides are not within 3 to 1048576");
     assert!(words(prism(&[[DVec2::ZERO, DVec2::X, DVec2::X * 2.0]], [0.0, 1.0])).contains("no area"));

@@ -47,7 +47,7 @@ impl<'a> Hole<'a> {
         let plane = LoopPlane::of(loops[0], &mesh.vertices);
         let methods = match &loops[..] {
             [boundary] => Method::of(boundary, &plane),
-            _ => &[Method::Seen],
+            _ => &[Method::Projected],
         };
         let (patch, second_best) = (ClosingPatch::default(), None);
         Hole { loops, plane, length, methods, patch, second_best, may_meet_others: false }
@@ -88,7 +88,7 @@ pub(super) fn close(mesh: &mut Mesh) -> ClosingReport {
     if loops.is_empty() {
         return ClosingReport::default();
     }
-    let beside = beside(mesh, &loops);
+    let beside = third_corners(mesh, &loops);
     let mut open: Vec<OpenLoop> = Vec::new();
     let mut untried = in_planes(&loops, mesh);
     let mut holes: Vec<Hole> = Vec::new();
@@ -99,14 +99,14 @@ pub(super) fn close(mesh: &mut Mesh) -> ClosingReport {
                 continue;
             }
             match &hole.loops[..] {
-                [boundary] => open.push(told(boundary, mesh)),
+                [boundary] => open.push(open_loop(boundary, mesh)),
                 // Each is tried on its own.
                 several => untried.extend(several.iter().map(|boundary| Hole::of(vec![boundary], mesh))),
             }
         }
         // The longest first: of two that meet, the shorter is tried in another way.
         holes.sort_by(|one, two| two.length.total_cmp(&one.length).then(two.loops[0].0.cmp(&one.loops[0].0)));
-        for (hole, met) in meeting(mesh, &holes).into_iter().rev() {
+        for (hole, met) in blocked_holes(mesh, &holes).into_iter().rev() {
             if holes[hole].is_ruled_out(met) {
                 untried.push(holes.remove(hole));
             }
@@ -146,7 +146,7 @@ fn in_planes<'a>(loops: &'a [BoundaryLoop], mesh: &Mesh) -> Vec<Hole<'a>> {
             Some(hole) => {
                 holes[hole].loops.push(boundary);
                 holes[hole].length += length;
-                holes[hole].methods = &[Method::Seen];
+                holes[hole].methods = &[Method::Projected];
             }
             None => {
                 if plane.is_flat {
@@ -160,13 +160,13 @@ fn in_planes<'a>(loops: &'a [BoundaryLoop], mesh: &Mesh) -> Vec<Hole<'a>> {
 }
 
 /// The third corners of the triangles at the edges of loops.
-fn beside(mesh: &Mesh, loops: &[BoundaryLoop]) -> ThirdCorners {
+fn third_corners(mesh: &Mesh, loops: &[BoundaryLoop]) -> ThirdCorners {
     let edges: HashSet<[u32; 2]> = loops.iter().flat_map(BoundaryLoop::edges).collect();
     let third = |&[a, b, c]: &[u32; 3]| [([b, a], c), ([c, b], a), ([a, c], b)];
     mesh.triangles.iter().flat_map(third).filter(|(edge, _)| edges.contains(edge)).collect()
 }
 
-fn told(boundary: &BoundaryLoop, mesh: &Mesh) -> OpenLoop {
+fn open_loop(boundary: &BoundaryLoop, mesh: &Mesh) -> OpenLoop {
     let BoundaryLoop(points) = boundary;
     let near = points.first().map_or(glam::DVec3::ZERO, |&point| mesh.vertices[point as usize]);
     OpenLoop { edges: points.len(), length: boundary.length(&mesh.vertices), near }
@@ -204,7 +204,7 @@ fn surfaces_beside(mesh: &Mesh, holes: &[Hole]) -> Vec<u32> {
 
 /// The holes whose patches have more in common with the surface, or with the patch of a longer one, than edges, and with
 /// what; by rising number.
-fn meeting(mesh: &Mesh, holes: &[Hole]) -> Vec<(usize, Obstacle)> {
+fn blocked_holes(mesh: &Mesh, holes: &[Hole]) -> Vec<(usize, Obstacle)> {
     let mut tried = Mesh { vertices: mesh.vertices.clone(), triangles: mesh.triangles.clone(), ..Mesh::default() };
     let mut of_patch = Vec::new();
     for (hole, number) in holes.iter().zip(0..) {

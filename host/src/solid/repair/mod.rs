@@ -22,7 +22,7 @@ use joining::join_near;
 use orientation::{turn, turn_alike};
 use serde::Serialize;
 use std::fmt;
-use surplus::{leave_out_duplicates, leave_out_fins};
+use surplus::{remove_duplicates, remove_dangling};
 
 /// What was done to a mesh to make it a solid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -103,7 +103,7 @@ impl Solid {
     pub fn repaired_of(mesh: Mesh, problem: &SolidError) -> Result<(Solid, Repair), SolidError> {
         let is_two_sided = match problem {
             // Nothing helps these.
-            SolidError::Mesh(_) | SolidError::Tangled { .. } => return Err(problem.clone()),
+            SolidError::Mesh(_) | SolidError::TooManyIntersections { .. } => return Err(problem.clone()),
             // Each triangle may be there twice, to be seen from both sides.
             SolidError::BoundsNothing => true,
             _ => false,
@@ -125,9 +125,9 @@ fn repaired_on_lattice(mesh: Mesh, is_two_sided: bool) -> Result<(Solid, Repair)
     }
     repair.collapsed = before - mesh.triangles.len();
     if is_two_sided || check_edges(&mesh).is_err() {
-        repair.duplicates = leave_out_duplicates(&mut mesh, is_two_sided);
+        repair.duplicates = remove_duplicates(&mut mesh, is_two_sided);
         repair.turned = turn_alike(&mut mesh);
-        repair.fins = leave_out_fins(&mut mesh);
+        repair.fins = remove_dangling(&mut mesh);
         refuse_one_sided(&mesh)?;
         let closed = closing::close(&mut mesh);
         (repair.loops, repair.added) = (closed.loops, closed.triangles);

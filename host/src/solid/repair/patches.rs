@@ -28,7 +28,7 @@ pub(super) struct ClosingPatch {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Method {
     /// As the loops wind, seen along the axis that is nearest to their normal.
-    Seen,
+    Projected,
     /// Of least area, through the points of one loop.
     LeastArea,
     /// Around the mean of the points of one loop.
@@ -81,8 +81,8 @@ impl Method {
     pub(super) fn of(BoundaryLoop(points): &BoundaryLoop, plane: &LoopPlane) -> &'static [Method] {
         match plane.is_flat {
             _ if points.len() == 3 => &[Method::LeastArea],
-            true => &[Method::Seen, Method::LeastArea, Method::Fan],
-            false => &[Method::LeastArea, Method::Seen, Method::Fan],
+            true => &[Method::Projected, Method::LeastArea, Method::Fan],
+            false => &[Method::LeastArea, Method::Projected, Method::Fan],
         }
     }
 
@@ -98,7 +98,7 @@ impl Method {
     ) -> Option<ClosingPatch> {
         let points: Vec<&[u32]> = loops.iter().map(|BoundaryLoop(points)| points.as_slice()).collect();
         match (self, &points[..]) {
-            (Method::Seen, _) => {
+            (Method::Projected, _) => {
                 let triangles = filled(plane.axis(), places, &points)?;
                 Some(ClosingPatch { triangles, vertex: None })
             }
@@ -244,7 +244,7 @@ mod tests {
         let (boundary, places) = ring(2 * MOST_POINTS as u32, |angle| angle.sin());
         let plane = LoopPlane::of(&boundary, &places);
         assert!(Method::LeastArea.patch(&[&boundary], &plane, &places, &ThirdCorners::new()).is_none());
-        assert!(Method::Seen.patch(&[&boundary], &plane, &places, &ThirdCorners::new()).is_some());
+        assert!(Method::Projected.patch(&[&boundary], &plane, &places, &ThirdCorners::new()).is_some());
     }
 
     #[test]

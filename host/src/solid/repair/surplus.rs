@@ -44,7 +44,7 @@ fn net<'a>(uses: impl IntoIterator<Item = &'a EdgeUse>) -> i32 {
 ///
 /// - `everywhere`: if not, only where the surface is not closed: at edges that more triangles run through one way than the
 ///   other. Two that lie back to back in a closed surface stay then.
-pub(super) fn leave_out_duplicates(mesh: &mut Mesh, everywhere: bool) -> usize {
+pub(super) fn remove_duplicates(mesh: &mut Mesh, everywhere: bool) -> usize {
     let mut alike: BTreeMap<[u32; 3], Vec<u32>> = BTreeMap::new();
     for (t, &corners) in (0..).zip(&mesh.triangles) {
         let mut corners = corners;
@@ -70,7 +70,7 @@ pub(super) fn leave_out_duplicates(mesh: &mut Mesh, everywhere: bool) -> usize {
 /// them, the smaller first. Returns how many triangles were left out.
 ///
 /// A wall within a body is one, and so is what sticks out of a body and is open.
-pub(super) fn leave_out_fins(mesh: &mut Mesh) -> usize {
+pub(super) fn remove_dangling(mesh: &mut Mesh) -> usize {
     let edges = Edges::of(mesh);
     let crowded: Vec<&[EdgeUse]> = edges.all().filter(|uses| uses.len() > 2 && net(*uses) != 0).collect();
     if crowded.is_empty() {

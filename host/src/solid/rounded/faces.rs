@@ -119,7 +119,7 @@ impl PolygonFaces {
     }
 
     /// By how much an edge turns, radians, positive where the solid is convex.
-    pub fn turn(&self, edge: usize, points: &[DVec3]) -> f64 {
+    pub fn dihedral_turn(&self, edge: usize, points: &[DVec3]) -> f64 {
         let SolidEdge { ends, faces } = &self.edges[edge];
         let [n, m] = faces.map(|face| self.faces[face].normal);
         let along = points[ends[1] as usize] - points[ends[0] as usize];

@@ -113,7 +113,7 @@ impl ExactSolid {
             if faces.edges[edge].faces.iter().any(|face| faces.faces[*face].is_curved) {
                 return Err(RoundingError::Curved { from, to });
             }
-            let turn = faces.turn(edge, points).abs();
+            let turn = faces.dihedral_turn(edge, points).abs();
             if turn.to_degrees() > SHARPEST {
                 return Err(RoundingError::Sharp { from, to, degrees: turn.to_degrees() });
             }

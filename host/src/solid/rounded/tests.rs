@@ -12,7 +12,7 @@ fn solid(body: Body) -> ExactSolid {
 }
 
 fn turned(body: Body) -> ExactSolid {
-    solid(body).placed(&(DAffine3::from_rotation_y(0.4) * DAffine3::from_rotation_x(1.1))).unwrap()
+    solid(body).transformed(&(DAffine3::from_rotation_y(0.4) * DAffine3::from_rotation_x(1.1))).unwrap()
 }
 
 fn volume(solid: &ExactSolid) -> f64 {

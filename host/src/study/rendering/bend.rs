@@ -28,7 +28,7 @@ pub enum ErrorFloor {
     ///
     /// From the setting up to the last, the squared bias is less than a tenth of the squared error or less than three of
     /// its standard errors, and the last squared error is more than 0.6 of the first.
-    Chance {
+    Noise {
         /// The first such setting, by its number.
         from: usize,
     },
@@ -44,7 +44,7 @@ pub enum ErrorFloor {
 /// Finds the bend in the errors of settings, from the coarsest to the finest; two are no curve.
 ///
 /// - `reference`: root mean squared error of the reference, which is in all of them.
-pub(super) fn bend(measured: &[ErrorMeasures], reference: f64) -> Option<ErrorFloor> {
+pub(super) fn error_floor(measured: &[ErrorMeasures], reference: f64) -> Option<ErrorFloor> {
     let last = measured.last().filter(|_| measured.len() > 2)?;
     let excess = |m: &ErrorMeasures| (m.rmse * m.rmse - reference * reference).max(0.0);
     let is_bias = |m: &ErrorMeasures| m.is_clear() && m.bias_squared > MOST * excess(m);
@@ -60,7 +60,7 @@ pub(super) fn bend(measured: &[ErrorMeasures], reference: f64) -> Option<ErrorFl
     }
     let bias = first(&is_bias, &|m| last.bias_squared > STAYS * m.bias_squared);
     let chance = || first(&is_chance, &|m| excess(last) > STAYS * excess(m));
-    bias.map(|from| ErrorFloor::Bias { from, causes: Vec::new() }).or_else(|| chance().map(|from| ErrorFloor::Chance { from }))
+    bias.map(|from| ErrorFloor::Bias { from, causes: Vec::new() }).or_else(|| chance().map(|from| ErrorFloor::Noise { from }))
 }
 
 #[cfg(test)]
@@ -77,27 +77,27 @@ mod tests {
     fn chance_that_falls_bends_where_it_meets_the_bias() {
         let samples: Vec<ErrorMeasures> = (0..8).map(|i| measures(0.01, 0.1 / 2f64.powi(i))).collect();
         // 0.1 / 16 is the first that is below 0.01.
-        assert_eq!(bend(&samples, 0.0), Some(ErrorFloor::Bias { from: 4, causes: Vec::new() }));
+        assert_eq!(error_floor(&samples, 0.0), Some(ErrorFloor::Bias { from: 4, causes: Vec::new() }));
     }
 
     #[test]
     fn a_bias_that_falls_bends_where_it_goes_down_in_chance() {
         let depth: Vec<ErrorMeasures> = [0.5, 0.1, 0.02, 0.001, 0.0].iter().map(|bias| measures(*bias, 0.01)).collect();
-        assert_eq!(bend(&depth, 0.0), Some(ErrorFloor::Chance { from: 3 }));
+        assert_eq!(error_floor(&depth, 0.0), Some(ErrorFloor::Noise { from: 3 }));
     }
 
     #[test]
     fn what_falls_to_the_end_has_no_bend() {
         let samples: Vec<ErrorMeasures> = (0..6).map(|i| measures(0.0, 0.1 / 2f64.powi(i))).collect();
-        assert_eq!(bend(&samples, 0.0), None);
+        assert_eq!(error_floor(&samples, 0.0), None);
         let tolerance: Vec<ErrorMeasures> = (0..6).map(|i| measures(0.1 / 3f64.powi(i), 0.0)).collect();
-        assert_eq!(bend(&tolerance, 0.0), None);
-        assert_eq!(bend(&[], 0.0), None);
+        assert_eq!(error_floor(&tolerance, 0.0), None);
+        assert_eq!(error_floor(&[], 0.0), None);
     }
 
     #[test]
     fn what_falls_and_grows_again_is_least_in_between() {
         let filter: Vec<ErrorMeasures> = [0.3, 0.2, 0.1, 0.4].iter().map(|bias| measures(*bias, 0.0)).collect();
-        assert_eq!(bend(&filter, 0.0), Some(ErrorFloor::Least { at: 2 }));
+        assert_eq!(error_floor(&filter, 0.0), Some(ErrorFloor::Least { at: 2 }));
     }
 }

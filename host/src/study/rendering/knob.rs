@@ -5,7 +5,7 @@ use crate::illumination::Light;
 use crate::illumination::optics::Interreflection;
 use crate::octree::MAX_POINT_DEPTH;
 use crate::plan::Stage;
-use crate::render::two_way::widest_disc;
+use crate::render::two_way::greatest_gather_radius;
 use crate::render::{RendererRow, Technique};
 use crate::scene::{Caustics, MAX_PHOTONS};
 
@@ -345,7 +345,7 @@ fn around(base: &StudiedScene, own: f64, step: f64) -> impl Iterator<Item = f64>
 
 /// The radius of the largest disc that the scene has.
 fn own_radius(base: &StudiedScene) -> f64 {
-    base.settings().photons.radius.unwrap_or_else(|| widest_disc(&base.prepared))
+    base.settings().photons.radius.unwrap_or_else(|| greatest_gather_radius(&base.prepared))
 }
 
 /// Tolerances for the largest curved object.

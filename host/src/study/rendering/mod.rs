@@ -23,7 +23,7 @@ use super::{Options, StudyError};
 use crate::picture::Picture;
 use crate::render::{Progress, Technique, Watch};
 use crate::scene::Scene;
-use bend::bend;
+use bend::error_floor;
 use best::knobs_of;
 use measure::ReferencePicture;
 use setup::{StudiedScene, Setup, TimedRendering};
@@ -139,7 +139,7 @@ impl Bench<'_> {
             (self.watch.progress)(Progress::of(self.done, self.steps, "measurements"));
         }
         let measured: Vec<ErrorMeasures> = found.rows.iter().map(|row| row.measures).collect();
-        found.bend = bend(&measured, found.reference_error);
+        found.bend = error_floor(&measured, found.reference_error);
         if let Some(ErrorFloor::Bias { causes, .. }) = &mut found.bend {
             *causes = self.causes(technique, knob, reference)?;
         }

@@ -34,7 +34,7 @@ pub(super) fn verdict(study: &KnobStudy, changes: bool, apart: Option<(f64, Vec<
         None if study.rows.len() < 3 => String::new(),
         None => "the error still falls at the finest setting".to_owned(),
         Some(ErrorFloor::Least { at: least }) => format!("the error is least at {}, and grows beyond", at(*least)),
-        Some(ErrorFloor::Chance { from }) => {
+        Some(ErrorFloor::Noise { from }) => {
             format!("from {} on the error is chance: more samples lower it, not {}", at(*from), study.name)
         }
         Some(ErrorFloor::Bias { from, causes }) => {

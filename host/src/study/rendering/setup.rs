@@ -2,7 +2,7 @@
 
 use crate::picture::Picture;
 use crate::plan::{Plan, Stage};
-use crate::render::two_way::widest_disc;
+use crate::render::two_way::greatest_gather_radius;
 use crate::render::{Memo, RenderOrder, RENDERERS, PreparedRenderer, Task, Technique, Watch};
 use crate::scene::{Caustics, Prepared, Scene, Settings};
 use crate::study::options::resized;
@@ -101,7 +101,7 @@ impl StudiedScene {
         if technique.row().sends_photons {
             (technique.row().require)(&mut settings);
         }
-        settings.photons.radius = Some(settings.photons.radius.unwrap_or_else(|| widest_disc(&self.prepared)));
+        settings.photons.radius = Some(settings.photons.radius.unwrap_or_else(|| greatest_gather_radius(&self.prepared)));
         Setup { technique, settings, target: None, denoise: false, own_tolerances: true }
     }
 
@@ -127,7 +127,7 @@ impl StudiedScene {
                 order.samples -= order.samples / 8;
             }
         };
-        let shots = self.shoot(setup, &half, &|shots| shots.len() == 2, watch)?;
+        let shots = self.render(setup, &half, &|shots| shots.len() == 2, watch)?;
         <[TimedRendering; 2]>::try_from(shots).map_err(|_| StudyError::Interrupted)
     }
 
@@ -143,20 +143,20 @@ impl StudiedScene {
         is_enough: &dyn Fn(&[TimedRendering]) -> bool,
         watch: &Watch<'_>,
     ) -> Result<Vec<TimedRendering>, StudyError> {
-        self.shoot(setup, &|trial, order| order.seed = order.seed.wrapping_add(trial), is_enough, watch)
+        self.render(setup, &|trial, order| order.seed = order.seed.wrapping_add(trial), is_enough, watch)
     }
 
-    fn shoot(
+    fn render(
         &self,
         setup: &Setup,
         vary: &dyn Fn(u64, &mut RenderOrder),
         is_enough: &dyn Fn(&[TimedRendering]) -> bool,
         watch: &Watch<'_>,
     ) -> Result<Vec<TimedRendering>, StudyError> {
-        Memo::next(watch.memo, || self.shoot_now(setup, vary, is_enough, watch))
+        Memo::next(watch.memo, || self.render_now(setup, vary, is_enough, watch))
     }
 
-    fn shoot_now(
+    fn render_now(
         &self,
         setup: &Setup,
         vary: &dyn Fn(u64, &mut RenderOrder),

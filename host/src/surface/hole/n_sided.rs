@@ -139,7 +139,7 @@ pub(super) fn twist([at_v0, at_u0]: [DVec3; 2], u: Jet<f64>, v: Jet<f64>) -> Jet
 
 impl NSidedPatch {
     /// A point of the polygon, as it depends on itself.
-    fn place(&self, uv: DVec2) -> DVec2 {
+    fn domain_point(&self, uv: DVec2) -> DVec2 {
         let count = self.whole.normals.len() as f64;
         let corner = |k: usize| DVec2::from_angle(k as f64 / count * TAU) / (0.5 * TAU / count).cos();
         (corner(self.sector) * (1.0 - uv.x) + corner(self.sector + 1) * uv.x) * (1.0 - uv.y)
@@ -148,12 +148,12 @@ impl NSidedPatch {
     /// The point and its derivatives by u and v, and before that by the coordinates of the polygon.
     fn jets(&self, uv: DVec2) -> [Jet<DVec3>; 2] {
         let [u, v] = [Jet::parameter(uv.x, 0), Jet::parameter(uv.y, 1)];
-        let ends = [DVec2::ZERO, DVec2::X].map(|end| self.place(end));
+        let ends = [DVec2::ZERO, DVec2::X].map(|end| self.domain_point(end));
         let blend = |axis: usize| {
             let [from, to] = ends.map(|end| Jet::constant(end[axis]));
             (from + (to - from) * u) * (Jet::constant(1.0) - v)
         };
-        let place = self.place(uv);
+        let place = self.domain_point(uv);
         let by_uv = self.whole.at([blend(0), blend(1)]);
         [by_uv, self.whole.at([Jet::parameter(place.x, 0), Jet::parameter(place.y, 1)])]
     }

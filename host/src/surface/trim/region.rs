@@ -9,7 +9,7 @@ use spade::handles::FixedVertexHandle;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 use super::super::accuracy::{distances, lattice};
-use super::super::tessellation::wanted_segments;
+use super::super::tessellation::estimated_segments;
 use super::super::{Surface, TessellationError, Tolerance};
 use super::edges::Edges;
 use super::{TrimError, TrimmedSurface};
@@ -321,7 +321,7 @@ fn measures<S: Surface>(surface: &S, tolerance: Tolerance) -> Option<(DVec2, f64
             along_v += at(i, j).distance(at(i, j + 1));
         }
     }
-    let wanted = DVec2::from_array(wanted_segments(surface, tolerance)?).max(DVec2::ONE);
+    let wanted = DVec2::from_array(estimated_segments(surface, tolerance)?).max(DVec2::ONE);
     // A direction that bends much more than the other: needles beyond this would help no more.
     let wanted = wanted.max(DVec2::splat(wanted.max_element() / MOST_UNEVEN));
     Some((wanted / (high - low), f64::max(along_u, along_v) / (STEPS + 1) as f64))

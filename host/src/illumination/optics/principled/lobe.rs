@@ -34,14 +34,14 @@ impl Lobe for PrincipledLobe {
         self.surface.value(self.part, sighting, light)
     }
 
-    fn density(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
-        self.surface.density(self.part, sighting, light)
+    fn pdf(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
+        self.surface.pdf(self.part, sighting, light)
     }
 
     fn sample(&self, sighting: &ShadingContext, choice: f64, point: [f64; 2]) -> Option<BsdfSample> {
         match self.surface.is_mirror(self.part) {
-            true => self.surface.mirrored_sample(self.part, sighting, choice),
-            false => self.surface.sample(self.part, sighting, choice, point).map(BsdfSample::spread),
+            true => self.surface.specular_sample(self.part, sighting, choice),
+            false => self.surface.sample(self.part, sighting, choice, point).map(BsdfSample::unweighted),
         }
     }
 
@@ -49,19 +49,19 @@ impl Lobe for PrincipledLobe {
         self.surface.strength(self.part, sighting)
     }
 
-    fn mirrored(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
-        self.surface.mirrored(self.part, sighting)
+    fn specular_samples(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
+        self.surface.specular_samples(self.part, sighting)
     }
 
-    fn diffuse(&self, sighting: &ShadingContext) -> Channels {
-        self.surface.diffuse(self.part, sighting)
+    fn diffuse_albedo(&self, sighting: &ShadingContext) -> Channels {
+        self.surface.diffuse_albedo(self.part, sighting)
     }
 
-    fn shown(&self, sighting: &ShadingContext) -> Channels {
-        self.surface.shown(self.part, sighting)
+    fn glossy_albedo(&self, sighting: &ShadingContext) -> Channels {
+        self.surface.glossy_albedo(self.part, sighting)
     }
 
-    fn cleared(&self, sighting: &ShadingContext) -> Channels {
-        if self.is_clear() { self.surface.straight(sighting) } else { Channels::ZERO }
+    fn clear_transmittance(&self, sighting: &ShadingContext) -> Channels {
+        if self.is_clear() { self.surface.straight_transmittance(sighting) } else { Channels::ZERO }
     }
 }

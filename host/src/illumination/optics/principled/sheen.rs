@@ -44,7 +44,7 @@ impl Sheen {
     }
 
     /// The density of samples, 1/sr: as light counts.
-    pub(super) fn density(self, light: f64) -> f64 {
+    pub(super) fn pdf(self, light: f64) -> f64 {
         self.albedo(light) * light * FRAC_1_PI / self.mean()
     }
 

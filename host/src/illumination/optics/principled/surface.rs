@@ -172,7 +172,7 @@ impl PrincipledSurface {
     /// - `narrow`: the density from straight above from which on it is a beam, 1/sr.
     pub(super) fn is_broad(&self, part: PrincipledPart, narrow: f64) -> bool {
         let density = |facets: &Option<Microfacet>| {
-            facets.as_ref().map_or(f64::INFINITY, |facets| facets.sample_density(DVec3::Z, DVec3::Z))
+            facets.as_ref().map_or(f64::INFINITY, |facets| facets.pdf(DVec3::Z, DVec3::Z))
         };
         match part {
             PrincipledPart::Coat => density(&self.coat_facets) < narrow,
@@ -304,7 +304,7 @@ impl PrincipledSurface {
         let masking = beta(v, l) / (view.z * above.z);
         let under = self.under(at, if at.seen == InterfaceSide::Outside { view.z } else { above.z });
         let density = SlopeDistribution::Ggx.area(facet, *m) * facet.dot(view) * self.jacobian(sighting, light, facet);
-        through * (density * masking * thinned(sighting) * under)
+        through * (density * masking * radiance_scale(sighting) * under)
     }
 
     /// What is spread alike on the side of the viewer: colors, and what is missing.
@@ -335,11 +335,11 @@ impl PrincipledSurface {
         let from = self.missing(at, at.seen, sighting.view.z).clear;
         let to = self.missing(at, beyond, -light.z).clear;
         let part = at.clear() * goes * over(from * to, self.mean_missing(at, beyond).clear);
-        if self.thin { at.base * part } else { at.base.map(f64::sqrt) * (part * thinned(sighting)) }
+        if self.thin { at.base * part } else { at.base.map(f64::sqrt) * (part * radiance_scale(sighting)) }
     }
 
     /// The density of samples, 1/sr.
-    pub(super) fn density(&self, part: PrincipledPart, sighting: &ShadingContext, light: DVec3) -> f64 {
+    pub(super) fn pdf(&self, part: PrincipledPart, sighting: &ShadingContext, light: DVec3) -> f64 {
         let view = sighting.view;
         if view.z <= 0.0 || light.z == 0.0 {
             return 0.0;
@@ -359,8 +359,8 @@ impl PrincipledSurface {
                 if share > 0.0 { share / (above + below) * light.z.abs() * FRAC_1_PI } else { 0.0 }
             }
             _ if light.z < 0.0 => 0.0,
-            PrincipledPart::Sheen => self.at(sighting).rim.density(light.z),
-            PrincipledPart::Coat => self.coat_facets.as_ref().map_or(0.0, |facets| facets.sample_density(view, light)),
+            PrincipledPart::Sheen => self.at(sighting).rim.pdf(light.z),
+            PrincipledPart::Coat => self.coat_facets.as_ref().map_or(0.0, |facets| facets.pdf(view, light)),
         };
         if density.is_finite() { density } else { 0.0 }
     }
@@ -412,7 +412,7 @@ impl PrincipledSurface {
     }
 
     /// Single directions of a part: what is reflected, and what comes through.
-    pub(super) fn mirrored(&self, part: PrincipledPart, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
+    pub(super) fn specular_samples(&self, part: PrincipledPart, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
         if !self.is_mirror(part) {
             return [None, None];
         }
@@ -422,33 +422,33 @@ impl PrincipledSurface {
         if part == PrincipledPart::Coat {
             let part = if at.seen == InterfaceSide::Inside { 0.0 } else { at.coat };
             let fresnel = self.coat_surface.reflectance(view.z).mean();
-            return [Some(BsdfSample::single(light, self.beside_cloth(&at) * (part * fresnel))), None];
+            return [Some(BsdfSample::specular(light, self.beside_cloth(&at) * (part * fresnel))), None];
         }
         let FacetFresnel { ground, clear, through } = self.fresnel(&at, sighting, view.z);
         let under = if at.seen == InterfaceSide::Inside { 1.0 } else { self.under(&at, view.z) };
         let reflects = (ground * (Channels::ONE - at.cloth) + clear) * under;
-        let reflection = Some(BsdfSample::single(light, reflects)).filter(|onward| onward.weight.max() > 0.0);
+        let reflection = Some(BsdfSample::specular(light, reflects)).filter(|onward| onward.weight.max() > 0.0);
         if self.thin {
-            let straight = BsdfSample { is_straight: true, ..BsdfSample::single(-view, through * under) };
+            let straight = BsdfSample { is_straight: true, ..BsdfSample::specular(-view, through * under) };
             return [reflection, Some(straight).filter(|onward| onward.weight.max() > 0.0)];
         }
         let refracted = interface(sighting, sighting.lane).and_then(|surface| surface.refracted(view, DVec3::Z));
         let refraction = refracted.filter(|light| light.z < 0.0).map(|light| {
             let outside = if at.seen == InterfaceSide::Outside { view.z } else { -light.z };
-            BsdfSample::single(light, through * (self.under(&at, outside) * thinned(sighting)))
+            BsdfSample::specular(light, through * (self.under(&at, outside) * radiance_scale(sighting)))
         });
         [reflection, refraction.filter(|onward| onward.weight.max() > 0.0)]
     }
 
     /// What comes through a polished surface, as if it were not bent.
-    pub(in crate::illumination::optics) fn straight(&self, sighting: &ShadingContext) -> Channels {
+    pub(in crate::illumination::optics) fn straight_transmittance(&self, sighting: &ShadingContext) -> Channels {
         let at = self.at(sighting);
         self.fresnel(&at, sighting, sighting.view.z).through * self.under(&at, sighting.view.z)
     }
 
     /// One of the single directions, by its part.
-    pub(super) fn mirrored_sample(&self, part: PrincipledPart, sighting: &ShadingContext, choice: f64) -> Option<BsdfSample> {
-        let [reflection, through] = self.mirrored(part, sighting);
+    pub(super) fn specular_sample(&self, part: PrincipledPart, sighting: &ShadingContext, choice: f64) -> Option<BsdfSample> {
+        let [reflection, through] = self.specular_samples(part, sighting);
         let (Some(reflection), Some(through)) = (reflection, through) else { return reflection.or(through) };
         let chance = reflection.weight.max() / (reflection.weight.max() + through.weight.max());
         let chance = chance.clamp(LEAST_CHANCE, 1.0 - LEAST_CHANCE);
@@ -480,7 +480,7 @@ impl PrincipledSurface {
     }
 
     /// About what a part shows of what is around.
-    pub(super) fn shown(&self, part: PrincipledPart, sighting: &ShadingContext) -> Channels {
+    pub(super) fn glossy_albedo(&self, part: PrincipledPart, sighting: &ShadingContext) -> Channels {
         let at = self.at(sighting);
         let cosine = sighting.view.z.clamp(0.0, 1.0);
         match part {
@@ -494,7 +494,7 @@ impl PrincipledSurface {
     }
 
     /// The part of light from all around that is reflected alike to everywhere.
-    pub(super) fn diffuse(&self, part: PrincipledPart, sighting: &ShadingContext) -> Channels {
+    pub(super) fn diffuse_albedo(&self, part: PrincipledPart, sighting: &ShadingContext) -> Channels {
         if part != PrincipledPart::Spread {
             return Channels::ZERO;
         }
@@ -515,6 +515,6 @@ fn over(value: f64, mean: f64) -> f64 {
 }
 
 /// By how much radiance falls as it leaves what is behind.
-fn thinned(sighting: &ShadingContext) -> f64 {
+fn radiance_scale(sighting: &ShadingContext) -> f64 {
     (sighting.side.before.0[sighting.lane] / sighting.side.behind.0[sighting.lane]).powi(2)
 }

@@ -58,7 +58,7 @@ fn surface(numbers: &Numbers, base: f64) -> PrincipledSurface {
     PrincipledSurface::new(&make, colors, numbers).expect("possible numbers")
 }
 
-fn sighting(numbers: &Numbers, view: DVec3, inside: bool) -> ShadingContext<'static> {
+fn context(numbers: &Numbers, view: DVec3, inside: bool) -> ShadingContext<'static> {
     let [air, body] = [1.0, if numbers.thin { 1.0 } else { numbers.index }].map(Channels::splat);
     let side = match inside {
         false => InterfaceIndices { before: air, behind: body, inside },
@@ -79,7 +79,7 @@ fn furnace(surface: &PrincipledSurface, sighting: &ShadingContext) -> f64 {
         |light: DVec3, weight: f64, straight: bool| if light.z < 0.0 && !straight { weight * grown } else { weight };
     let mut sum = 0.0;
     for part in [PrincipledPart::Coat, PrincipledPart::Facets] {
-        for onward in surface.mirrored(part, sighting).into_iter().flatten() {
+        for onward in surface.specular_samples(part, sighting).into_iter().flatten() {
             sum += counted(onward.light, onward.weight.0[0], onward.is_straight);
         }
     }
@@ -96,7 +96,7 @@ fn furnace(surface: &PrincipledSurface, sighting: &ShadingContext) -> f64 {
                     PrincipledPart::Facets | PrincipledPart::Spread => (light.z > 0.0) == (choice == 0.0),
                     _ => choice == 0.0,
                 };
-                let density = surface.density(part, sighting, light);
+                let density = surface.pdf(part, sighting, light);
                 if !is_asked || density <= 0.0 {
                     return 0.0;
                 }
@@ -157,7 +157,7 @@ fn a_white_one_returns_all_light_whatever_its_numbers_are() {
         let white = surface(numbers, 1.0);
         let is_body = numbers.transmission > 0.0 && !numbers.thin;
         let errors = [false, true].into_iter().filter(|inside| !inside || is_body).map(|inside| {
-            let found = furnace(&white, &sighting(numbers, at(*degrees), inside));
+            let found = furnace(&white, &context(numbers, at(*degrees), inside));
             assert!((found - 1.0).abs() < 1e-3, "{numbers:?} at {degrees}, inside: {inside}: {found}");
             (found - 1.0).abs()
         });
@@ -177,7 +177,7 @@ fn a_grey_one_never_gains() {
     ] {
         let grey = surface(&numbers, 0.5);
         for degrees in [0.0, 45.0, 80.0] {
-            let found = furnace(&grey, &sighting(&numbers, at(degrees), false));
+            let found = furnace(&grey, &context(&numbers, at(degrees), false));
             assert!(found > 0.3 && found < 1.0, "{numbers:?} at {degrees}: {found}");
         }
     }
@@ -199,13 +199,13 @@ fn light_to_and_fro_is_the_same() {
             let turned = |v: DVec3| DVec3::new(v.x, v.y, -v.z);
             let [mut there, mut back] = [0.0; 2];
             for part in [PrincipledPart::Sheen, PrincipledPart::Coat, PrincipledPart::Facets, PrincipledPart::Spread] {
-                let of = sighting(&numbers, view, false);
+                let of = context(&numbers, view, false);
                 there +=
                     surface.value(part, &of, light).0[0] * of.side.behind.0[0].powi(if light.z < 0.0 { 2 } else { 0 });
                 back += if light.z > 0.0 {
-                    surface.value(part, &sighting(&numbers, light, false), view).0[0]
+                    surface.value(part, &context(&numbers, light, false), view).0[0]
                 } else {
-                    surface.value(part, &sighting(&numbers, turned(light), true), turned(view)).0[0]
+                    surface.value(part, &context(&numbers, turned(light), true), turned(view)).0[0]
                 };
             }
             assert!((there - back).abs() <= 1e-9 * there.abs().max(1e-6), "{numbers:?}: {there} {back}");
@@ -231,7 +231,7 @@ fn samples_follow_their_density_by_chi_squared() {
         (Numbers { sheen: 0.6, sheen_roughness: 0.4, roughness: 0.9, ..PLAIN }, false),
     ] {
         let surface = surface(&numbers, 0.8);
-        let of = sighting(&numbers, at(50.0), inside);
+        let of = context(&numbers, at(50.0), inside);
         for part in [PrincipledPart::Sheen, PrincipledPart::Coat, PrincipledPart::Facets, PrincipledPart::Spread] {
             if surface.is_mirror(part) || surface.strength(part, &of) <= 0.0 {
                 continue;
@@ -252,7 +252,7 @@ fn samples_follow_their_density_by_chi_squared() {
                     let z = 2.0 * (row + x) / ROWS as f64 - 1.0;
                     let (sin, cos) = (2.0 * PI * (column + y) / COLUMNS as f64).sin_cos();
                     let sine = (1.0 - z * z).max(0.0).sqrt();
-                    surface.density(part, &of, DVec3::new(sine * cos, sine * sin, z))
+                    surface.pdf(part, &of, DVec3::new(sine * cos, sine * sin, z))
                 };
                 let angle = 4.0 * PI / (ROWS * COLUMNS) as f64;
                 let expected = unit_square(term, 1e-5, 5_200).value * angle * f64::from(count);
@@ -280,7 +280,7 @@ fn a_polished_one_is_the_limit_of_smooth_ones() {
     let numbers = Numbers { roughness: 0.0, ..PLAIN };
     let (polished, smooth) = (surface(&numbers, 0.6), surface(&Numbers { roughness: 0.02, ..numbers }, 0.6));
     for degrees in [0.0, 50.0, 80.0] {
-        let of = sighting(&numbers, at(degrees), false);
+        let of = context(&numbers, at(degrees), false);
         let [a, b] = [&polished, &smooth].map(|surface| furnace(surface, &of));
         assert!((a - b).abs() < 2e-3, "at {degrees}: {a} {b}");
         let light = at(20.0);
@@ -304,7 +304,7 @@ fn nothing_is_infinite_at_the_ends() {
             let view = sphere(stream.point());
             let grazing = if stream.uniform() < 0.3 { 1e-9 } else { 1.0 };
             let view = DVec3::new(view.x, view.y, view.z.abs() * grazing + 1e-12).normalize();
-            let of = sighting(&numbers, view, false);
+            let of = context(&numbers, view, false);
             for part in [PrincipledPart::Sheen, PrincipledPart::Coat, PrincipledPart::Facets, PrincipledPart::Spread] {
                 let strength = surface.strength(part, &of);
                 assert!(strength.is_finite() && strength >= 0.0, "{numbers:?} {part:?} {strength}");
@@ -312,7 +312,7 @@ fn nothing_is_infinite_at_the_ends() {
                 let value = surface.value(part, &of, light);
                 assert!(value.is_finite() && value.0.iter().all(|v| *v >= 0.0), "{numbers:?} {part:?} {value:?}");
                 if let Some(light) = surface.sample(part, &of, stream.uniform(), stream.point()) {
-                    assert!(light.is_finite() && surface.density(part, &of, light) >= 0.0);
+                    assert!(light.is_finite() && surface.pdf(part, &of, light) >= 0.0);
                 }
             }
         }
