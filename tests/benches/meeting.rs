@@ -111,7 +111,7 @@ fn prove(meeting: &Meeting, found: &Intersection) -> f64 {
     assert_eq!(found.branches.len(), meeting.branches, "{}", meeting.name);
     let back = meeting.at.inverse();
     for point in found.points() {
-        assert_eq!(point.failure, None, "{}", meeting.name);
+        assert_eq!(point.inaccuracy, None, "{}", meeting.name);
         // The size of the bodies is 4 at most.
         assert!(point.residual <= 4.0 * CurvePrecision::default().newton, "{}: {}", meeting.name, point.residual);
         let [one, two] = meeting.equations;

@@ -76,7 +76,7 @@ fn timed(scene: &Scene, threads: usize) -> (Rendering, f64) {
     let plan = Plan::new(&prepared, &prepared.view());
     let tracer = ray_tracer(&prepared, &plan).expect("an octree");
     let rendering = render(&tracer, &prepared.view(), threads);
-    let balance = rendering.balance.expect("light was followed");
+    let balance = rendering.flux_balance.expect("light was followed");
     assert!(balance.residual() < 1e-6, "{balance}");
     (rendering, start.elapsed().as_secs_f64())
 }
@@ -90,7 +90,7 @@ fn render(tracer: &RayTracer<'_>, view: &View, threads: usize) -> Rendering {
 fn error(rendering: &Rendering, reference: &[Rendering; 2]) -> f64 {
     let [one, two] = [0, 1].map(|i| reference[i].film.tallies());
     let width = rendering.film.width() as usize;
-    let sees_plane = |i: usize| one.get(i).is_none_or(|tally| tally.elements == tally.count && tally.seen[0] == 0);
+    let sees_plane = |i: usize| one.get(i).is_none_or(|tally| tally.elements == tally.count && tally.first_ids[0] == 0);
     let is_off = |i: usize| {
         let around = [-1, 0, 1].map(|row| row * width as isize).into_iter();
         around.flat_map(|row| [-1, 0, 1].map(|column| row + column)).all(|by| sees_plane(i.wrapping_add_signed(by)))

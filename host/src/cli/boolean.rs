@@ -39,7 +39,7 @@ fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let destination = mesh::destination(output)?;
     let (mut solids, mut names, mut looks) = (Vec::new(), Vec::new(), Vec::new());
     for path in &meshes {
-        let Operand { solid, names: own, looks: its_looks } = grouped_solid(path)?;
+        let Operand { solid, names: own, materials: its_looks } = grouped_solid(path)?;
         // Numbers of surfaces of a result go on from operand to operand.
         let count = solid.mesh().surfaces.iter().max().map_or(0, |last| *last as usize + 1);
         names.extend((0..count).map(|k| own.get(k).cloned().unwrap_or_else(|| format!("{}/{k}", stem(path)))));
@@ -55,7 +55,7 @@ fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
         CommandFailure::new(Exit::Failed, error)
     })?;
     let seconds = start.elapsed().as_secs_f64();
-    let grouped = Grouped { mesh: result.into_mesh(), names, looks };
+    let grouped = Grouped { mesh: result.into_mesh(), names, materials: looks };
     mesh::write_grouped(&grouped, &destination)?;
     let mesh = &grouped.mesh;
     let volume = mesh.signed_volume();
@@ -94,12 +94,12 @@ pub(super) fn solid(path: &Path) -> Result<Solid, CommandFailure> {
 struct Operand {
     solid: Solid,
     names: Vec<String>,
-    looks: Vec<Option<MetallicRoughness>>,
+    materials: Vec<Option<MetallicRoughness>>,
 }
 
 /// Reads a mesh that must be a solid; one without groups is one, called as the file.
 fn grouped_solid(path: &Path) -> Result<Operand, CommandFailure> {
-    let Grouped { mut mesh, mut names, looks } = mesh::read_grouped(path)?;
+    let Grouped { mut mesh, mut names, materials: looks } = mesh::read_grouped(path)?;
     if mesh.surfaces.is_empty() {
         mesh.surfaces = vec![0; mesh.triangles.len()];
         names = vec![stem(path)];
@@ -109,5 +109,5 @@ fn grouped_solid(path: &Path) -> Result<Operand, CommandFailure> {
     if let Some(crossing) = crossing {
         tracing::warn!("{}: {crossing}; taken for all that it winds around", path.display());
     }
-    Ok(Operand { solid, names, looks })
+    Ok(Operand { solid, names, materials: looks })
 }

@@ -84,10 +84,10 @@ fn report(mesh: &Mesh, loops: &[BoundaryLoop]) {
     say!("triangles               {}", report.triangles);
     say!("edges                   {}", report.edges);
     say!("  open                  {}", report.boundary);
-    say!("  of several triangles  {}", report.crowded);
+    say!("  of several triangles  {}", report.non_manifold);
     say!("  misoriented           {}", report.misoriented);
     say!("collapsed triangles     {}", report.collapsed);
-    say!("triangles without area  {}", report.slivers);
+    say!("triangles without area  {}", report.degenerate);
     say!("duplicate triangles     {}", mesh.duplicate_triangles());
     say!("Euler characteristic    {}", report.euler_characteristic());
     say!("boundary loops          {}", loops.len());
@@ -118,9 +118,9 @@ fn as_json(
     let mut known = serde_json::json!({
         "solid": verdict.is_ok(), "problem": verdict.as_ref().err().map(ToString::to_string),
         "vertices": report.vertices, "triangles": report.triangles,
-        "edges": report.edges, "open_edges": report.boundary, "crowded_edges": report.crowded,
+        "edges": report.edges, "open_edges": report.boundary, "crowded_edges": report.non_manifold,
         "misoriented_edges": report.misoriented, "collapsed_triangles": report.collapsed,
-        "triangles_without_area": report.slivers, "duplicate_triangles": mesh.duplicate_triangles(),
+        "triangles_without_area": report.degenerate, "duplicate_triangles": mesh.duplicate_triangles(),
         "euler_characteristic": report.euler_characteristic(),
         "boundary_loops": loops.iter().map(told).collect::<Vec<_>>(),
     });

@@ -20,13 +20,13 @@ const REPORT_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// Bytes that were wanted beyond the limit; 0 before that.
 static EXCESS_BYTES: AtomicU64 = AtomicU64::new(0);
-static STATE: Mutex<State> = Mutex::new(State { keepers: 0, kept: String::new() });
+static STATE: Mutex<State> = Mutex::new(State { guards: 0, saved: String::new() });
 
 struct State {
     /// How many hold work that is worth keeping.
-    keepers: usize,
+    guards: usize,
     /// What is kept already, in words.
-    kept: String,
+    saved: String,
 }
 
 fn state() -> MutexGuard<'static, State> {
@@ -69,7 +69,7 @@ fn serve(mut signals: Signals, name: &str) {
             let hint = " (--memory SIZE sets how much there is)";
             end(name, &event, hint, &state, Exit::Failed);
         }
-        if state.keepers == 0 || flag().swap(true, Ordering::Relaxed) {
+        if state.guards == 0 || flag().swap(true, Ordering::Relaxed) {
             end(name, "interrupted", "", &state, Exit::Interrupted);
         }
     }
@@ -79,7 +79,7 @@ fn serve(mut signals: Signals, name: &str) {
 fn end(name: &str, event: &str, hint: &str, state: &State, exit: Exit) -> ! {
     let stage = progress::current();
     progress::clear();
-    let kept = match (state.keepers, state.kept.as_str()) {
+    let kept = match (state.guards, state.saved.as_str()) {
         (1.., _) if exit == Exit::Interrupted => "not waiting for what is being written",
         (_, "") => "nothing is written",
         (_, kept) => kept,
@@ -103,7 +103,7 @@ fn end_for_memory(wanted: u64) -> ! {
 
 /// What an interruption says from now on of what is kept already.
 pub(super) fn note_saved(what: impl Into<String>) {
-    state().kept = what.into();
+    state().saved = what.into();
 }
 
 /// Work in memory that is worth keeping: as long as this lives, the first signal asks to stop, and only the second ends the
@@ -113,13 +113,13 @@ pub(super) struct InterruptGuard(());
 impl InterruptGuard {
     /// From now on there is something to keep.
     pub(super) fn begin() -> InterruptGuard {
-        state().keepers += 1;
+        state().guards += 1;
         InterruptGuard(())
     }
 }
 
 impl Drop for InterruptGuard {
     fn drop(&mut self) {
-        state().keepers -= 1;
+        state().guards -= 1;
     }
 }

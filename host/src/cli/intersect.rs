@@ -51,7 +51,7 @@ fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let named: Vec<([String; 2], &Intersection)> = found
         .iter()
         .map(|meeting| (meeting.objects.map(|object| scene.objects[object].name.clone()), &meeting.intersection))
-        .filter(|(_, intersection)| intersection.points().next().is_some() || intersection.work.coincident > 0)
+        .filter(|(_, intersection)| intersection.points().next().is_some() || intersection.counts.coincident > 0)
         .collect();
     for destination in &destinations {
         let is_table = destination.path().extension().is_some_and(|extension| extension == "csv");
@@ -84,7 +84,7 @@ impl Summary {
         let count = |mark: Mark| points.iter().filter(|point| point.mark == mark).count();
         Summary {
             points: points.len(),
-            failed: points.iter().filter(|point| point.failure.is_some()).count(),
+            failed: points.iter().filter(|point| point.inaccuracy.is_some()).count(),
             residual: points.iter().map(|point| point.residual).fold(0.0, f64::max),
             least_angle: points.iter().map(|point| point.angle).fold(90.0, f64::min),
             branching: count(Mark::Branching),
@@ -95,10 +95,10 @@ impl Summary {
 
 fn report([one, two]: &[String; 2], intersection: &Intersection) {
     say!("{one} and {two}: {} curves, {} points of touch", intersection.branches.len(), intersection.touching.len());
-    if intersection.work.coincident > 0 {
+    if intersection.counts.coincident > 0 {
         say!(
             "  {} pairs of triangles lie in one plane; only the border of such regions is found",
-            intersection.work.coincident
+            intersection.counts.coincident
         );
     }
     if !intersection.branches.is_empty() {
@@ -115,7 +115,7 @@ fn report([one, two]: &[String; 2], intersection: &Intersection) {
         say!("  touch at {} (residual {:.2e})", point.position, point.residual);
     }
     for point in intersection.points() {
-        if let Some(failure) = point.failure {
+        if let Some(failure) = point.inaccuracy {
             say!("  not accurate at {}: {failure} (residual {:.2e})", point.position, point.residual);
         }
     }
@@ -132,6 +132,6 @@ fn described(names: &[String; 2], intersection: &Intersection) -> Value {
     let touching: Vec<[f64; 3]> = intersection.touching.iter().map(|point| point.position.to_array()).collect();
     json!({
         "objects": names, "branches": intersection.branches.iter().map(branch).collect::<Vec<Value>>(), "touching": touching,
-        "coincident": intersection.work.coincident, "added": intersection.work.added, "unfilled": intersection.work.unfilled,
+        "coincident": intersection.counts.coincident, "added": intersection.counts.added, "unfilled": intersection.counts.unfilled,
     })
 }

@@ -175,11 +175,11 @@ impl Job<'_> {
         let mut contents = Contents { folder: &folder, lines: String::new(), names: Vec::new() };
         self.scene.settings.image.samples = self.common.samples.unwrap_or(self.scene.settings.image.samples);
         warn_of_emptiness(&self.scene);
-        let patience = self.common.waits.timeouts();
+        let timeouts = self.common.waits.timeouts();
         let (mut emulator, line) = match self.to {
             Some(line) => (None, line.clone()),
             None => {
-                let emulator = Emulator::start(patience, folder.path(), false)?;
+                let emulator = Emulator::start(timeouts, folder.path(), false)?;
                 let (process, line) = (emulator.process(), emulator.line().clone());
                 let known = json!({ "process": process, "line": line.to_string() });
                 self.note("workstation", known, format_args!("workstation: process {process}, host line {line}"));
@@ -188,7 +188,7 @@ impl Job<'_> {
         };
         let process = std::process::id();
         self.note("host", json!({ "process": process }), format_args!("host: process {process}"));
-        let session = Session::attach(&line, patience)?;
+        let session = Session::attach(&line, timeouts)?;
         let mut production = Production::begin(&self.scene, session, &Drawing::default())?;
         let (prepared, Sent { lines, points, seconds }) = (production.prepared(), production.sent());
         let (title, objects, triangles) = (self.title, prepared.objects.len(), prepared.triangles.len());

@@ -18,7 +18,7 @@ pub struct WavelengthSets {
     /// For each comb the wavelength of each lane, nm; 0 for unused lanes.
     at: Vec<[f64; LANES]>,
     /// For each comb and lane what light of 1 there adds to linear sRGB.
-    seen: Vec<[DVec3; LANES]>,
+    srgb_weights: Vec<[DVec3; LANES]>,
     spectral: bool,
 }
 
@@ -28,14 +28,14 @@ pub struct SpectralTable(Vec<Channels>);
 
 impl SpectralTable {
     /// A quantity for each of some combs.
-    pub fn each(combs: usize, of: impl FnMut(usize) -> Channels) -> SpectralTable {
-        SpectralTable((0..combs.max(1)).map(of).collect())
+    pub fn each(sets: usize, of: impl FnMut(usize) -> Channels) -> SpectralTable {
+        SpectralTable((0..sets.max(1)).map(of).collect())
     }
 
     /// The quantity at the wavelengths of a comb.
     #[inline]
-    pub fn of(&self, comb: usize) -> Channels {
-        self.0[comb.min(self.0.len() - 1)]
+    pub fn of(&self, wavelength_set: usize) -> Channels {
+        self.0[wavelength_set.min(self.0.len() - 1)]
     }
 
     /// The greatest value.
@@ -60,7 +60,7 @@ impl WavelengthSets {
     pub fn bands() -> WavelengthSets {
         let lane = |lane: usize| OF_BANDS.get(lane).copied().unwrap_or(0.0);
         let unit = |lane: usize| if lane < 3 { DVec3::AXES[lane] } else { DVec3::ZERO };
-        WavelengthSets { at: vec![std::array::from_fn(lane)], seen: vec![std::array::from_fn(unit)], spectral: false }
+        WavelengthSets { at: vec![std::array::from_fn(lane)], srgb_weights: vec![std::array::from_fn(unit)], spectral: false }
     }
 
     /// Eight wavelengths from 360 to 830 nm.
@@ -68,11 +68,11 @@ impl WavelengthSets {
         let bins = bins();
         let weights = bins.weights();
         let middles: Vec<f64> = bins.ranges().map(|(from, to)| 0.5 * (from + to)).collect();
-        let of = |comb: usize| std::array::from_fn(|lane| lane * SETS + comb);
-        let combs = || (0..SETS).map(of);
+        let of = |wavelength_set: usize| std::array::from_fn(|lane| lane * SETS + wavelength_set);
+        let sets = || (0..SETS).map(of);
         WavelengthSets {
-            at: combs().map(|bins: [usize; LANES]| bins.map(|bin| middles[bin])).collect(),
-            seen: combs().map(|bins| bins.map(|bin| srgb::from_xyz(weights[bin]) * SETS as f64)).collect(),
+            at: sets().map(|bins: [usize; LANES]| bins.map(|bin| middles[bin])).collect(),
+            srgb_weights: sets().map(|bins| bins.map(|bin| srgb::from_xyz(weights[bin]) * SETS as f64)).collect(),
             spectral: true,
         }
     }
@@ -98,17 +98,17 @@ impl WavelengthSets {
     }
 
     /// The wavelengths of a comb, nm; 0 for unused lanes.
-    pub fn at(&self, comb: usize) -> [f64; LANES] {
-        self.at[comb.min(self.at.len() - 1)]
+    pub fn at(&self, wavelength_set: usize) -> [f64; LANES] {
+        self.at[wavelength_set.min(self.at.len() - 1)]
     }
 
     /// What light looks like: linear sRGB. Its mean over all combs is exact.
     #[inline]
-    pub fn to_srgb(&self, comb: usize, light: Channels) -> DVec3 {
+    pub fn to_srgb(&self, wavelength_set: usize, light: Channels) -> DVec3 {
         if !self.spectral {
             return DVec3::new(light.0[0], light.0[1], light.0[2]);
         }
-        let weights = &self.seen[comb.min(self.seen.len() - 1)];
+        let weights = &self.srgb_weights[wavelength_set.min(self.srgb_weights.len() - 1)];
         (0..LANES).map(|lane| weights[lane] * light.0[lane]).sum()
     }
 
@@ -123,8 +123,8 @@ impl WavelengthSets {
     }
 
     /// How much is seen of light of 1 in each lane: the greater of what it adds to or takes from red, green and blue.
-    pub fn visibility(&self, comb: usize) -> [f64; LANES] {
-        self.seen[comb.min(self.seen.len() - 1)].map(|seen| seen.abs().max_element())
+    pub fn visibility(&self, wavelength_set: usize) -> [f64; LANES] {
+        self.srgb_weights[wavelength_set.min(self.srgb_weights.len() - 1)].map(|seen| seen.abs().max_element())
     }
 
     /// A curve of one value everywhere, also in unused lanes.
@@ -150,17 +150,17 @@ impl WavelengthSets {
         }
         let [red, blue] = [DVec3::X, DVec3::Z].map(|axis| self.reflectance(&Color::Bands(axis)));
         // Where the other two overlap they share.
-        let shared = |comb: usize| red.of(comb).0.iter().zip(blue.of(comb).0).map(|(r, b)| (r + b).max(1.0)).collect();
+        let shared = |wavelength_set: usize| red.of(wavelength_set).0.iter().zip(blue.of(wavelength_set).0).map(|(r, b)| (r + b).max(1.0)).collect();
         let shares: Vec<Vec<f64>> = (0..self.count()).map(shared).collect();
         let part = |curve: &SpectralTable| {
-            SpectralTable::each(self.count(), |comb| {
-                let own = curve.of(comb);
-                Channels(std::array::from_fn(|lane| own.0[lane] / shares[comb][lane]))
+            SpectralTable::each(self.count(), |wavelength_set| {
+                let own = curve.of(wavelength_set);
+                Channels(std::array::from_fn(|lane| own.0[lane] / shares[wavelength_set][lane]))
             })
         };
         let [red, blue] = [part(&red), part(&blue)];
         let green =
-            SpectralTable::each(self.count(), |comb| (Channels::ONE - red.of(comb) - blue.of(comb)).map(|g| g.max(0.0)));
+            SpectralTable::each(self.count(), |wavelength_set| (Channels::ONE - red.of(wavelength_set) - blue.of(wavelength_set)).map(|g| g.max(0.0)));
         [red, green, blue]
     }
 
@@ -207,7 +207,7 @@ impl WavelengthSets {
     /// Means over the bins.
     fn means(&self, spectrum: &Spectrum) -> SpectralTable {
         let means = bins().means(spectrum);
-        SpectralTable((0..SETS).map(|comb| Channels(std::array::from_fn(|lane| means[lane * SETS + comb]))).collect())
+        SpectralTable((0..SETS).map(|wavelength_set| Channels(std::array::from_fn(|lane| means[lane * SETS + wavelength_set]))).collect())
     }
 }
 
@@ -226,9 +226,9 @@ mod tests {
     use super::*;
 
     fn srgb_of(wavelengths: &WavelengthSets, light: &SpectralTable, reflectance: &SpectralTable) -> DVec3 {
-        let combs = wavelengths.at.len();
-        let sum: DVec3 = (0..combs).map(|c| wavelengths.to_srgb(c, light.of(c) * reflectance.of(c))).sum();
-        sum / combs as f64
+        let sets = wavelengths.at.len();
+        let sum: DVec3 = (0..sets).map(|c| wavelengths.to_srgb(c, light.of(c) * reflectance.of(c))).sum();
+        sum / sets as f64
     }
 
     #[test]
@@ -261,13 +261,13 @@ mod tests {
             let primaries = wavelengths.primaries();
             let white = wavelengths.light(&Color::grey(1.0));
             for bands in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(0.2, 0.9, 0.4), DVec3::ONE] {
-                let mixture = SpectralTable::each(wavelengths.count(), |comb| {
-                    let part = |band: usize| primaries[band].of(comb) * bands[band];
+                let mixture = SpectralTable::each(wavelengths.count(), |wavelength_set| {
+                    let part = |band: usize| primaries[band].of(wavelength_set) * bands[band];
                     part(0) + part(1) + part(2)
                 });
                 let found = srgb_of(&wavelengths, &white, &mixture);
                 assert!((found - bands).length() < 1.2e-2, "{bands} {found}");
-                let lanes = (0..wavelengths.count()).flat_map(|comb| mixture.of(comb).0);
+                let lanes = (0..wavelengths.count()).flat_map(|wavelength_set| mixture.of(wavelength_set).0);
                 assert!(lanes.into_iter().all(|part| (0.0..=1.0 + 1e-12).contains(&part)));
             }
         }

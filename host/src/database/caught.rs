@@ -20,7 +20,7 @@ pub struct PhotonBlock {
     /// The number of the block among those aimed at that thing.
     pub number: u32,
     /// How many ways of light were followed.
-    pub ways: u64,
+    pub paths: u64,
     /// What became of their flux, W: sent, again, gained, straight, caught, absorbed, escaped, stopped.
     pub balance: [f64; 8],
     /// Where each piece was caught, scene units.
@@ -32,13 +32,13 @@ pub struct PhotonBlock {
     /// For each piece, the number of the surface's side that it arrived on.
     pub sides: Vec<u32>,
     /// For each piece, the number of its set of wavelengths; the highest bit tells that it took a broad turn.
-    pub combs: Vec<u8>,
+    pub wavelength_sets: Vec<u8>,
 }
 
 impl StoredPhotons {
     /// How many ways of light were followed.
     pub fn paths(&self) -> u64 {
-        self.blocks.iter().map(|block| block.ways).fold(0, u64::saturating_add)
+        self.blocks.iter().map(|block| block.paths).fold(0, u64::saturating_add)
     }
 
     /// How many pieces of light were caught.
@@ -69,7 +69,7 @@ impl StoredPhotons {
         }
         for block in &self.blocks {
             let count = block.positions.len();
-            if [block.towards.len(), block.sides.len(), block.combs.len()].iter().any(|other| *other != count) {
+            if [block.towards.len(), block.sides.len(), block.wavelength_sets.len()].iter().any(|other| *other != count) {
                 return Err("its tables differ in length".into());
             }
             if count.checked_mul(lanes) != Some(block.flux.len()) {

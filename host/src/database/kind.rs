@@ -23,6 +23,8 @@ pub enum RecordKind {
     /// A quantity over the wavelength, or several.
     Spectrum,
     /// Light of a lamp that was caught on the surfaces of a scene.
+    #[serde(rename = "caught-light")]
+    #[value(name = "caught-light")]
     Photons,
 }
 

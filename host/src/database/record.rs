@@ -141,7 +141,7 @@ impl RecordContent {
                     look.base.is_finite() && look.metallic.is_finite() && look.roughness.is_finite()
                 };
                 grouped.mesh.validate().map_err(|fault| fault.to_string())?;
-                let looks = grouped.looks.iter().flatten().all(finite);
+                let looks = grouped.materials.iter().flatten().all(finite);
                 if looks { Ok(()) } else { Err("the look of a surface is not finite".into()) }
             }
             RecordContent::Texture(picture) if picture.is_finite() => Ok(()),

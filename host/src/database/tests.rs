@@ -41,7 +41,7 @@ fn square() -> Grouped {
         surfaces: vec![0, 1],
     };
     let look = MetallicRoughness { base: DVec3::new(0.1, 0.2, 0.3), metallic: 0.0, roughness: 0.5 };
-    Grouped { mesh, names: vec!["a".into(), "b".into()], looks: vec![Some(look), None] }
+    Grouped { mesh, names: vec!["a".into(), "b".into()], materials: vec![Some(look), None] }
 }
 
 fn picture() -> Picture {
@@ -93,13 +93,13 @@ fn beam() -> StoredPhotons {
     let block = PhotonBlock {
         aim: 1,
         number: 2,
-        ways: 1024,
+        paths: 1024,
         balance: [1.0, 0.5, -0.1, 0.2, 0.9, 0.2, 0.1, 0.0],
         positions: vec![[0.1, 0.2, -0.3], [1e9, 0.0, 0.0]],
         towards: vec![[0.0, 1.0, 0.0], [0.6, 0.8, 0.0]],
         flux: vec![0.1, 0.2, 0.3, 0.4, 0.5, 0.6],
         sides: vec![3, 77],
-        combs: vec![0, 0x83],
+        wavelength_sets: vec![0, 0x83],
     };
     StoredPhotons { lanes: 3, blocks: vec![block] }
 }
@@ -483,11 +483,11 @@ fn files_that_are_exported_come_back_to_the_last_bit() {
             let mut expected = record.content.clone();
             if let RecordContent::Geometry(grouped) = &mut expected {
                 // What glTF alone can tell.
-                grouped.looks = vec![None, None];
+                grouped.materials = vec![None, None];
             }
             let mut found = back.content;
             if let RecordContent::Geometry(grouped) = &mut found {
-                grouped.looks = vec![None, None];
+                grouped.materials = vec![None, None];
             }
             assert_eq!((found, &back.name), (expected, &record.name), "{ending}");
             if ["txt", "json"].contains(ending) {

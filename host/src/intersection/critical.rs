@@ -18,7 +18,7 @@ const LEVEL: f64 = 1e-7;
 #[derive(Clone, Copy, Debug)]
 pub struct CriticalPoint {
     pub at: DVec3,
-    pub places: [SheetCoordinates; 2],
+    pub coordinates: [SheetCoordinates; 2],
     pub normals: [DVec3; 2],
     /// The signed distance between the surfaces, along the normal of the second.
     pub gap: f64,
@@ -42,11 +42,11 @@ impl NewtonSolver<'_> {
         let mut smallest = f64::INFINITY;
         let mut found = None;
         for _ in 0..MOST_STEPS {
-            let look = self.step(&mut places, at, reach)?;
-            let CriticalPoint { directions, curvatures, .. } = look.critical;
-            let height = |k: usize| look.gradient.dot(directions[k]);
+            let current = self.step(&mut places, at, reach)?;
+            let CriticalPoint { directions, curvatures, .. } = current.critical;
+            let height = |k: usize| current.gradient.dot(directions[k]);
             let along = |k: usize| directions[k] * (-height(k) / curvatures[k]);
-            let flat = look.critical.is_flat();
+            let flat = current.critical.is_flat();
             let step = if curvatures[0] == 0.0 {
                 DVec3::ZERO
             } else if flat {
@@ -57,16 +57,16 @@ impl NewtonSolver<'_> {
             if !step.is_finite() {
                 return None;
             }
-            let is_level = look.gradient.length() <= LEVEL * curvatures[0].abs() * reach;
+            let is_level = current.gradient.length() <= LEVEL * curvatures[0].abs() * reach;
             if step.length() >= 0.5 * smallest && is_level {
                 break;
             }
             smallest = step.length();
-            found = is_level.then_some(look.critical).or(found);
+            found = is_level.then_some(current.critical).or(found);
             if smallest == 0.0 {
                 break;
             }
-            at = look.critical.at + step.clamp_length_max(0.5 * reach);
+            at = current.critical.at + step.clamp_length_max(0.5 * reach);
             if at.distance(start) > 2.0 * reach {
                 return None;
             }
@@ -95,7 +95,7 @@ impl NewtonSolver<'_> {
         let (vectors, curvatures) = principal(second[0].x, 0.5 * (second[0].y + second[1].x), second[1].y);
         let directions = vectors.map(|v| frame[0] * v.x + frame[1] * v.y);
         let normals = [normal, other];
-        let critical = CriticalPoint { at: foot.point, places: *places, normals, gap, directions, curvatures };
+        let critical = CriticalPoint { at: foot.point, coordinates: *places, normals, gap, directions, curvatures };
         Some(CriticalStep { critical, gradient })
     }
 

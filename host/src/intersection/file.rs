@@ -29,12 +29,12 @@ fn quoted(name: &str) -> String {
 }
 
 fn row(point: &CurvePoint) -> String {
-    let [one, two] = point.places.map(|place| {
+    let [one, two] = point.coordinates.map(|place| {
         let surface = place.surface.map_or(String::new(), |surface| surface.to_string());
         format!("{surface},{:?},{:?}", place.uv.x, place.uv.y)
     });
     let (p, t) = (point.position, point.tangent);
-    let failure = point.failure.map_or(String::new(), |failure| failure.to_string());
+    let failure = point.inaccuracy.map_or(String::new(), |failure| failure.to_string());
     format!(
         "{:?},{:?},{:?},{one},{two},{:?},{:?},{:?},{:?},{:?},{},{failure}\n",
         p.x,

@@ -42,10 +42,10 @@ pub fn follow(
     while points.len() < MOST_STEPS {
         let most = longest(last.at);
         step = step.min(most);
-        let met = solver.solve(last.places, last.at + heading * step, Some(heading), step);
-        let tangent = met.tangent();
+        let newton_point = solver.solve(last.coordinates, last.at + heading * step, Some(heading), step);
+        let tangent = newton_point.tangent();
         let tangent = if tangent.dot(heading) < 0.0 { -tangent } else { tangent };
-        if met.failure.is_some() || tangent.dot(heading) < SHARP {
+        if newton_point.inaccuracy.is_some() || tangent.dot(heading) < SHARP {
             step *= 0.5;
             if step < SHORTEST * most {
                 return (points, End::Lost);
@@ -53,17 +53,17 @@ pub fn follow(
             continue;
         }
         let ahead = |at: DVec3| (at - start.at).dot(direction);
-        if points.len() > 2 && ahead(last.at) < 0.0 && ahead(met.at) >= 0.0 && met.at.distance(start.at) < 2.0 * step {
+        if points.len() > 2 && ahead(last.at) < 0.0 && ahead(newton_point.at) >= 0.0 && newton_point.at.distance(start.at) < 2.0 * step {
             return (points, End::Closed);
         }
-        if !goes_on(&met) {
+        if !goes_on(&newton_point) {
             return (points, End::Left);
         }
-        points.push(met);
+        points.push(newton_point);
         if tangent.dot(heading) > STRAIGHT {
             step *= 1.5;
         }
-        (last, heading) = (met, tangent);
+        (last, heading) = (newton_point, tangent);
     }
     (points, End::Lost)
 }
@@ -87,7 +87,7 @@ fn one_way(solver: &NewtonSolver<'_>, start: &CriticalPoint, direction: DVec3, s
     let (mut points, mut heading) = (vec![*start], direction);
     while points.len() < MOST_STEPS {
         let last = points[points.len() - 1];
-        let Some(next) = solver.critical(last.places, last.at + heading * step, step) else { break };
+        let Some(next) = solver.critical(last.coordinates, last.at + heading * step, step) else { break };
         let way = next.at - last.at;
         if !next.is_flat() || way.dot(heading) < 0.5 * step {
             break;

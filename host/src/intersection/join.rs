@@ -36,8 +36,8 @@ type Tip = (usize, usize);
 /// Makes the curves.
 pub fn branches(solver: &NewtonSolver<'_>, raw: &TrianglePolylines, zones: &Zones) -> Intersection {
     let mut joiner = Joiner { solver, arcs: Vec::new(), goes_on: HashMap::new() };
-    for chain in &raw.chains {
-        joiner.cut(chain, zones);
+    for polyline in &raw.polylines {
+        joiner.cut(polyline, zones);
     }
     let cut = joiner.arcs.len();
     let mut tips: Vec<Vec<Tip>> = vec![Vec::new(); zones.all.len()];
@@ -59,7 +59,7 @@ pub fn branches(solver: &NewtonSolver<'_>, raw: &TrianglePolylines, zones: &Zone
     zones.valleys.iter().for_each(|valley| joiner.valley(valley));
     let raw_points = joiner.arcs[..cut].iter().map(|arc| arc.points.len()).sum();
     let work = IntersectionCounts { pairs: raw.pairs, coincident: raw.coincident, raw: raw_points, ..IntersectionCounts::default() };
-    Intersection { branches: joiner.joined(), touching, work }
+    Intersection { branches: joiner.joined(), touching, counts: work }
 }
 
 struct Joiner<'a> {
@@ -71,20 +71,20 @@ struct Joiner<'a> {
 
 impl Joiner<'_> {
     /// Cuts the zones out of a polyline, and makes the rest accurate.
-    fn cut(&mut self, chain: &TrianglePolyline, zones: &Zones) {
-        let count = chain.points.len();
-        let within: Vec<Option<usize>> = chain.points.par_iter().map(|point| zones.holding(*point)).collect();
+    fn cut(&mut self, polyline: &TrianglePolyline, zones: &Zones) {
+        let count = polyline.points.len();
+        let within: Vec<Option<usize>> = polyline.points.par_iter().map(|point| zones.holding(*point)).collect();
         let solver = self.solver;
-        let accurate = |index: usize| if within[index].is_none() { accurate(solver, chain, index) } else { Vec::new() };
+        let accurate = |index: usize| if within[index].is_none() { accurate(solver, polyline, index) } else { Vec::new() };
         let points: Vec<Vec<CurvePoint>> = (0..count).into_par_iter().map(accurate).collect();
         if within.iter().all(Option::is_none) {
-            self.arcs.push(Arc { points: points.concat(), is_closed: chain.is_closed, ..Arc::default() });
+            self.arcs.push(Arc { points: points.concat(), is_closed: polyline.is_closed, ..Arc::default() });
             return;
         }
         // A closed polyline is read from a zone on.
-        let first = if chain.is_closed { within.iter().position(Option::is_some).unwrap_or(0) } else { 0 };
+        let first = if polyline.is_closed { within.iter().position(Option::is_some).unwrap_or(0) } else { 0 };
         let (mut arc, mut last) = (Arc::default(), None);
-        for step in 0..count + usize::from(chain.is_closed) {
+        for step in 0..count + usize::from(polyline.is_closed) {
             let index = (first + step) % count;
             if let Some(zone) = within[index] {
                 arc.zones[1] = Some(zone);
@@ -157,10 +157,10 @@ impl Joiner<'_> {
     /// A curve that passes a critical point at some offset.
     fn closed_curve(&mut self, center: &CriticalPoint, offset: DVec3, step: f64, most: usize) {
         let along = center.directions[1];
-        let start = self.solver.solve(center.places, center.at + offset, Some(along), offset.length());
+        let start = self.solver.solve(center.coordinates, center.at + offset, Some(along), offset.length());
         let mut points = vec![start.point(Mark::Regular)];
         let mut is_closed = false;
-        if start.failure.is_none() {
+        if start.inaccuracy.is_none() {
             let tangent = start.tangent();
             let direction = if tangent.dot(along) < 0.0 { -tangent } else { tangent };
             let mut count = 0;
@@ -170,10 +170,10 @@ impl Joiner<'_> {
             };
             let (ahead, end) = follow(self.solver, &start, direction, |_| step, &mut goes_on);
             is_closed = end == End::Closed;
-            points.extend(ahead.iter().map(|met| met.point(Mark::Regular)));
+            points.extend(ahead.iter().map(|newton_point| newton_point.point(Mark::Regular)));
             if !is_closed {
                 let (behind, _) = follow(self.solver, &start, -direction, |_| step, &mut goes_on);
-                points.splice(0..0, behind.iter().rev().map(|met| met.point(Mark::Regular)));
+                points.splice(0..0, behind.iter().rev().map(|newton_point| newton_point.point(Mark::Regular)));
             }
         }
         self.arcs.push(Arc { points, is_closed, ..Arc::default() });
@@ -187,27 +187,27 @@ impl Joiner<'_> {
         let mut open: Vec<Tip> = tips.to_vec();
         while let Some(tip) = open.pop() {
             let start = *self.tip(tip);
-            if start.failure.is_some() || open.is_empty() {
+            if start.inaccuracy.is_some() || open.is_empty() {
                 continue;
             }
             let inwards = zone.center.at - start.position;
             let direction = if start.tangent.dot(inwards) < 0.0 { -start.tangent } else { start.tangent };
-            let from = self.solver.solve(start.places, start.position, Some(direction), zone.reach);
+            let from = self.solver.solve(start.coordinates, start.position, Some(direction), zone.reach);
             let ends: Vec<DVec3> = open.iter().map(|&tip| self.tip(tip).position).collect();
             // It ends beside the first of the other ends that it passes.
             let mut last = start.position;
             let mut arrived = None;
             let longest = |at: DVec3| step.min(at.distance(zone.center.at).max(bend) * BEND);
-            let (points, _) = follow(self.solver, &from, direction, longest, |met| {
-                let way = met.at - last;
-                let passed = |end: &DVec3| (*end - last).dot(way) > 0.0 && (*end - met.at).dot(way) <= 0.0;
+            let (points, _) = follow(self.solver, &from, direction, longest, |newton_point| {
+                let way = newton_point.at - last;
+                let passed = |end: &DVec3| (*end - last).dot(way) > 0.0 && (*end - newton_point.at).dot(way) <= 0.0;
                 let beside = |end: &DVec3| (*end - last).reject_from(way).length() <= 0.5 * step;
                 arrived = ends.iter().position(|end| passed(end) && beside(end));
-                last = met.at;
-                arrived.is_none() && met.at.distance(zone.center.at) <= 2.0 * zone.extent
+                last = newton_point.at;
+                arrived.is_none() && newton_point.at.distance(zone.center.at) <= 2.0 * zone.extent
             });
             let Some(arrived) = arrived else { continue };
-            let points = points.iter().map(|met| met.point(Mark::Regular)).collect::<Vec<_>>();
+            let points = points.iter().map(|newton_point| newton_point.point(Mark::Regular)).collect::<Vec<_>>();
             let other = open.remove(arrived);
             if points.is_empty() {
                 self.join(tip, other);
@@ -273,27 +273,27 @@ impl Joiner<'_> {
 }
 
 /// The accurate point for a point of a polyline: twice where it goes over a border.
-fn accurate(solver: &NewtonSolver<'_>, chain: &TrianglePolyline, index: usize) -> Vec<CurvePoint> {
-    let at = chain.points[index];
-    let lines = chain.lines.len();
-    let before = if index > 0 { Some(index - 1) } else { chain.is_closed.then(|| lines - 1) };
+fn accurate(solver: &NewtonSolver<'_>, polyline: &TrianglePolyline, index: usize) -> Vec<CurvePoint> {
+    let at = polyline.points[index];
+    let lines = polyline.lines.len();
+    let before = if index > 0 { Some(index - 1) } else { polyline.is_closed.then(|| lines - 1) };
     let behind = Some(index).filter(|index| *index < lines);
-    let on = |line: usize| [0, 1].map(|side| solver.grounds[side].coordinates(chain.lines[line][side], at));
-    let reach = |line: usize| solver.reach(chain.lines[line]);
+    let on = |line: usize| [0, 1].map(|side| solver.sheets[side].coordinates(polyline.lines[line][side], at));
+    let reach = |line: usize| solver.reach(polyline.lines[line]);
     if let (Some(before), Some(behind)) = (before, behind) {
         let (first, second) = (on(before), on(behind));
         let is_corner = (0..2).any(|side| !first[side].is_beside(&second[side]));
         let far = reach(before).max(reach(behind));
         if is_corner && let Some(both) = solver.corner([0, 1].map(|side| [first[side], second[side]]), at, far) {
-            return both.map(|met| met.point(Mark::Corner)).to_vec();
+            return both.map(|newton_point| newton_point.point(Mark::Corner)).to_vec();
         }
     }
     let line = behind.or(before).unwrap_or(0);
     if before.is_none() || behind.is_none() {
-        let neighbour = chain.points[if before.is_some() { index - 1 } else { 1 }];
+        let neighbour = polyline.points[if before.is_some() { index - 1 } else { 1 }];
         let start = at + (at - neighbour).normalize_or_zero() * (BEHIND * reach(line));
-        if let Some(met) = solver.border(on(line), start, reach(line)) {
-            return vec![met.point(Mark::End)];
+        if let Some(newton_point) = solver.border(on(line), start, reach(line)) {
+            return vec![newton_point.point(Mark::End)];
         }
     }
     vec![solver.solve(on(line), at, None, reach(line)).point(Mark::Regular)]

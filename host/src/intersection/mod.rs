@@ -45,9 +45,9 @@ use sheet::PreparedSheet;
 ///
 /// The result has one sequence of bytes for any number of threads.
 pub fn intersect(one: ExactSheet<'_>, two: ExactSheet<'_>, precision: &CurvePrecision) -> Intersection {
-    let grounds = [PreparedSheet::new(one), PreparedSheet::new(two)];
-    let solver = NewtonSolver::new(&grounds, precision);
-    let raw = polyline::find(&grounds);
+    let sheets = [PreparedSheet::new(one), PreparedSheet::new(two)];
+    let solver = NewtonSolver::new(&sheets, precision);
+    let raw = polyline::find(&sheets);
     let zones = zone::find(&solver, &raw);
     let mut result = join::branches(&solver, &raw, &zones);
     refine::refine(&solver, precision, &mut result);

@@ -22,7 +22,7 @@ const BESIDE: f64 = 1e-9;
 
 /// Finds points on the surfaces of two sheets.
 pub struct NewtonSolver<'a> {
-    pub grounds: &'a [PreparedSheet<'a>; 2],
+    pub sheets: &'a [PreparedSheet<'a>; 2],
     /// The residual at which a point counts as found, model units.
     pub tolerance: f64,
 }
@@ -31,10 +31,10 @@ pub struct NewtonSolver<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct NewtonPoint {
     pub at: DVec3,
-    pub places: [SheetCoordinates; 2],
+    pub coordinates: [SheetCoordinates; 2],
     pub normals: [DVec3; 2],
     pub residual: f64,
-    pub failure: Option<Inaccuracy>,
+    pub inaccuracy: Option<Inaccuracy>,
 }
 
 impl NewtonPoint {
@@ -48,29 +48,29 @@ impl NewtonPoint {
         let [n, m] = self.normals;
         CurvePoint {
             position: self.at,
-            places: self.places,
+            coordinates: self.coordinates,
             residual: self.residual,
             tangent: self.tangent(),
             angle: n.cross(m).length().atan2(n.dot(m).abs()).to_degrees(),
             mark,
-            failure: self.failure,
+            inaccuracy: self.inaccuracy,
         }
     }
 }
 
 impl<'a> NewtonSolver<'a> {
     /// Prepares for the sheets of `grounds`.
-    pub fn new(grounds: &'a [PreparedSheet<'a>; 2], precision: &CurvePrecision) -> NewtonSolver<'a> {
-        let bounds = grounds.each_ref().map(|ground| ground.sheet.mesh.bounds());
+    pub fn new(sheets: &'a [PreparedSheet<'a>; 2], precision: &CurvePrecision) -> NewtonSolver<'a> {
+        let bounds = sheets.each_ref().map(|ground| ground.sheet.mesh.bounds());
         let size = bounds.iter().flatten().map(|bounds| bounds.diagonal()).fold(0.0, f64::max);
         let farthest = bounds.iter().flatten().map(|b| b.min.abs().max(b.max.abs()).max_element()).fold(0.0, f64::max);
         let newton = if precision.newton > 0.0 { precision.newton } else { 0.0 };
-        NewtonSolver { grounds, tolerance: (newton * size).max(ROUNDINGS * f64::EPSILON * farthest) }
+        NewtonSolver { sheets, tolerance: (newton * size).max(ROUNDINGS * f64::EPSILON * farthest) }
     }
 
     /// The foot of a point on a sheet, and its place there: beyond the border of the surface if a neighbour is nearer.
     pub fn foot(&self, side: usize, place: SheetCoordinates, at: DVec3, reach: f64) -> (SheetCoordinates, Foot) {
-        let ground = &self.grounds[side];
+        let ground = &self.sheets[side];
         let foot = ground.foot(&place, at);
         if beside(&foot, at) > BESIDE * reach
             && let Some(next) = ground.beyond(&place, at)
@@ -89,15 +89,15 @@ impl<'a> NewtonSolver<'a> {
     /// - `across`: a direction in which the point stays level; without one, each step is the shortest.
     /// - `reach`: how far the point may be, model units.
     pub fn solve(&self, places: [SheetCoordinates; 2], start: DVec3, across: Option<DVec3>, reach: f64) -> NewtonPoint {
-        let met = self.iterate(places, start, across, reach);
-        if met.failure != Some(Inaccuracy::Beyond) {
-            return met;
+        let newton_point = self.iterate(places, start, across, reach);
+        if newton_point.inaccuracy != Some(Inaccuracy::Beyond) {
+            return newton_point;
         }
         // The other surface may meet what lies behind the border, even if that bends away.
-        let mut best = met;
+        let mut best = newton_point;
         for side in [0, 1] {
-            let Some(next) = self.grounds[side].beyond(&met.places[side], met.at) else { continue };
-            let mut places = met.places;
+            let Some(next) = self.sheets[side].beyond(&newton_point.coordinates[side], newton_point.at) else { continue };
+            let mut places = newton_point.coordinates;
             places[side] = next;
             let other = self.iterate(places, start, across, reach);
             if other.residual < best.residual {
@@ -116,11 +116,11 @@ impl<'a> NewtonSolver<'a> {
             places = feet.map(|(place, _)| place);
             let [(_, one), (_, two)] = feet;
             let residual = one.point.distance(two.point);
-            let last = best.map_or(f64::INFINITY, |met| met.residual);
+            let last = best.map_or(f64::INFINITY, |newton_point| newton_point.residual);
             if residual < last {
                 is_beside = feet.iter().any(|(_, foot)| beside(foot, at) > self.tolerance);
                 let middle = one.point.midpoint(two.point);
-                best = Some(NewtonPoint { at: middle, places, normals: [one.normal, two.normal], residual, failure: None });
+                best = Some(NewtonPoint { at: middle, coordinates: places, normals: [one.normal, two.normal], residual, inaccuracy: None });
             }
             stale = if residual < 0.5 * last { 0 } else { stale + 1 };
             if residual <= ENOUGH * self.tolerance || stale > 0 && last <= self.tolerance || stale >= MOST_STALE {
@@ -141,21 +141,21 @@ impl<'a> NewtonSolver<'a> {
 
     /// Says what is wrong with a point, if anything is.
     fn with_inaccuracy(&self, best: Option<NewtonPoint>, places: [SheetCoordinates; 2], start: DVec3, reach: f64, is_beside: bool) -> NewtonPoint {
-        let nowhere = NewtonPoint { at: start, places, normals: [DVec3::ZERO; 2], residual: f64::MAX, failure: None };
-        let mut met = best.filter(|met| met.residual.is_finite()).unwrap_or(nowhere);
-        met.failure = if met.residual > self.tolerance {
-            let sine = met.normals[0].cross(met.normals[1]).length();
+        let nowhere = NewtonPoint { at: start, coordinates: places, normals: [DVec3::ZERO; 2], residual: f64::MAX, inaccuracy: None };
+        let mut newton_point = best.filter(|newton_point| newton_point.residual.is_finite()).unwrap_or(nowhere);
+        newton_point.inaccuracy = if newton_point.residual > self.tolerance {
+            let sine = newton_point.normals[0].cross(newton_point.normals[1]).length();
             Some(match () {
                 () if is_beside => Inaccuracy::Beyond,
                 () if sine < NEARLY_PARALLEL => Inaccuracy::Parallel,
                 () => Inaccuracy::Slow,
             })
-        } else if met.at.distance(start) > reach {
+        } else if newton_point.at.distance(start) > reach {
             Some(Inaccuracy::Astray)
         } else {
             None
         };
-        met
+        newton_point
     }
 
     /// The point near `start` where two surfaces of one sheet and one of the other meet; none if they touch there, or do
@@ -170,7 +170,7 @@ impl<'a> NewtonSolver<'a> {
         let mut at = start;
         let mut smallest = f64::INFINITY;
         for _ in 0..MOST_STEPS {
-            let feet = three.each_ref().map(|(side, place)| self.grounds[*side].foot(place, at));
+            let feet = three.each_ref().map(|(side, place)| self.sheets[*side].foot(place, at));
             three.iter_mut().zip(&feet).for_each(|((_, place), foot)| place.uv = foot.uv);
             let normals = feet.map(|foot| foot.normal);
             let [a, b, c] = normals;
@@ -188,7 +188,7 @@ impl<'a> NewtonSolver<'a> {
             }
         }
         let ends = [before, behind].map(|places| self.unrefined(places, at));
-        ends.iter().all(|met| met.failure.is_none()).then_some(ends)
+        ends.iter().all(|newton_point| newton_point.inaccuracy.is_none()).then_some(ends)
     }
 
     /// The point near `start` at which a surface ends on the other surface; none if neither ends there.
@@ -197,7 +197,7 @@ impl<'a> NewtonSolver<'a> {
         let mut outwards = None;
         let mut smallest = f64::INFINITY;
         for _ in 0..MOST_STEPS {
-            let feet = [0, 1].map(|side| self.grounds[side].foot(&places[side], at));
+            let feet = [0, 1].map(|side| self.sheets[side].foot(&places[side], at));
             (0..2).for_each(|side| places[side].uv = feet[side].uv);
             let side = usize::from(beside(&feet[0], at) < beside(&feet[1], at));
             let offset = at - feet[side].point;
@@ -218,22 +218,22 @@ impl<'a> NewtonSolver<'a> {
                 return None;
             }
         }
-        Some(self.unrefined(places, at)).filter(|met| met.failure.is_none())
+        Some(self.unrefined(places, at)).filter(|newton_point| newton_point.inaccuracy.is_none())
     }
 
     /// The point as it stands: how far its feet are apart.
     fn unrefined(&self, places: [SheetCoordinates; 2], at: DVec3) -> NewtonPoint {
-        let feet = [0, 1].map(|side| self.grounds[side].foot(&places[side], at));
+        let feet = [0, 1].map(|side| self.sheets[side].foot(&places[side], at));
         let [one, two] = feet;
         let places = [SheetCoordinates { uv: one.uv, ..places[0] }, SheetCoordinates { uv: two.uv, ..places[1] }];
         let residual = one.point.distance(two.point).max(one.point.distance(at)).max(two.point.distance(at));
         let failure = (residual > self.tolerance).then_some(Inaccuracy::Slow);
-        NewtonPoint { at, places, normals: [one.normal, two.normal], residual, failure }
+        NewtonPoint { at, coordinates: places, normals: [one.normal, two.normal], residual, inaccuracy: failure }
     }
 
     /// How far a point near two triangles may be from where the triangles meet.
     pub fn reach(&self, triangles: [u32; 2]) -> f64 {
-        2.0 * self.grounds[0].reach(triangles[0]).max(self.grounds[1].reach(triangles[1]))
+        2.0 * self.sheets[0].reach(triangles[0]).max(self.sheets[1].reach(triangles[1]))
     }
 }
 

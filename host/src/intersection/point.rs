@@ -88,7 +88,7 @@ pub struct CurvePoint {
     /// Where it is, model units: the middle between the points of both surfaces.
     pub position: DVec3,
     /// The parameters on both.
-    pub places: [SheetCoordinates; 2],
+    pub coordinates: [SheetCoordinates; 2],
     /// The distance between the points of both surfaces, model units.
     pub residual: f64,
     /// The direction in which the branch goes on, unit length.
@@ -98,7 +98,7 @@ pub struct CurvePoint {
     /// What is special about it.
     pub mark: Mark,
     /// Why it is not accurate, if it is not.
-    pub failure: Option<Inaccuracy>,
+    pub inaccuracy: Option<Inaccuracy>,
 }
 
 /// A connected curve.
@@ -146,7 +146,7 @@ pub struct Intersection {
     /// Points in which the surfaces touch and have no others in common nearby.
     pub touching: Vec<CurvePoint>,
     /// Work done.
-    pub work: IntersectionCounts,
+    pub counts: IntersectionCounts,
 }
 
 impl Intersection {

@@ -25,7 +25,7 @@ pub struct TrianglePolyline {
 #[derive(Clone, Debug, Default)]
 pub struct TrianglePolylines {
     /// The polylines.
-    pub chains: Vec<TrianglePolyline>,
+    pub polylines: Vec<TrianglePolyline>,
     /// Pairs of triangles whose surfaces may touch, one for each triangle and surface of the other sheet.
     pub near: Vec<[u32; 2]>,
     /// Pairs looked at.
@@ -41,10 +41,10 @@ struct Line {
 }
 
 /// Finds them.
-pub fn find(grounds: &[PreparedSheet<'_>; 2]) -> TrianglePolylines {
-    let pairs = near_pairs(grounds);
+pub fn find(sheets: &[PreparedSheet<'_>; 2]) -> TrianglePolylines {
+    let pairs = near_pairs(sheets);
     let mut raw = TrianglePolylines { pairs: pairs.len(), ..TrianglePolylines::default() };
-    let names = Names::new([grounds[0].sheet.mesh, grounds[1].sheet.mesh]);
+    let names = Names::new([sheets[0].sheet.mesh, sheets[1].sheet.mesh]);
     let contact = |pair: &[u32; 2]| {
         let faces = [0, 1].map(|k| names.face(k, pair[k]));
         let [Some(one), Some(two)] = faces else { return None };
@@ -73,14 +73,14 @@ pub fn find(grounds: &[PreparedSheet<'_>; 2]) -> TrianglePolylines {
             lines.push(Line { ends, triangles });
         }
     }
-    raw.chains = polylines(&points, &lines);
-    raw.near = touching(grounds, &pairs);
+    raw.polylines = polylines(&points, &lines);
+    raw.near = touching(sheets, &pairs);
     raw
 }
 
 /// Pairs of triangles whose boxes touch when each is wider by what its surface may be away.
-fn near_pairs(grounds: &[PreparedSheet<'_>; 2]) -> Vec<[u32; 2]> {
-    let boxes = grounds.each_ref().map(|ground| {
+fn near_pairs(sheets: &[PreparedSheet<'_>; 2]) -> Vec<[u32; 2]> {
+    let boxes = sheets.each_ref().map(|ground| {
         let mesh = ground.sheet.mesh;
         let widened = |triangle: usize| {
             let (bounds, by) = (Bounds::of(mesh.corners(triangle)), ground.sagitta(triangle as u32));
@@ -97,18 +97,18 @@ fn near_pairs(grounds: &[PreparedSheet<'_>; 2]) -> Vec<[u32; 2]> {
 }
 
 /// Pairs of triangles whose surfaces may have a common tangent plane and be as near as their triangles are to them.
-fn touching(grounds: &[PreparedSheet<'_>; 2], pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
+fn touching(sheets: &[PreparedSheet<'_>; 2], pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
     let may_touch = |pair: &&[u32; 2]| {
-        let sagittas = [0, 1].map(|k| grounds[k].sagitta(pair[k]));
+        let sagittas = [0, 1].map(|k| sheets[k].sagitta(pair[k]));
         let reach = sagittas[0] + sagittas[1];
         if reach == 0.0 {
             return false;
         }
-        let [(n, a), (m, b)] = [0, 1].map(|k| grounds[k].cone(pair[k]));
+        let [(n, a), (m, b)] = [0, 1].map(|k| sheets[k].cone(pair[k]));
         if n.cross(m).length() > a + b {
             return false;
         }
-        let corners = [0, 1].map(|k| grounds[k].sheet.mesh.corners(pair[k] as usize));
+        let corners = [0, 1].map(|k| sheets[k].sheet.mesh.corners(pair[k] as usize));
         let apart = |k: usize, normal: DVec3| {
             let heights = corners[1 - k].map(|corner| (corner - corners[k][0]).dot(normal));
             heights.iter().all(|h| *h > reach) || heights.iter().all(|h| *h < -reach)
@@ -118,9 +118,9 @@ fn touching(grounds: &[PreparedSheet<'_>; 2], pairs: &[[u32; 2]]) -> Vec<[u32; 2
     let mut near: Vec<[u32; 2]> = pairs.par_iter().with_min_len(256).filter(may_touch).copied().collect();
     // The smaller triangle tells better where, and each needs to do so once for a surface.
     let key = |pair: &[u32; 2]| {
-        let small = usize::from(grounds[0].reach(pair[0]) > grounds[1].reach(pair[1]));
+        let small = usize::from(sheets[0].reach(pair[0]) > sheets[1].reach(pair[1]));
         let other = 1 - small;
-        let surface = grounds[other].surface(pair[other]).map(|(number, _)| number);
+        let surface = sheets[other].surface(pair[other]).map(|(number, _)| number);
         (small, pair[small], surface.ok_or(pair[other]))
     };
     near.sort_by_cached_key(|pair| (key(pair), *pair));
@@ -194,26 +194,26 @@ fn polylines(points: &[DVec3], lines: &[Line]) -> Vec<TrianglePolyline> {
         line.ends.iter().for_each(|&end| at[end as usize].push(index));
     }
     let mut is_used = vec![false; lines.len()];
-    let mut chains = Vec::new();
+    let mut polylines = Vec::new();
     let mut walk = |first: u32, line: u32| {
-        let mut chain = TrianglePolyline { points: vec![points[first as usize]], ..TrianglePolyline::default() };
+        let mut polyline = TrianglePolyline { points: vec![points[first as usize]], ..TrianglePolyline::default() };
         let (mut here, mut line) = (first, line);
         while !std::mem::replace(&mut is_used[line as usize], true) {
             let Line { ends, triangles } = &lines[line as usize];
             here = if ends[0] == here { ends[1] } else { ends[0] };
-            chain.lines.push(*triangles);
+            polyline.lines.push(*triangles);
             if here == first && at[here as usize].len() == 2 {
-                chain.is_closed = true;
+                polyline.is_closed = true;
                 break;
             }
-            chain.points.push(points[here as usize]);
+            polyline.points.push(points[here as usize]);
             match at[here as usize][..] {
                 [one, two] => line = if one == line { two } else { one },
                 _ => break,
             }
         }
-        if !chain.lines.is_empty() {
-            chains.push(chain);
+        if !polyline.lines.is_empty() {
+            polylines.push(polyline);
         }
     };
     for ends_first in [true, false] {
@@ -223,5 +223,5 @@ fn polylines(points: &[DVec3], lines: &[Line]) -> Vec<TrianglePolyline> {
             }
         }
     }
-    chains
+    polylines
 }

@@ -24,8 +24,8 @@ pub fn refine(solver: &NewtonSolver<'_>, precision: &CurvePrecision, intersectio
     let all: Vec<(Branch, [usize; 2])> = branches.into_par_iter().map(filled).collect();
     for (branch, [added, unfilled]) in all {
         intersection.branches.push(branch);
-        intersection.work.added += added;
-        intersection.work.unfilled += unfilled;
+        intersection.counts.added += added;
+        intersection.counts.unfilled += unfilled;
     }
 }
 
@@ -37,8 +37,8 @@ fn settled(branch: Branch) -> Branch {
         let behind = (next.position - point.position).dot(point.tangent);
         // Behind a corner the surface has ended: what is looked for there stands before the corner.
         let is_superseded =
-            point.failure == Some(Inaccuracy::Beyond) && [last, next].iter().any(|other| other.mark == Mark::Corner);
-        let is_kept = point.mark != Mark::Regular || point.failure.is_some() && !is_superseded;
+            point.inaccuracy == Some(Inaccuracy::Beyond) && [last, next].iter().any(|other| other.mark == Mark::Corner);
+        let is_kept = point.mark != Mark::Regular || point.inaccuracy.is_some() && !is_superseded;
         is_kept || before * behind > 0.0
     };
     let points = branch.points;
@@ -81,7 +81,7 @@ fn directed(mut branch: Branch) -> Branch {
         let chord = (before.unwrap_or_default() + behind.unwrap_or_default()).normalize_or_zero();
         let point = &mut branch.points[index];
         point.tangent = match point.tangent {
-            tangent if point.failure.is_some() || tangent == DVec3::ZERO => chord,
+            tangent if point.inaccuracy.is_some() || tangent == DVec3::ZERO => chord,
             tangent if tangent.dot(chord) < 0.0 => -tangent,
             tangent => tangent,
         };
@@ -141,12 +141,12 @@ fn divide(
         return 0;
     }
     let along = way / length;
-    let places = if from.mark == Mark::Branching { to.places } else { from.places };
-    let met = solver.solve(places, from.position.midpoint(to.position), Some(along), length);
-    if met.failure.is_some() {
+    let places = if from.mark == Mark::Branching { to.coordinates } else { from.coordinates };
+    let newton_point = solver.solve(places, from.position.midpoint(to.position), Some(along), length);
+    if newton_point.inaccuracy.is_some() {
         return 1;
     }
-    let mut middle = met.point(Mark::Regular);
+    let mut middle = newton_point.point(Mark::Regular);
     if middle.tangent.dot(along) < 0.0 {
         middle.tangent = -middle.tangent;
     }

@@ -54,7 +54,7 @@ fn curves<'a>(one: impl Into<ExactSheet<'a>>, two: impl Into<ExactSheet<'a>>) ->
 /// Checks that every point is accurate and on some implicit surfaces, and gives the branches as lengths of cycles.
 fn check(found: &Intersection, equations: &[&dyn Fn(DVec3) -> f64], residual: f64, off: f64) {
     for point in found.points() {
-        assert_eq!(point.failure, None, "{point:?}");
+        assert_eq!(point.inaccuracy, None, "{point:?}");
         assert!(point.residual <= residual, "{point:?}");
         for equation in equations {
             let value = equation(point.position).abs();
@@ -104,7 +104,7 @@ fn points_are_added_until_the_lines_are_near_to_the_curve() {
     for chord in [1e-2, 1e-4, 1e-6] {
         let precision = CurvePrecision { chord: Some(chord), ..CurvePrecision::default() };
         let found = intersect((&one).into(), (&two).into(), &precision);
-        assert!(found.branches.len() == 1 && found.work.unfilled == 0);
+        assert!(found.branches.len() == 1 && found.counts.unfilled == 0);
         let center = DVec3::new(0.9, 0.4, 0.2);
         check(&found, &[&|p| p.length() - 1.0, &|p| (p - center).length() - 0.8], 1e-14, 2e-15);
         let d = center.length();
@@ -353,7 +353,7 @@ fn the_teapot_is_cut_through_all_its_patches() {
         let found = curves(pot.sheet(), plane.sheet());
         check(&found, &[&|p| (p - at).dot(unit)], 1e-12, 1e-12);
         for point in found.points() {
-            let place = point.places[0];
+            let place = point.coordinates[0];
             let surface = pot.surfaces[place.surface.unwrap() as usize].as_ref().unwrap();
             assert!(surface.point(place.uv).distance(point.position) < 1e-12);
         }
@@ -372,7 +372,7 @@ fn the_work_grows_with_the_points() {
     let count = |chord: f64| {
         let ball = solid(sphere(1.0).unwrap(), chord, DAffine3::IDENTITY);
         let found = curves(&ball, level(0.3, 2.0).sheet());
-        (found.work.raw, found.work.pairs)
+        (found.counts.raw, found.counts.pairs)
     };
     let ((few, some), (many, more)) = (count(1e-2), count(1e-4));
     assert!(many > 8 * few && (more as f64 / some as f64) < 2.0 * many as f64 / few as f64);
@@ -383,7 +383,7 @@ fn sheets_that_coincide_say_so() {
     let one = solid(block(DVec3::ONE).unwrap(), 1.0, DAffine3::IDENTITY);
     let two = solid(block(DVec3::ONE).unwrap(), 1.0, moved(0.5, 1.0, 0.0));
     let found = curves(&one, &two);
-    assert!(found.work.coincident > 0);
+    assert!(found.counts.coincident > 0);
     check(&found, &[&|p| p.y - 0.5], 1e-15, 1e-15);
     let ball = |chord: f64| solid(sphere(1.0).unwrap(), chord, DAffine3::IDENTITY);
     let found = curves(&ball(0.01), &ball(0.013));

@@ -98,12 +98,12 @@ impl CriticalPoint {
     pub fn point(&self, mark: Mark, tangent: DVec3, tolerance: f64) -> CurvePoint {
         let residual = self.gap.abs();
         let failure = (residual > tolerance).then_some(Inaccuracy::Parallel);
-        CurvePoint { tangent, ..NewtonPoint { failure, residual, ..self.newton_point() }.point(mark) }
+        CurvePoint { tangent, ..NewtonPoint { inaccuracy: failure, residual, ..self.newton_point() }.point(mark) }
     }
 
     /// As a beginning of other points.
     pub fn newton_point(&self) -> NewtonPoint {
-        NewtonPoint { at: self.at, places: self.places, normals: self.normals, residual: self.gap.abs(), failure: None }
+        NewtonPoint { at: self.at, coordinates: self.coordinates, normals: self.normals, residual: self.gap.abs(), inaccuracy: None }
     }
 
     /// The distances from it along the direction of the greater curvature at which the surfaces cross; none if they do not.
@@ -124,13 +124,13 @@ struct ZoneCandidate {
 /// Finds them from pairs of triangles.
 pub fn find(solver: &NewtonSolver<'_>, raw: &TrianglePolylines) -> Zones {
     let search = |pair: &[u32; 2]| {
-        let [one, two] = [0, 1].map(|k| solver.grounds[k].reach(pair[k]));
+        let [one, two] = [0, 1].map(|k| solver.sheets[k].reach(pair[k]));
         let small = usize::from(one > two);
-        let corners = solver.grounds[small].sheet.mesh.corners(pair[small] as usize);
+        let corners = solver.sheets[small].sheet.mesh.corners(pair[small] as usize);
         let start = corners.iter().sum::<DVec3>() / 3.0;
-        let places = [0, 1].map(|k| solver.grounds[k].coordinates(pair[k], start));
+        let places = [0, 1].map(|k| solver.sheets[k].coordinates(pair[k], start));
         let (reach, error) =
-            (3.0 * one.min(two), solver.grounds[0].sagitta(pair[0]) + solver.grounds[1].sagitta(pair[1]));
+            (3.0 * one.min(two), solver.sheets[0].sagitta(pair[0]) + solver.sheets[1].sagitta(pair[1]));
         let critical = solver.critical(places, start, reach)?;
         let is_near = critical.gap.abs() <= 2.0 * error + solver.tolerance;
         let is_bent = critical.curvatures[0].abs() * reach > COINCIDENT;

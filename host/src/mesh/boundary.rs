@@ -20,8 +20,8 @@ impl BoundaryLoop {
     /// The sum of the lengths of its edges, units.
     ///
     /// - `places`: of the vertices of the mesh.
-    pub fn length(&self, places: &[DVec3]) -> f64 {
-        self.edges().map(|[from, to]| places[from as usize].distance(places[to as usize])).sum()
+    pub fn length(&self, positions: &[DVec3]) -> f64 {
+        self.edges().map(|[from, to]| positions[from as usize].distance(positions[to as usize])).sum()
     }
 }
 
@@ -32,25 +32,25 @@ impl Mesh {
     /// Loops that touch in a vertex are parted there. Triangles that are turned against their neighbours bring loops too.
     pub fn boundary_loops(&self) -> Vec<BoundaryLoop> {
         let table = EdgeTable::of(self);
-        let mut onward: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+        let mut following: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
         for edge in &table.edges {
             let [low, high] = edge.ends;
             let forward = table.uses(edge).iter().filter(|side| side.forward).count();
             let backward = table.uses(edge).len() - forward;
             for _ in backward..forward {
-                onward.entry(high).or_default().push(low);
+                following.entry(high).or_default().push(low);
             }
             for _ in forward..backward {
-                onward.entry(low).or_default().push(high);
+                following.entry(low).or_default().push(high);
             }
         }
         let mut loops = Vec::new();
-        while let Some((&start, _)) = onward.first_key_value() {
+        while let Some((&start, _)) = following.first_key_value() {
             // The walk closes a loop at each vertex that it meets again. It cannot end elsewhere: as many edges leave a
             // vertex as arrive there.
             let mut walk = vec![start];
             let mut place_of = BTreeMap::from([(start, 0)]);
-            while let Some(next) = walk.last().and_then(|here| take_following(&mut onward, *here)) {
+            while let Some(next) = walk.last().and_then(|here| take_following(&mut following, *here)) {
                 if let Some(first) = place_of.get(&next).copied() {
                     let closed: Vec<u32> = walk.drain(first..).collect();
                     closed.iter().for_each(|vertex| _ = place_of.remove(vertex));
@@ -64,11 +64,11 @@ impl Mesh {
     }
 }
 
-fn take_following(onward: &mut BTreeMap<u32, Vec<u32>>, from: u32) -> Option<u32> {
-    let ends = onward.get_mut(&from)?;
+fn take_following(following: &mut BTreeMap<u32, Vec<u32>>, from: u32) -> Option<u32> {
+    let ends = following.get_mut(&from)?;
     let next = ends.pop();
     if ends.is_empty() {
-        onward.remove(&from);
+        following.remove(&from);
     }
     next
 }

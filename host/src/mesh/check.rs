@@ -12,13 +12,13 @@ pub struct EdgeReport {
     /// Edges with a triangle on one side only.
     pub boundary: usize,
     /// Edges of more than two triangles.
-    pub crowded: usize,
+    pub non_manifold: usize,
     /// Edges of two triangles that run through it in the same direction.
     pub misoriented: usize,
     /// Triangles that use one position twice; they have no part in the counts above.
     pub collapsed: usize,
     /// Other triangles without area: all corners on one line.
-    pub slivers: usize,
+    pub degenerate: usize,
     /// Vertices at different positions that a triangle uses.
     pub vertices: usize,
     /// Triangles with three different positions.
@@ -28,7 +28,7 @@ pub struct EdgeReport {
 impl EdgeReport {
     /// Whether every edge has exactly two triangles, which run through it in opposite directions.
     pub fn is_closed(&self) -> bool {
-        self.edges > 0 && self.boundary + self.crowded + self.misoriented == 0
+        self.edges > 0 && self.boundary + self.non_manifold + self.misoriented == 0
     }
 
     /// Vertices - edges + triangles: 2 for each closed piece without handles, 0 for a torus.
@@ -91,7 +91,7 @@ impl Mesh {
             match table.uses(edge) {
                 [_] => report.boundary += 1,
                 [a, b] => report.misoriented += usize::from(a.forward == b.forward),
-                _ => report.crowded += 1,
+                _ => report.non_manifold += 1,
             }
         }
         let mut used = vec![false; self.vertices.len()];
@@ -101,7 +101,7 @@ impl Mesh {
                 continue;
             }
             report.triangles += 1;
-            report.slivers += usize::from(self.face_normal(triangle).is_none());
+            report.degenerate += usize::from(self.face_normal(triangle).is_none());
             for vertex in self.triangles[triangle] {
                 used[table.same[vertex as usize] as usize] = true;
             }
@@ -152,7 +152,7 @@ mod tests {
         let mut crowded = tetrahedron();
         crowded.vertices.push(DVec3::splat(-1.0));
         crowded.triangles.push([0, 1, 4]);
-        assert_eq!((crowded.edge_report().crowded, crowded.edge_report().boundary), (1, 2));
+        assert_eq!((crowded.edge_report().non_manifold, crowded.edge_report().boundary), (1, 2));
     }
 
     #[test]
@@ -161,7 +161,7 @@ mod tests {
         mesh.vertices.extend([DVec3::ZERO, DVec3::X * 2.0]);
         mesh.triangles.extend([[0, 4, 1], [0, 1, 5]]);
         let report = mesh.edge_report();
-        assert_eq!((report.collapsed, report.slivers), (1, 1));
+        assert_eq!((report.collapsed, report.degenerate), (1, 1));
     }
 
     #[test]
@@ -179,7 +179,7 @@ mod tests {
     fn bad_meshes_are_refused_with_their_place() {
         let mut mesh = tetrahedron();
         mesh.vertices[2].y = f64::NAN;
-        assert_eq!(mesh.validate().unwrap_err().place, FaultLocation::Vertex(2));
+        assert_eq!(mesh.validate().unwrap_err().location, FaultLocation::Vertex(2));
         let mut mesh = tetrahedron();
         mesh.triangles[1][2] = 4;
         assert_eq!(mesh.validate().unwrap_err().to_string(), "triangle 1: index 4 is outside the 4 vertices");

@@ -74,7 +74,7 @@ pub struct EdgeSelection {
     /// Edges between triangles of different surfaces, whatever their angle.
     pub seams: bool,
     /// Edges that are none of the above.
-    pub interior: SmoothEdges,
+    pub smooth: SmoothEdges,
     /// The outline that this eye sees. Where the mesh has normals that are the same on both sides of its edges, it is made of
     /// lines through triangles, along which these normals turn away; else of edges between a triangle that faces the eye and
     /// one that does not.
@@ -84,7 +84,7 @@ pub struct EdgeSelection {
 impl EdgeSelection {
     /// Every edge.
     pub const ALL: EdgeSelection =
-        EdgeSelection { boundary: true, crease_degrees: Some(0.0), seams: true, interior: SmoothEdges::All, outline: None };
+        EdgeSelection { boundary: true, crease_degrees: Some(0.0), seams: true, smooth: SmoothEdges::All, outline: None };
 
     /// Boundaries, and creases sharper than `degrees`.
     pub fn creases(degrees: f64) -> EdgeSelection {
@@ -92,7 +92,7 @@ impl EdgeSelection {
             boundary: true,
             crease_degrees: Some(degrees),
             seams: false,
-            interior: SmoothEdges::None,
+            smooth: SmoothEdges::None,
             outline: None,
         }
     }
@@ -104,7 +104,7 @@ impl EdgeSelection {
 
     /// Boundaries, creases sharper than `degrees`, and the parameter lines of tessellated surfaces.
     pub fn grid(degrees: f64) -> EdgeSelection {
-        EdgeSelection { seams: true, interior: SmoothEdges::Isoparametric, ..EdgeSelection::creases(degrees) }
+        EdgeSelection { seams: true, smooth: SmoothEdges::Isoparametric, ..EdgeSelection::creases(degrees) }
     }
 }
 
@@ -177,7 +177,7 @@ impl EdgeTable {
         if selection.seams && surface(a) != surface(b) {
             return true;
         }
-        match selection.interior {
+        match selection.smooth {
             SmoothEdges::None => false,
             SmoothEdges::Isoparametric if self.is_within_plane(mesh, edge, a, b) => false,
             SmoothEdges::Isoparametric => is_isoparametric(mesh, a) || is_isoparametric(mesh, b),

@@ -36,10 +36,10 @@ pub enum MeshError {
 
 /// One thing wrong, and its place in the text, in the bytes or in the mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{place}: {problem}")]
+#[error("{location}: {problem}")]
 pub struct Fault {
     /// Where.
-    pub place: FaultLocation,
+    pub location: FaultLocation,
     /// What.
     pub problem: MeshProblem,
 }
@@ -64,7 +64,7 @@ pub enum FaultLocation {
 impl FaultLocation {
     /// The fault `problem` at this place.
     pub(super) fn fault(self, problem: MeshProblem) -> Fault {
-        Fault { place: self, problem }
+        Fault { location: self, problem }
     }
 }
 

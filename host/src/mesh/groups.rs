@@ -13,7 +13,7 @@ pub struct Grouped {
     /// What the surfaces are called, by their numbers. There may be fewer names than surfaces.
     pub names: Vec<String>,
     /// What the surfaces look like, by their numbers; none where that is not known. There may be fewer than surfaces.
-    pub looks: Vec<Option<MetallicRoughness>>,
+    pub materials: Vec<Option<MetallicRoughness>>,
 }
 
 /// What a surface looks like, in the terms of glTF.
@@ -51,7 +51,7 @@ pub(super) fn name_of(names: &[String], surface: u32) -> String {
 #[derive(Default)]
 pub(super) struct Groups {
     names: Vec<String>,
-    looks: Vec<Option<MetallicRoughness>>,
+    materials: Vec<Option<MetallicRoughness>>,
     number_of: std::collections::HashMap<String, u32>,
     of_triangles: Vec<u32>,
 }
@@ -65,7 +65,7 @@ impl Groups {
         let number = self.number_of.get(name).copied().unwrap_or_else(|| {
             self.number_of.insert(name.to_owned(), self.names.len() as u32);
             self.names.push(name.to_owned());
-            self.looks.push(look);
+            self.materials.push(look);
             self.names.len() as u32 - 1
         });
         self.of_triangles.resize(count, number);
@@ -73,10 +73,10 @@ impl Groups {
 
     /// Puts the groups on a mesh; one group without a name is none.
     pub fn on(self, mut mesh: Mesh) -> Grouped {
-        if self.names.iter().all(String::is_empty) && self.looks.iter().all(Option::is_none) {
+        if self.names.iter().all(String::is_empty) && self.materials.iter().all(Option::is_none) {
             return Grouped::from(mesh);
         }
         mesh.surfaces = self.of_triangles;
-        Grouped { mesh, names: self.names, looks: self.looks }
+        Grouped { mesh, names: self.names, materials: self.materials }
     }
 }

@@ -143,8 +143,8 @@ impl<'a> Trails<'a> {
         let mut best: Option<(f64, u32)> = None;
         for &edge in open.iter().take(STRAIGHTEST_OF).filter(|&&edge| !self.used[edge as usize]) {
             let [a, b] = self.edges[edge as usize];
-            let onward = (position(if a == vertex { b } else { a }) - position(vertex)).normalize_or_zero();
-            let straightness = if (edge as usize) < self.drawn { heading.dot(onward) } else { UNDRAWN };
+            let direction = (position(if a == vertex { b } else { a }) - position(vertex)).normalize_or_zero();
+            let straightness = if (edge as usize) < self.drawn { heading.dot(direction) } else { UNDRAWN };
             if best.is_none_or(|(champion, _)| straightness > champion) {
                 best = Some((straightness, edge));
             }
@@ -172,8 +172,8 @@ impl<'a> Trails<'a> {
                 polylines.points.push(self.points[vertex as usize]);
                 in_run = true;
             }
-            let (onward, _) = trail[(i + 1) % count];
-            polylines.points.push(self.points[onward as usize]);
+            let (direction, _) = trail[(i + 1) % count];
+            polylines.points.push(self.points[direction as usize]);
         }
     }
 }

@@ -91,7 +91,7 @@ struct Candidate {
     ends: [u32; 2],
     /// How often its ends had moved when it was weighed.
     moves: [u32; 2],
-    place: DVec3,
+    position: DVec3,
 }
 
 impl Ord for Candidate {
@@ -173,7 +173,7 @@ impl Collapse {
         let best = Some(sum.a.inverse() * -sum.b).filter(|p| p.distance(middle) <= 2.0 * from.distance(to));
         let place = best.unwrap_or(middle);
         let moves = [self.moves[a], self.moves[b]];
-        self.candidates.push(Candidate { error: sum.at(place), ends, moves, place });
+        self.candidates.push(Candidate { error: sum.at(place), ends, moves, position: place });
     }
 
     fn corners_around(&self, vertex: u32) -> Vec<u32> {
@@ -212,7 +212,7 @@ impl Collapse {
     }
 
     fn carry_out(&mut self, candidate: &Candidate) {
-        let &Candidate { ends: [a, b], moves, place, .. } = candidate;
+        let &Candidate { ends: [a, b], moves, position: place, .. } = candidate;
         let (from, to) = (a as usize, b as usize);
         let is_old = [self.moves[from], self.moves[to]] != moves;
         if is_old

@@ -146,7 +146,7 @@ fn the_bunny_is_closed_and_faces_outwards() {
     let mesh = bunny().expect("it ships");
     let report = mesh.edge_report();
     assert_eq!((report.vertices, report.triangles, report.edges), (34_835, 69_666, 104_499));
-    assert!(report.is_closed() && report.collapsed + report.slivers == 0);
+    assert!(report.is_closed() && report.collapsed + report.degenerate == 0);
     assert_eq!(report.euler_characteristic(), 2);
     assert!((mesh.signed_volume() - 1.5998).abs() < 1e-4);
     let bounds = mesh.bounds().unwrap();

@@ -213,7 +213,7 @@ fn each_in_by<L: Lanes>(
 fn is_any_in_by<L: Lanes>(octree: &Octree, packets: &[Packet], ray: &Ray, limits: [f64; 2]) -> bool {
     let Some(line) = PreparedRay::new(ray, &octree.cube, limits[0], limits[1]) else { return false };
     let mut search = Search::new(octree, &line, limits[0], limits[1], true);
-    let within = line.frame.within(search.t_min, search.t_max);
+    let within = line.single.within(search.t_min, search.t_max);
     packets.iter().any(|packet| search.test::<L, true>(packet, within))
 }
 
@@ -228,7 +228,7 @@ impl Search<'_> {
     /// Goes down the index; returns whether it ended at a hit that is enough.
     #[inline(always)]
     fn descend<L: Lanes, const ANY: bool>(&mut self) -> bool {
-        let within = if ANY { self.line.frame.within(self.t_min, self.t_max) } else { [0.0; 2] };
+        let within = if ANY { self.ray.single.within(self.t_min, self.t_max) } else { [0.0; 2] };
         self.visit::<L>(|search, packet| search.test::<L, ANY>(packet, within))
     }
 
@@ -246,7 +246,7 @@ impl Search<'_> {
             match child.place() {
                 Err(place) => {
                     let node = &index.nodes[place];
-                    let (mut lanes, near) = node.meets::<L>(&self.line.frame, self.limit);
+                    let (mut lanes, near) = node.meets::<L>(&self.ray.single, self.limit);
                     if lanes != 0 {
                         let first = lanes.trailing_zeros() as usize & (LANES - 1);
                         lanes &= lanes - 1;
@@ -297,7 +297,7 @@ impl Search<'_> {
     /// Gives the hits of a packet until one is enough.
     #[inline(always)]
     fn any_of_packet<L: Lanes>(&self, packet: &Packet, enough: &mut impl FnMut(Hit) -> bool) -> bool {
-        let (mut lanes, _) = packet.candidates::<L, false>(&self.line.frame, self.limit, [0.0; 2]);
+        let (mut lanes, _) = packet.candidates::<L, false>(&self.ray.single, self.limit, [0.0; 2]);
         while lanes != 0 {
             let lane = lanes.trailing_zeros() as usize & (LANES - 1);
             lanes &= lanes - 1;
@@ -312,7 +312,7 @@ impl Search<'_> {
     #[inline(always)]
     fn test<L: Lanes, const ANY: bool>(&mut self, packet: &Packet, within: [f32; 2]) -> bool {
         self.count.triangles += LANES as u64;
-        let (mut lanes, certain) = packet.candidates::<L, ANY>(&self.line.frame, self.limit, within);
+        let (mut lanes, certain) = packet.candidates::<L, ANY>(&self.ray.single, self.limit, within);
         if ANY && certain != 0 {
             return true;
         }

@@ -34,7 +34,7 @@ pub struct PreparedRay {
     /// The part that counts.
     pub chord: Chord,
     /// What tests in single precision need of the ray.
-    pub frame: SinglePrecisionRay,
+    pub single: SinglePrecisionRay,
 }
 
 impl PreparedRay {
@@ -44,7 +44,7 @@ impl PreparedRay {
         let shear = Shear::new(ray, cube.unit())?;
         let chord = Chord::new(ray, &shear, cube, t_min, t_max)?;
         let frame = SinglePrecisionRay::new(&shear, &chord);
-        Some(Self { shear, chord, frame })
+        Some(Self { shear, chord, single: frame })
     }
 }
 

@@ -100,7 +100,7 @@ impl SurfacePoints {
                 let [a, b, c] = self.octree.corners(kept.triangle);
                 let normal = (b - a).cross(c - a);
                 let t = (a - ray.origin).dot(normal) / ray.direction.dot(normal);
-                let along = line.frame.along(t);
+                let along = line.single.along(t);
                 let slack = SLACK * self.side;
                 if along > enter - slack && along < exit + slack {
                     search.offer(Hit { t, triangle: kept.triangle, u: kept.u.into(), v: kept.v.into() });

@@ -14,7 +14,7 @@ const VOXELS: i64 = 1 << MAX_DEPTH;
 pub struct Search<'a> {
     pub(super) octree: &'a Octree,
     /// Apart, so that what changes can stay in the registers of the processor.
-    pub(super) line: &'a PreparedRay,
+    pub(super) ray: &'a PreparedRay,
     pub(super) t_min: f64,
     pub(super) t_max: f64,
     /// Whether any hit will do.
@@ -29,8 +29,8 @@ impl<'a> Search<'a> {
     /// Prepares a search for a hit with `t_min < t < t_max`, for which the line was made.
     #[inline(always)]
     pub fn new(octree: &'a Octree, line: &'a PreparedRay, t_min: f64, t_max: f64, any: bool) -> Self {
-        let limit = line.frame.limit_of(line.chord.length());
-        Self { octree, line, t_min, t_max, any, best: None, limit, count: WalkCount::default() }
+        let limit = line.single.limit_of(line.chord.length());
+        Self { octree, ray: line, t_min, t_max, any, best: None, limit, count: WalkCount::default() }
     }
 
     /// What was found.
@@ -46,7 +46,7 @@ impl<'a> Search<'a> {
         }
         // A ray from so far away that its points are less certain than a cell is fat may be in the cell beside the one
         // that it is taken for.
-        if 4.0 * self.line.chord.double_tolerance() <= FAT {
+        if 4.0 * self.ray.chord.double_tolerance() <= FAT {
             self.step_from_cell_to_cell(|search, leaf, _| search.any_of_leaf(leaf));
         } else {
             self.look_from_above();
@@ -58,7 +58,7 @@ impl<'a> Search<'a> {
     /// - `visit`: the terminal node, and from where to where the ray is in it, sides of the modelling cube along the longest
     ///   axis; returns whether the search is over.
     pub(super) fn walk_with(&mut self, visit: impl FnMut(&mut Self, usize, [f64; 2]) -> bool) {
-        if 4.0 * self.line.chord.double_tolerance() <= FAT { self.step_from_cell_to_cell(visit) } else { self.walk() }
+        if 4.0 * self.ray.chord.double_tolerance() <= FAT { self.step_from_cell_to_cell(visit) } else { self.walk() }
     }
 }
 
@@ -73,7 +73,7 @@ impl Search<'_> {
     /// The hit of a triangle with given corners, decided in double precision.
     #[inline(always)]
     pub(super) fn intersection(&self, triangle: u32, corners: [DVec3; 3]) -> Option<Hit> {
-        let crossing = self.line.shear.intersection(corners)?;
+        let crossing = self.ray.shear.intersection(corners)?;
         let is_within = crossing.t > self.t_min && crossing.t < self.t_max;
         is_within.then_some(Hit { t: crossing.t, triangle, u: crossing.u, v: crossing.v })
     }
@@ -96,7 +96,7 @@ impl Search<'_> {
             return false;
         }
         self.best = Some(hit);
-        self.limit = self.line.frame.limit(t);
+        self.limit = self.ray.single.limit(t);
         true
     }
 }
@@ -110,12 +110,12 @@ impl Search<'_> {
     fn step_from_cell_to_cell(&mut self, mut visit: impl FnMut(&mut Self, usize, [f64; 2]) -> bool) {
         let octree = self.octree;
         let leaves = octree.leaves();
-        let slopes = self.line.shear.slopes().to_array();
+        let slopes = self.ray.shear.slopes().to_array();
         let voxels = VOXELS as f64;
-        let [x, y, z, _] = self.line.chord.entry(&self.line.shear).to_array();
+        let [x, y, z, _] = self.ray.chord.entry(&self.ray.shear).to_array();
         let entry = [x, y, z].map(|x| x * voxels);
-        let forward = self.line.frame.down.map(|down| 1 - 2 * i64::from(down));
-        let [second, third, leading] = self.line.shear.axes();
+        let forward = self.ray.single.down.map(|down| 1 - 2 * i64::from(down));
+        let [second, third, leading] = self.ray.shear.axes();
         let others = [second, third];
         let mut voxel = entry.map(|x| (x.floor() as i64).clamp(0, VOXELS - 1));
         let mut enter = 0.0;
@@ -180,7 +180,7 @@ impl Search<'_> {
         let leaves = self.octree.leaves();
         let mut cubes = vec![(LocationalCode::ROOT, 0..leaves.codes.len())];
         while let Some((cube, nodes)) = cubes.pop() {
-            if nodes.is_empty() || !self.line.chord.may_meet(&self.line.shear, cube) {
+            if nodes.is_empty() || !self.ray.chord.may_meet(&self.ray.shear, cube) {
                 continue;
             }
             self.count.cells += 1;

@@ -52,17 +52,17 @@ const MANY_TRIANGLES: u64 = 1000;
 pub(super) struct Facts<'a> {
     prepared: &'a Prepared,
     bright: Vec<bool>,
-    kept: Vec<bool>,
+    included: Vec<bool>,
 }
 
 impl<'a> Facts<'a> {
     pub(super) fn new(prepared: &'a Prepared, bright: Vec<bool>) -> Facts<'a> {
         let kept = vec![true; prepared.objects.len()];
-        Facts { prepared, bright, kept }
+        Facts { prepared, bright, included: kept }
     }
 
-    pub(super) fn within(self, kept: Vec<bool>) -> Facts<'a> {
-        Facts { kept, ..self }
+    pub(super) fn within(self, included: Vec<bool>) -> Facts<'a> {
+        Facts { included, ..self }
     }
 
     fn count(&self, test: impl Fn(&Material) -> bool) -> usize {
@@ -70,7 +70,7 @@ impl<'a> Facts<'a> {
     }
 
     fn included(&self) -> impl Iterator<Item = &crate::scene::PreparedObject> {
-        self.prepared.objects.iter().zip(&self.kept).filter(|(o, kept)| **kept && o.count > 0).map(|(o, _)| o)
+        self.prepared.objects.iter().zip(&self.included).filter(|(o, kept)| **kept && o.count > 0).map(|(o, _)| o)
     }
 
     pub(super) fn is_bright(&self, light: usize) -> bool {

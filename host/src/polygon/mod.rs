@@ -64,10 +64,10 @@ impl Triangulation {
 ///
 /// # Errors
 /// A corner that is not finite, a contour without area, or edges that cross or overlap, with their places.
-pub fn triangulate<C: AsRef<[DVec2]>>(contours: &[C], shape: TriangulationKind) -> Result<Triangulation, PolygonError> {
+pub fn triangulate<C: AsRef<[DVec2]>>(contours: &[C], kind: TriangulationKind) -> Result<Triangulation, PolygonError> {
     let outline = Outline::of(contours)?;
     let mut triangles = sweep::triangles(&outline)?;
-    if shape == TriangulationKind::Delaunay {
+    if kind == TriangulationKind::Delaunay {
         delaunay::flip(&outline.corners, &mut triangles);
     }
     Ok(Triangulation { triangles, dropped: outline.dropped() })

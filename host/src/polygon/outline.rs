@@ -39,14 +39,14 @@ impl Outline {
             corners,
             starts,
         };
-        let mut kept = Vec::with_capacity(outline.corners.len());
+        let mut turning = Vec::with_capacity(outline.corners.len());
         let mut ends = Vec::with_capacity(contours.len());
         let mut distinct = Vec::new();
         for contour in 0..contours.len() {
-            outline.append_turning(contour, &mut distinct, &mut kept)?;
-            ends.push(kept.len());
+            outline.append_turning(contour, &mut distinct, &mut turning)?;
+            ends.push(turning.len());
         }
-        outline.rank(&kept, &ends);
+        outline.rank(&turning, &ends);
         Ok(outline)
     }
 
@@ -66,7 +66,7 @@ impl Outline {
     }
 
     /// Appends the corners of a contour where it turns.
-    fn append_turning(&self, contour: usize, distinct: &mut Vec<u32>, kept: &mut Vec<u32>) -> Result<(), PolygonError> {
+    fn append_turning(&self, contour: usize, distinct: &mut Vec<u32>, turning: &mut Vec<u32>) -> Result<(), PolygonError> {
         let end = self.starts.get(contour + 1).copied().unwrap_or(self.corners.len());
         let at = |index: u32| self.corners[index as usize];
         distinct.clear();
@@ -82,21 +82,21 @@ impl Outline {
         if count < 3 {
             return Err(PolygonError::TooFewCorners { contour, corners: count });
         }
-        let first_kept = kept.len();
+        let first_kept = turning.len();
         let mut folded = None;
         let mut previous = distinct[count - 1];
         for (position, &here) in distinct.iter().enumerate() {
             let next = distinct[if position + 1 == count { 0 } else { position + 1 }];
             let [a, b, c] = [previous, here, next].map(at);
             if turn(a, b, c) != 0.0 {
-                kept.push(here);
+                turning.push(here);
             } else if precedes(a, b) != precedes(b, c) {
                 folded = folded.or(Some((previous, here)));
             }
             previous = here;
         }
         match folded {
-            _ if kept.len() == first_kept => Err(PolygonError::NoArea { contour }),
+            _ if turning.len() == first_kept => Err(PolygonError::NoArea { contour }),
             Some((first, second)) => {
                 let [first, second] = [first, second].map(|corner| self.edge_from(corner as usize));
                 Err(PolygonError::Overlap { first, second })
@@ -106,16 +106,16 @@ impl Outline {
     }
 
     /// Sorts the kept corners and links them by rank. `ends`: where each contour ends in `kept`.
-    fn rank(&mut self, kept: &[u32], ends: &[usize]) {
-        let order = sorted(&self.corners, kept);
-        let mut rank_of = vec![0_u32; kept.len()];
+    fn rank(&mut self, turning: &[u32], ends: &[usize]) {
+        let order = sorted(&self.corners, turning);
+        let mut rank_of = vec![0_u32; turning.len()];
         for (rank, &position) in order.iter().enumerate() {
             rank_of[position as usize] = rank as u32;
         }
-        self.originals = order.iter().map(|&position| kept[position as usize]).collect();
+        self.originals = order.iter().map(|&position| turning[position as usize]).collect();
         self.points = self.originals.iter().map(|&corner| self.corners[corner as usize]).collect();
-        self.before = vec![0; kept.len()];
-        self.after = vec![0; kept.len()];
+        self.before = vec![0; turning.len()];
+        self.after = vec![0; turning.len()];
         let mut begin = 0;
         for &end in ends {
             let mut previous = rank_of[end - 1];
@@ -181,14 +181,14 @@ fn exponent(number: f64) -> i32 {
 }
 
 /// The positions in `kept` in the order of the sweep.
-fn sorted(corners: &[DVec2], kept: &[u32]) -> Vec<u32> {
+fn sorted(corners: &[DVec2], turning: &[u32]) -> Vec<u32> {
     // Whole numbers compare without branches: the sort is several times faster than by coordinates.
     let key = |number: f64| {
         let bits = number.to_bits();
         bits ^ ((bits as i64 >> 63) as u64 | 1 << 63)
     };
-    let at = |position: u32| corners[kept[position as usize] as usize];
-    let mut keys: Vec<(u64, u32)> = (0..kept.len() as u32).map(|position| (key(at(position).x), position)).collect();
+    let at = |position: u32| corners[turning[position as usize] as usize];
+    let mut keys: Vec<(u64, u32)> = (0..turning.len() as u32).map(|position| (key(at(position).x), position)).collect();
     keys.sort_unstable_by_key(|&(x, _)| x);
     for column in keys.chunk_by_mut(|a, b| a.0 == b.0).filter(|column| column.len() > 1) {
         column.iter_mut().for_each(|(x, position)| *x = key(at(*position).y));

@@ -33,7 +33,7 @@ const MOST_RENDERED: usize = 1_000_000;
 pub struct Model {
     prepared: Prepared,
     initial: InitialView,
-    shown: StructureCommands,
+    structure: StructureCommands,
     is_lit: bool,
     begun: Instant,
 }
@@ -57,7 +57,7 @@ impl Model {
         let own = InitialView::of(&prepared)?;
         let initial = initial.map_or(own, |initial| InitialView { elongation: own.elongation, ..initial });
         let shown = structure::with_light(scene, &initial, &prepared.subject(), drawing, light)?;
-        Ok(Model { prepared, initial, shown, is_lit: light.is_some(), begun })
+        Ok(Model { prepared, initial, structure: shown, is_lit: light.is_some(), begun })
     }
 
     /// From where it is seen before dials turn it.
@@ -111,7 +111,7 @@ impl Production {
     /// # Errors
     /// [`ProductionError::Workstation`].
     pub fn show(model: Model, mut session: Session) -> Result<Production, ProductionError> {
-        let Model { prepared, initial, shown, is_lit, begun } = model;
+        let Model { prepared, initial, structure: shown, is_lit, begun } = model;
         session.show(&shown, initial.movement())?;
         if is_lit {
             session.commands(&tiles::settings(prepared.background))?;
@@ -130,7 +130,7 @@ impl Production {
     /// # Errors
     /// [`ProductionError::Workstation`].
     pub fn replace(&mut self, model: Model, keeps_dials: bool) -> Result<(), ProductionError> {
-        let Model { prepared, initial, shown, begun, .. } = model;
+        let Model { prepared, initial, structure: shown, begun, .. } = model;
         self.session.replace(&shown, initial.movement())?;
         if self.is_lit {
             // The node that shades was made anew.
@@ -196,12 +196,12 @@ impl Production {
     pub fn render(
         &self,
         matrix: &DMat4,
-        order: &RenderOrder,
+        options: &RenderOrder,
         display: &DisplayTransform,
         watch: &Watch<'_>,
     ) -> Result<RenderedView, ProductionError> {
         let view = View::Projection(self.projection(matrix));
-        progressive::render_view(&self.prepared, &view, order, display, watch, None)
+        progressive::render_view(&self.prepared, &view, options, display, watch, None)
     }
 
     /// Begins to ray-trace the view of a matrix that was read back, beside whatever else is done.
@@ -213,11 +213,11 @@ impl Production {
     pub fn begin_rendering(
         &self,
         matrix: &DMat4,
-        order: &RenderOrder,
+        options: &RenderOrder,
         display: &DisplayTransform,
     ) -> Result<Progressive, ProductionError> {
         let view = View::Projection(self.projection(matrix));
-        Progressive::begin(self.prepared.clone(), view, *order, *display)
+        Progressive::begin(self.prepared.clone(), view, *options, *display)
     }
 
     /// Shows an image on the raster screen, whose radiance is the light of the display. It is there when this returns.

@@ -42,7 +42,7 @@ pub enum RenderingEvent {
 /// A rendering in a thread of its own. It is stopped when this is dropped.
 #[derive(Debug)]
 pub struct Progressive {
-    news: mpsc::Receiver<RenderingEvent>,
+    events: mpsc::Receiver<RenderingEvent>,
     is_cancelled: Arc<AtomicBool>,
 }
 
@@ -51,7 +51,7 @@ impl Progressive {
     pub(super) fn begin(
         prepared: Arc<Prepared>,
         view: View,
-        order: RenderOrder,
+        options: RenderOrder,
         display: DisplayTransform,
     ) -> Result<Progressive, ProductionError> {
         let (sender, news) = mpsc::channel();
@@ -69,18 +69,18 @@ impl Progressive {
             };
             let watch = Watch { cancelled: &cancelled, stage: &stage, progress: &progress, memo: None };
             let mut part = |part: RenderingEvent| tell(part);
-            tell(RenderingEvent::End(render_view(&prepared, &view, &order, &display, &watch, Some(&mut part)).map(Box::new)));
+            tell(RenderingEvent::End(render_view(&prepared, &view, &options, &display, &watch, Some(&mut part)).map(Box::new)));
         };
         let thread = std::thread::Builder::new().name("rendering".into());
         thread.spawn(work).map_err(|error| ProductionError::Thread(error.to_string()))?;
-        Ok(Progressive { news, is_cancelled })
+        Ok(Progressive { events: news, is_cancelled })
     }
 
     /// What is new, oldest first; of parts and amounts that follow each other, the last one only.
     pub fn events(&self) -> Vec<RenderingEvent> {
         let mut all: Vec<RenderingEvent> = Vec::new();
         loop {
-            match self.news.try_recv() {
+            match self.events.try_recv() {
                 Ok(news) => {
                     let is_outdated = matches!(
                         (all.last(), &news),
@@ -120,7 +120,7 @@ impl Drop for Progressive {
 pub(super) fn render_view(
     prepared: &Prepared,
     view: &View,
-    order: &RenderOrder,
+    options: &RenderOrder,
     display: &DisplayTransform,
     watch: &Watch<'_>,
     parts: Option<&mut dyn FnMut(RenderingEvent)>,
@@ -131,36 +131,36 @@ pub(super) fn render_view(
     let build_seconds = start.elapsed().as_secs_f64();
     let triangles = prepared.triangles.len().max(1) as f64;
     let octree_bytes = tracer.world().octree().map(|octree| octree.bytes() as f64 / triangles);
-    let meter = Meter::new(&prepared.settings, display, order.threads);
+    let meter = Meter::new(&prepared.settings, display, options.threads);
     let stops = meter.stops(&tracer, prepared, std::slice::from_ref(view), watch)?;
-    let pixel_angle = view.pixel_angle(order.width, order.height);
+    let pixel_angle = view.pixel_angle(options.width, options.height);
     let shown = |picture: &Picture| display.shown(picture, stops, pixel_angle);
     let begin = Instant::now();
-    let film = Film::new(order.width, order.height).map_err(RenderError::from)?;
+    let film = Film::new(options.width, options.height).map_err(RenderError::from)?;
     let rendering = match parts {
         Some(tell) => {
             let mut keep = |film: &Film| {
                 match film.picture().and_then(|picture| shown(&picture)) {
-                    Ok(shown) => tell(part(film, shown, order, begin)),
+                    Ok(shown) => tell(part(film, shown, options, begin)),
                     // The whole image may not fit into memory either, and then says so.
                     Err(error) => tracing::warn!("a part of the image is not shown: {error}"),
                 }
                 Ok(())
             };
             let checkpoints = Checkpoints { every: EVERY, keep: &mut keep };
-            tracer.resume(film, view, order, watch, Some(checkpoints))?
+            tracer.resume(film, view, options, watch, Some(checkpoints))?
         }
-        None => tracer.resume(film, view, order, watch, None)?,
+        None => tracer.resume(film, view, options, watch, None)?,
     };
     let shown = shown(&rendering.picture).map_err(RenderError::from)?;
     Ok(RenderedView { rendering, octree_bytes, build_seconds, shown, stops })
 }
 
 /// What there is of an image.
-fn part(film: &Film, shown: Picture, order: &RenderOrder, begin: Instant) -> RenderingEvent {
+fn part(film: &Film, shown: Picture, options: &RenderOrder, begin: Instant) -> RenderingEvent {
     let rows = rows_of(film);
     let taken: u64 = film.tallies().iter().map(|tally| u64::from(tally.count)).sum();
-    let all = film.tallies().len() as u64 * u64::from(order.samples);
+    let all = film.tallies().len() as u64 * u64::from(options.samples);
     let seconds_left = begin.elapsed().as_secs_f64() * (all as f64 / taken.max(1) as f64 - 1.0).max(0.0);
     let samples = taken as f64 / film.tallies().len() as f64;
     RenderingEvent::Part { shown, rows, samples, seconds_left }

@@ -355,7 +355,7 @@ fn depths_from_a_thousandth_to_ten_thousand_are_right_in_one_picture() {
             for (x, y) in [(8 * index as u32 + 4, 31), (8 * index as u32 + 3, 32)] {
                 let tally = &rendering.film.tallies()[(y * 64 + x) as usize];
                 assert_eq!(
-                    (tally.count, tally.elements, tally.seen[0]),
+                    (tally.count, tally.elements, tally.first_ids[0]),
                     (1, 1, index as u32),
                     "rays {by_rays}, {distance}"
                 );

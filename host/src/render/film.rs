@@ -15,7 +15,7 @@ pub struct Film {
     /// Sums of each class of light; none unless they are asked for.
     classes: Vec<RadianceByClass>,
     /// What guides a denoiser; none unless it is asked for.
-    guides: Vec<PixelFeatures>,
+    features: Vec<PixelFeatures>,
     /// Whether the samples of a pixel come one by one, so that halves of them tell the error of all.
     in_turn: bool,
     /// How far pixels have come that get as many samples as their errors ask for.
@@ -28,7 +28,7 @@ pub(super) struct AdaptiveSampling {
     /// The relative error at which a pixel has samples enough.
     pub(super) target: f64,
     /// Samples at the end of the last pass that was finished.
-    pub(super) passed: u32,
+    pub(super) finished: u32,
     /// How many samples each pixel is to have after the pass that has begun; none between passes.
     pub(super) goals: Vec<u32>,
 }
@@ -49,7 +49,7 @@ impl AdaptiveSampling {
 
     /// Ends a pass.
     pub(super) fn end_pass(&mut self, samples: u32) {
-        self.passed = samples;
+        self.finished = samples;
         self.goals.clear();
     }
 }
@@ -61,7 +61,7 @@ pub(super) struct FilmRow<'a> {
     /// The sums of each class of light, if they are kept.
     classes: Option<&'a mut [RadianceByClass]>,
     /// What guides a denoiser, if it is kept.
-    guides: Option<&'a mut [PixelFeatures]>,
+    features: Option<&'a mut [PixelFeatures]>,
 }
 
 impl FilmRow<'_> {
@@ -69,8 +69,8 @@ impl FilmRow<'_> {
     ///
     /// - `classes`: its radiance by class.
     pub(super) fn add(&mut self, x: usize, sample: &PixelSample, classes: &RadianceByClass) {
-        if let Some(guides) = &mut self.guides {
-            guides[x].add(sample, &self.tallies[x]);
+        if let Some(features) = &mut self.features {
+            features[x].add(sample, &self.tallies[x]);
         }
         self.tallies[x].add(sample);
         if let Some(sums) = &mut self.classes {
@@ -97,7 +97,7 @@ impl Film {
     pub(super) fn untouched(width: u32, height: u32) -> Result<Film, PictureError> {
         let mut tallies = bytemuck::zeroed_vec(Picture::pixels_of(width, height)?);
         prefer_large_pages(&mut tallies);
-        Ok(Film { width, height, tallies, classes: Vec::new(), guides: Vec::new(), in_turn: false, adaptive: None })
+        Ok(Film { width, height, tallies, classes: Vec::new(), features: Vec::new(), in_turn: false, adaptive: None })
     }
 
     /// This film, which keeps the classes of light apart from now on.
@@ -108,26 +108,26 @@ impl Film {
 
     /// This film, which keeps what a denoiser needs from now on; it has to be asked for before the first sample.
     pub fn with_features(mut self) -> Film {
-        self.guides = bytemuck::zeroed_vec(self.tallies.len());
-        prefer_large_pages(&mut self.guides);
+        self.features = bytemuck::zeroed_vec(self.tallies.len());
+        prefer_large_pages(&mut self.features);
         // See [`Film::untouched`] for why they are written.
-        self.guides.par_chunks_mut(1 << 14).for_each(|guides| guides.fill(PixelFeatures::default()));
+        self.features.par_chunks_mut(1 << 14).for_each(|features| features.fill(PixelFeatures::default()));
         self
     }
 
     /// A film of pixels that are known; none if there are not as many as that.
     ///
     /// - `guides`: of a denoiser, for each of them; none if they are not kept.
-    pub(super) fn of_tallies(width: u32, height: u32, tallies: Vec<Tally>, guides: Vec<PixelFeatures>) -> Option<Film> {
+    pub(super) fn of_tallies(width: u32, height: u32, tallies: Vec<Tally>, features: Vec<PixelFeatures>) -> Option<Film> {
         let possible = Picture::pixels_of(width, height).is_ok_and(|count| count == tallies.len());
-        possible.then_some(Film { width, height, tallies, classes: Vec::new(), guides, in_turn: true, adaptive: None })
+        possible.then_some(Film { width, height, tallies, classes: Vec::new(), features, in_turn: true, adaptive: None })
     }
 
     /// How far adaptive sampling has come that goes on towards a target: where it stopped, if that was the target before.
     pub(super) fn adaptive(&self, target: Option<f64>) -> Option<AdaptiveSampling> {
         let target = target?;
         let before = self.adaptive.clone().filter(|before| before.target == target);
-        Some(before.unwrap_or(AdaptiveSampling { target, passed: 0, goals: Vec::new() }))
+        Some(before.unwrap_or(AdaptiveSampling { target, finished: 0, goals: Vec::new() }))
     }
 
     /// How far adaptive sampling has come; none if all pixels get as many samples.
@@ -173,21 +173,21 @@ impl Film {
 
     /// What guides a denoiser, pixel by pixel; none unless it is kept.
     pub fn features(&self) -> &[PixelFeatures] {
-        &self.guides
+        &self.features
     }
 
     /// What guides a denoiser, pixel by pixel; none unless it is kept.
     #[cfg(test)]
     pub(super) fn features_mut(&mut self) -> &mut [PixelFeatures] {
-        &mut self.guides
+        &mut self.features
     }
 
     /// All rows.
     pub(super) fn rows_mut(&mut self) -> Vec<FilmRow<'_>> {
         let width = self.width as usize;
         let mut classes = self.classes.chunks_exact_mut(width);
-        let mut guides = self.guides.chunks_exact_mut(width);
-        let row = |tallies| FilmRow { tallies, classes: classes.next(), guides: guides.next() };
+        let mut features = self.features.chunks_exact_mut(width);
+        let row = |tallies| FilmRow { tallies, classes: classes.next(), features: features.next() };
         self.tallies.chunks_exact_mut(width).map(row).collect()
     }
 

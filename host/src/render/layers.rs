@@ -55,7 +55,7 @@ impl Film {
             AnyChannel::new(layer.name, FlatSamples::F32(values.collect()))
         });
         let of_albedo = |(name, band): (&'static str, usize)| {
-            let value = |(guide, tally): (&PixelFeatures, &Tally)| guide.albedo[band] / tally.count.max(1) as f32;
+            let value = |(features, tally): (&PixelFeatures, &Tally)| features.albedo[band] / tally.count.max(1) as f32;
             AnyChannel::new(name, FlatSamples::F32(self.features().iter().zip(tallies).map(value).collect()))
         };
         let albedo = [("albedo.R", 0), ("albedo.G", 1), ("albedo.B", 2)].into_iter();
@@ -84,7 +84,7 @@ impl Film {
             })
             .collect();
         let of_seen = |number: &dyn Fn([u32; 2]) -> u32| {
-            let of = |tally: &Tally| if tally.elements > 0 { number(tally.seen) } else { 0 };
+            let of = |tally: &Tally| if tally.elements > 0 { number(tally.first_ids) } else { 0 };
             FlatSamples::U32(tallies.iter().map(of).collect())
         };
         let numbers = [

@@ -28,7 +28,7 @@ const CHUNK: usize = 8192;
 #[derive(Debug)]
 pub struct Memo {
     path: PathBuf,
-    stand: Mutex<MemoState>,
+    state: Mutex<MemoState>,
 }
 
 /// Where the file stands.
@@ -61,14 +61,14 @@ impl Memo {
         if !head.starts_with(&found) {
             return Err(other(if found.starts_with(&MAGIC) { "what it computed differs" } else { "its kind differs" }));
         }
-        let stand = match found.len() == head.len() {
+        let state = match found.len() == head.len() {
             true => MemoState::Reading(BufReader::new(file), HEAD),
             false => {
                 file.seek(SeekFrom::Start(0)).and_then(|_| file.write_all(&head)).map_err(failed)?;
                 MemoState::Writing(file)
             }
         };
-        Ok(Memo { path: path.into(), stand: Mutex::new(stand) })
+        Ok(Memo { path: path.into(), state: Mutex::new(state) })
     }
 
     /// What a function makes of each item, told its number and the item, on all threads: from the file as far as it is
@@ -116,7 +116,7 @@ impl Memo {
         is_right: impl Fn(&R) -> bool,
         make: impl FnOnce() -> Result<R, E>,
     ) -> Result<R, E> {
-        let lock = || self.stand.lock().unwrap_or_else(PoisonError::into_inner);
+        let lock = || self.state.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(found) = lock().read(is_right) {
             return Ok(found);
         }

@@ -158,7 +158,7 @@ impl MeteredPixels {
 
     fn add_film(&mut self, film: &Film, prepared: &Prepared) {
         let is_lamp = |tally: &Tally| {
-            let [object, material] = tally.seen;
+            let [object, material] = tally.first_ids;
             let material = || prepared.objects.get(object as usize)?.materials.get(material as usize);
             // A lamp that is no object is covered, but is no element.
             (tally.elements as f32) < tally.covered || material().is_some_and(|material| !material.emission.is_black())

@@ -41,12 +41,12 @@ pub struct RendererRow {
     /// then be asked for.
     pub adds_samples: bool,
     /// Whether it follows light from lamps, which can be kept.
-    pub follows_light: bool,
+    pub can_map_photons: bool,
     /// Whether photons are its way to caustics, in every scene.
-    pub sends_photons: bool,
+    pub always_maps_photons: bool,
     /// Whether it finds the light that diffuse surfaces send each other in every scene, which takes long and can be gone on
     /// with.
-    pub solves: bool,
+    pub solves_radiosity: bool,
     /// Whether studies of knobs know it.
     pub is_studied: bool,
     /// Sets what it needs of the settings of a scene.
@@ -63,9 +63,9 @@ pub const RENDERERS: [RendererRow; 4] = [
         word: "ray tracing",
         help: "All light: mirrors, glass, rough surfaces, soft shadows",
         adds_samples: true,
-        follows_light: true,
-        sends_photons: false,
-        solves: false,
+        can_map_photons: true,
+        always_maps_photons: false,
+        solves_radiosity: false,
         is_studied: true,
         require: |_| (),
         prepare: ray_tracing,
@@ -76,9 +76,9 @@ pub const RENDERERS: [RendererRow; 4] = [
         word: "two-way",
         help: "All light, with that of lamps followed through mirrors and glass first: caustics",
         adds_samples: true,
-        follows_light: true,
-        sends_photons: true,
-        solves: false,
+        can_map_photons: true,
+        always_maps_photons: true,
+        solves_radiosity: false,
         is_studied: true,
         require: |settings| settings.light.caustics = Caustics::PhotonMapped,
         prepare: ray_tracing,
@@ -89,9 +89,9 @@ pub const RENDERERS: [RendererRow; 4] = [
         word: "scan line",
         help: "Light that comes straight from lights, with sharp shadows and straight transparency; many times faster. Mirrors show lights and ambient light only, and glass bends nothing",
         adds_samples: false,
-        follows_light: false,
-        sends_photons: false,
-        solves: false,
+        can_map_photons: false,
+        always_maps_photons: false,
+        solves_radiosity: false,
         is_studied: true,
         require: |_| (),
         prepare: |task| {
@@ -105,9 +105,9 @@ pub const RENDERERS: [RendererRow; 4] = [
         word: "radiosity",
         help: "Light that goes from diffuse surface to diffuse surface, found once for all views; mirrors, glass and highlights are not seen",
         adds_samples: false,
-        follows_light: false,
-        sends_photons: false,
-        solves: true,
+        can_map_photons: false,
+        always_maps_photons: false,
+        solves_radiosity: true,
         is_studied: false,
         // Surfaces out of view send light, too.
         require: |settings| settings.light.interreflection.count(),
@@ -130,7 +130,7 @@ pub struct Task<'a> {
     /// What of it is needed.
     pub plan: &'a Plan,
     /// Where caught light is kept beyond the renderer; nowhere without one.
-    pub shelf: Option<&'a PhotonStore>,
+    pub photon_store: Option<&'a PhotonStore>,
     /// Who watches what is found before the first picture, and may stop it: the light that surfaces send each other is then
     /// known coarsely.
     pub watch: Watch<'a>,
@@ -139,7 +139,7 @@ pub struct Task<'a> {
 impl<'a> Task<'a> {
     /// A scene, unwatched.
     pub fn new(prepared: &'a Prepared, plan: &'a Plan) -> Task<'a> {
-        Task { prepared, plan, shelf: None, watch: Watch::NOBODY }
+        Task { prepared, plan, photon_store: None, watch: Watch::NOBODY }
     }
 }
 
@@ -210,18 +210,18 @@ pub fn ray_tracer<'a>(prepared: &'a Prepared, plan: &'a Plan) -> Result<RayTrace
 /// # Errors
 /// [`RenderError::Octree`], [`RenderError::Material`], [`RenderError::Radiosity`].
 pub fn ray_tracer_watched<'a>(task: &Task<'a>) -> Result<(RayTracer<'a>, Option<radiosity::RadiosityReport>), RenderError> {
-    let Task { prepared, plan, shelf, watch } = *task;
+    let Task { prepared, plan, photon_store, watch } = *task;
     (watch.stage)("while building the octree");
     let world = World::new(prepared, plan)?;
     (watch.stage)("while looking where light goes");
-    let tracer = RayTracer::new(world, plan, shelf);
+    let tracer = RayTracer::new(world, plan, photon_store);
     if !plan.needs(Stage::Radiosity) {
         return Ok((tracer, None));
     }
     (watch.stage)("while solving for radiosity");
     let solution = {
-        let caught = tracer.photon_estimator(&watch);
-        let sent = caught.as_ref().map(|caught| |triangle, outside, at| caught.exitance(triangle, outside, at));
+        let photons = tracer.photon_estimator(&watch);
+        let sent = photons.as_ref().map(|caught| |triangle, outside, at| caught.exitance(triangle, outside, at));
         let exitance: Option<Exitance<'_>> = sent.as_ref().map(|sent| sent as Exitance<'_>);
         Radiosity::new(tracer.world(), plan, &prepared.settings.radiosity, exitance, &watch)?
     };

@@ -20,7 +20,7 @@ pub struct Rendering {
     /// How many spans were drawn; none by ray tracing.
     pub spans: SpanCounts,
     /// What became of the light of lamps that was followed first, if any was.
-    pub balance: Option<FluxBalance>,
+    pub flux_balance: Option<FluxBalance>,
     /// Wall-clock time, seconds.
     pub seconds: f64,
     /// Threads that worked.

@@ -199,7 +199,7 @@ impl Film {
             views,
             width: self.width(),
             height: self.height(),
-            adaptive: adaptive.map(|adaptive| (adaptive.target, adaptive.passed, !goals.is_empty())),
+            adaptive: adaptive.map(|adaptive| (adaptive.target, adaptive.finished, !goals.is_empty())),
         };
         Ok(destination.write_or_keep(|file| {
             // Checksums of large pieces are found many times faster than those of small ones.
@@ -208,7 +208,7 @@ impl Film {
             pieces.write_all(&[if self.features().is_empty() { WITHOUT_FEATURES } else { WITH_FEATURES }])?;
             encode(&head, &mut pieces)?;
             self.tallies().iter().try_for_each(|tally| encode(tally, &mut pieces))?;
-            self.features().iter().try_for_each(|guide| encode(guide, &mut pieces))?;
+            self.features().iter().try_for_each(|features| encode(features, &mut pieces))?;
             goals.iter().try_for_each(|goal| encode(goal, &mut pieces))?;
             let Summed { inner, sum } = pieces.into_inner().map_err(io::IntoInnerError::into_error)?;
             inner.write_all(&sum.finalize().to_le_bytes())
@@ -249,13 +249,13 @@ impl RenderState {
         let pixels = head.width as usize * head.height as usize;
         let mut all = || -> Result<Film, String> {
             let tallies = (0..pixels).map(|_| decode(&mut file)).collect::<Result<Vec<Tally>, _>>()?;
-            let guides = (0..if is_guided { pixels } else { 0 }).map(|_| decode(&mut file));
-            let guides = guides.collect::<Result<Vec<PixelFeatures>, _>>()?;
-            let mut film = Film::of_tallies(head.width, head.height, tallies, guides).ok_or("its size is wrong")?;
-            if let Some((target, passed, has_goals)) = head.adaptive {
+            let features = (0..if is_guided { pixels } else { 0 }).map(|_| decode(&mut file));
+            let features = features.collect::<Result<Vec<PixelFeatures>, _>>()?;
+            let mut film = Film::of_tallies(head.width, head.height, tallies, features).ok_or("its size is wrong")?;
+            if let Some((target, finished, has_goals)) = head.adaptive {
                 let goals = (0..if has_goals { pixels } else { 0 }).map(|_| decode(&mut file));
                 let goals = goals.collect::<Result<Vec<u32>, _>>()?;
-                film.set_adaptive(Some(AdaptiveSampling { target, passed, goals }));
+                film.set_adaptive(Some(AdaptiveSampling { target, finished, goals }));
             }
             let sum = file.sum.clone().finalize();
             let mut rest = Vec::new();
@@ -298,7 +298,7 @@ mod tests {
     fn film() -> Film {
         let tally = |k: u32| Tally { sum: DVec3::new(0.1, 1.0 / 3.0, f64::from(k)), count: k, ..Tally::default() };
         let mut film = Film::of_tallies(3, 2, (0..6).map(tally).collect(), Vec::new()).expect("six pixels");
-        film.set_adaptive(Some(AdaptiveSampling { target: 0.01, passed: 8, goals: (8..14).collect() }));
+        film.set_adaptive(Some(AdaptiveSampling { target: 0.01, finished: 8, goals: (8..14).collect() }));
         film
     }
 

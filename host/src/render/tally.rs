@@ -67,7 +67,7 @@ pub struct Tally {
     /// Luminance of the samples up to the last power of two before their number, if they came one by one.
     pub early: f64,
     /// Object and its material that the first of them saw.
-    pub seen: [u32; 2],
+    pub first_ids: [u32; 2],
 }
 
 /// One sample.
@@ -121,7 +121,7 @@ impl Tally {
         }
         if let Some((distance, normal, seen)) = sample.first {
             if self.elements == 0 {
-                self.seen = seen;
+                self.first_ids = seen;
             }
             self.distances += distance * times;
             self.normals += normal * times;

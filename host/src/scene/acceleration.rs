@@ -62,14 +62,14 @@ impl AccelerationCache {
     }
 
     /// The octrees over the objects that are kept, if they were built last.
-    pub(super) fn get(&self, kept: &AccelerationKey) -> Option<Arc<Acceleration>> {
-        self.last().as_ref().filter(|(of, _)| of == kept).map(|(_, acceleration)| acceleration.clone())
+    pub(super) fn get(&self, key: &AccelerationKey) -> Option<Arc<Acceleration>> {
+        self.last().as_ref().filter(|(of, _)| of == key).map(|(_, acceleration)| acceleration.clone())
     }
 
     /// Keeps octrees that were built in the place of those before.
-    pub(super) fn store(&self, kept: AccelerationKey, acceleration: &Arc<Acceleration>) {
+    pub(super) fn store(&self, key: AccelerationKey, acceleration: &Arc<Acceleration>) {
         self.times.fetch_add(1, Ordering::Relaxed);
-        *self.last() = Some((kept, acceleration.clone()));
+        *self.last() = Some((key, acceleration.clone()));
     }
 
     /// How often octrees were built.

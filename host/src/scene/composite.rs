@@ -19,7 +19,7 @@ const NAMED: usize = 4;
 /// An operand that is no composite itself.
 struct LeafOperand<'a> {
     object: &'a Object,
-    to_whole: DMat4,
+    to_composite: DMat4,
     material: Option<Material>,
     /// Distance between its surface and its triangles in the coordinates of the whole.
     chord: f64,
@@ -97,7 +97,7 @@ impl Composite {
                 Shape::Composite(inner) => inner.collect(&to_whole, material, chord, leaves),
                 _ => {
                     let chord = operand.tolerance.unwrap_or(chord);
-                    leaves.push(LeafOperand { object: operand, to_whole, material, chord });
+                    leaves.push(LeafOperand { object: operand, to_composite: to_whole, material, chord });
                     Expression::Operand(leaves.len() - 1)
                 }
             }
@@ -122,7 +122,7 @@ impl LeafOperand<'_> {
     }
 
     fn placement(&self) -> DAffine3 {
-        DAffine3::from_mat4(self.to_whole)
+        DAffine3::from_mat4(self.to_composite)
     }
 
     fn failed(&self, source: SolidError) -> ShapeError {
@@ -130,7 +130,7 @@ impl LeafOperand<'_> {
     }
 
     fn solid(&self, angle: f64) -> Result<ExactSolid, ShapeError> {
-        let tolerance = Tolerance::new(self.chord / largest_stretch(&self.to_whole), angle);
+        let tolerance = Tolerance::new(self.chord / largest_stretch(&self.to_composite), angle);
         let ShapeMesh { mesh, surfaces, .. } = self.object.shape.tessellate(tolerance)?;
         ExactSolid::new_at(mesh, surfaces, &self.placement()).map_err(|source| self.failed(source))
     }
@@ -139,7 +139,7 @@ impl LeafOperand<'_> {
     fn half_space(&self, bounds: &Bounds) -> Result<ExactSolid, ShapeError> {
         let Shape::HalfSpace { normal, at } = self.object.shape else { return Err(PrimitiveError::Endless.into()) };
         let normal = normal_matrix(self.placement().matrix3) * normal;
-        let body = half_space(normal, self.to_whole.transform_point3(at), bounds)?;
+        let body = half_space(normal, self.to_composite.transform_point3(at), bounds)?;
         Ok(body.solid(Tolerance::new(1.0, 90.0))?)
     }
 }

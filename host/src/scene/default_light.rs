@@ -30,12 +30,12 @@ const ROWS: u32 = 2048;
 /// Where a lamp stands, along the view, seen from the middle of the scene: to the right, up, and towards the viewer, and
 /// its side; all in half diagonals of the scene.
 struct LampPlacement {
-    place: DVec3,
+    position: DVec3,
     side: f64,
 }
 
-const KEY_PLACEMENT: LampPlacement = LampPlacement { place: DVec3::new(-2.4, 2.8, 2.4), side: 2.0 };
-const BOUNCE_PLACEMENT: LampPlacement = LampPlacement { place: DVec3::new(2.0, -2.2, 1.0), side: 2.4 };
+const KEY_PLACEMENT: LampPlacement = LampPlacement { position: DVec3::new(-2.4, 2.8, 2.4), side: 2.0 };
+const BOUNCE_PLACEMENT: LampPlacement = LampPlacement { position: DVec3::new(2.0, -2.2, 1.0), side: 2.4 };
 
 impl Scene {
     /// The scene as it is looked at: in its studio, and lit.
@@ -82,7 +82,7 @@ fn default_lights(camera: &Camera, bounds: &Bounds, background: RgbPower) -> Res
     };
     let Some([right, up, forward]) = camera.axes() else { return Ok(vec![sky]) };
     let lamp = |stand: &LampPlacement, irradiance: RgbPower| {
-        let place = (right * stand.place.x + up * stand.place.y - forward * stand.place.z) * half;
+        let place = (right * stand.position.x + up * stand.position.y - forward * stand.position.z) * half;
         soft_box(center + place, center, stand.side * half, irradiance)
     };
     Ok(vec![lamp(&KEY_PLACEMENT, RgbPower::splat(KEY)), lamp(&BOUNCE_PLACEMENT, BOUNCE), sky])
@@ -122,7 +122,7 @@ mod tests {
             let &LightShape::Rectangle { corner, across, up } = patch else { panic!("{patch:?}") };
             assert!(across.cross(up).dot(at - corner) > 0.0, "it shines on what is there");
             let half = size * 3.0_f64.sqrt() / 2.0;
-            let solid_angle = patch.area() / (KEY_PLACEMENT.place.length() * half).powi(2);
+            let solid_angle = patch.area() / (KEY_PLACEMENT.position.length() * half).powi(2);
             let irradiance = solid_angle * radiance.bands_of_light().x;
             assert!((irradiance / KEY - 1.0).abs() < 1e-12, "{irradiance}");
         }

@@ -50,10 +50,10 @@ pub enum SceneError {
         source: Box<ShapeError>,
     },
     /// An object is wrong that a script asks for at a place.
-    #[error("{place}: {source}")]
+    #[error("{location}: {source}")]
     Placed {
         /// File, line and column of the script.
-        place: String,
+        location: String,
         /// What is wrong.
         source: Box<SceneError>,
     },

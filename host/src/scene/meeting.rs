@@ -64,8 +64,8 @@ fn between(one: &ShapeMesh, two: &ShapeMesh, precision: &CurvePrecision) -> Inte
 
 impl Object {
     /// What its shape was made of, where it is placed.
-    pub(super) fn in_place(&self, made: ShapeMesh) -> ShapeMesh {
-        let (mesh, surfaces) = moved(&made.mesh, &made.surfaces, &DAffine3::from_mat4(self.transform));
-        ShapeMesh { mesh, surfaces, ..made }
+    pub(super) fn in_place(&self, shape_mesh: ShapeMesh) -> ShapeMesh {
+        let (mesh, surfaces) = moved(&shape_mesh.mesh, &shape_mesh.surfaces, &DAffine3::from_mat4(self.transform));
+        ShapeMesh { mesh, surfaces, ..shape_mesh }
     }
 }

@@ -93,7 +93,7 @@ pub struct Scene {
     pub studio: Option<Studio>,
     /// Where its objects stand in its script.
     #[serde(skip)]
-    pub places: ShapeOrigins,
+    pub origins: ShapeOrigins,
 }
 
 impl Scene {

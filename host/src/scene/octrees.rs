@@ -15,20 +15,20 @@ impl Contents {
     /// # Errors
     /// [`OctreeError`], for more triangles than an octree takes.
     pub fn acceleration(&self, kept: AccelerationKey) -> Result<Arc<Acceleration>, OctreeError> {
-        if let Some(acceleration) = self.built.get(&kept) {
+        if let Some(acceleration) = self.octrees.get(&kept) {
             return Ok(acceleration);
         }
         let start = Instant::now();
         let still = self.still(&kept)?;
         let moving = if kept.motions { self.moving(&kept)? } else { Vec::new() };
         let acceleration = Arc::new(Acceleration { still, moving, build: start.elapsed() });
-        self.built.store(kept, &acceleration);
+        self.octrees.store(kept, &acceleration);
         Ok(acceleration)
     }
 
     /// How often octrees were built.
     pub fn accelerations(&self) -> u32 {
-        self.built.times()
+        self.octrees.times()
     }
 
     /// The octree over the objects that are kept and stand still; none if they have no triangles.

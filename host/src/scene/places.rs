@@ -39,7 +39,7 @@ impl ShapeOrigins {
         match position {
             Some(ScriptPosition { line, column }) => {
                 let place = format!("{}:{line}:{column}", self.file);
-                SceneError::Placed { place, source: Box::new(error) }
+                SceneError::Placed { location: place, source: Box::new(error) }
             }
             None => error,
         }

@@ -60,7 +60,7 @@ pub struct Contents {
     /// A box around everything.
     pub bounds: Bounds,
     /// Its octrees, as far as they were asked for.
-    pub(super) built: AccelerationCache,
+    pub(super) octrees: AccelerationCache,
 }
 
 /// One object of a prepared scene.
@@ -114,7 +114,7 @@ impl Prepared {
     /// # Errors
     /// [`SceneError`], for a value out of range or a mesh that cannot be made or read.
     pub fn new(scene: &Scene) -> Result<Prepared, SceneError> {
-        let contents = Contents::new(scene).map_err(|error| scene.places.located(error))?;
+        let contents = Contents::new(scene).map_err(|error| scene.origins.located(error))?;
         Ok(Prepared { contents: Arc::new(contents), settings: scene.settings })
     }
 }
@@ -145,7 +145,7 @@ impl Contents {
             background: scene.background,
             camera: Camera::framing(&Bounds::EMPTY),
             bounds: Bounds::EMPTY,
-            built: AccelerationCache::default(),
+            octrees: AccelerationCache::default(),
         };
         let mut shared = SharedMeshes::of(scene);
         let motions: FxHashMap<u32, Motion> = match scene.settings.geometry.shutter > 0.0 {
@@ -169,13 +169,13 @@ impl Contents {
     fn add(
         &mut self,
         object: &Object,
-        made: &ShapeMesh,
+        shape_mesh: &ShapeMesh,
         chord: f64,
         motion: Option<Motion>,
         settings: &GeometrySettings,
     ) -> Result<(), SceneError> {
         let failed = |problem: String| SceneError::Object { object: object.name.clone(), problem };
-        let ShapeMesh { mesh, surfaces, operand_of, lines } = made;
+        let ShapeMesh { mesh, surfaces, operand_of, lines } = shape_mesh;
         if self.triangles.len() as u64 + mesh.triangles.len() as u64 > MAX_TRIANGLES {
             return Err(SceneError::Limit { what: "triangles", limit: MAX_TRIANGLES });
         }

@@ -18,7 +18,7 @@ pub(super) struct SharedMeshes {
     chords: Vec<f64>,
     /// For each first one how many objects still need its triangles.
     needed: Vec<u32>,
-    made: FxHashMap<u32, Rc<ShapeMesh>>,
+    meshes: FxHashMap<u32, Rc<ShapeMesh>>,
 }
 
 /// The first object with its shape and tolerance.
@@ -50,7 +50,7 @@ impl SharedMeshes {
             first.push(found);
             chords.push(chord);
         }
-        SharedMeshes { first, chords, needed, made: FxHashMap::default() }
+        SharedMeshes { first, chords, needed, meshes: FxHashMap::default() }
     }
 
     /// The tolerance of an object in own coordinates, 0 for flat shapes.
@@ -65,7 +65,7 @@ impl SharedMeshes {
     pub(super) fn mesh_of(&mut self, scene: &Scene, index: u32) -> Result<Rc<ShapeMesh>, SceneError> {
         let (first, object) = (self.first[index as usize], &scene.objects[index as usize]);
         let needed = &mut self.needed[first as usize];
-        let made = match self.made.get(&first) {
+        let made = match self.meshes.get(&first) {
             Some(made) => Rc::clone(made),
             None => {
                 let made = object.tessellate(scene.settings.geometry.tolerance, scene.settings.geometry.angle)?;
@@ -81,8 +81,8 @@ impl SharedMeshes {
         };
         *needed -= 1;
         match *needed {
-            0 => self.made.remove(&first),
-            _ => self.made.insert(first, Rc::clone(&made)),
+            0 => self.meshes.remove(&first),
+            _ => self.meshes.insert(first, Rc::clone(&made)),
         };
         Ok(made)
     }

@@ -44,7 +44,7 @@ impl Scene {
             for (surface, material) in placed.surfaces.iter().zip(of_triangles) {
                 looks[*surface as usize] = metallic_roughness(&materials[material as usize]);
             }
-            whole.looks.extend(looks.into_iter().map(Some));
+            whole.materials.extend(looks.into_iter().map(Some));
         }
         Ok(whole)
     }
@@ -118,7 +118,7 @@ mod tests {
         (can.material, drill.material) = (Some(Material::default()), Some(shine));
         let composite = Composite { operation: Operation::Difference, operands: vec![can.clone(), drill], nesting: 1 };
         let part = Object { shape: Shape::Composite(Box::new(composite)), material: None, ..can };
-        let Grouped { mesh, looks, .. } = Scene { objects: vec![part], ..Scene::default() }.tessellated().unwrap();
+        let Grouped { mesh, materials: looks, .. } = Scene { objects: vec![part], ..Scene::default() }.tessellated().unwrap();
         for (triangle, surface) in mesh.surfaces.iter().enumerate() {
             let is_hole = mesh.corners(triangle).iter().all(|p| p.x.hypot(p.z) < 0.6);
             let look = looks[*surface as usize].unwrap();
@@ -136,7 +136,7 @@ mod tests {
         let can = object("can", Primitive::Cylinder { radius: 1.0, height: 2.0 }, 0.0);
         let ball = object("ball", Primitive::Sphere { radius: 1.0 }, 5.0);
         let scene = Scene { objects: vec![can, ball], ..Scene::default() };
-        let Grouped { mesh, names, looks } = scene.tessellated().unwrap();
+        let Grouped { mesh, names, materials: looks } = scene.tessellated().unwrap();
         assert_eq!(looks, [Some(MetallicRoughness { base: DVec3::splat(0.7), metallic: 0.0, roughness: 1.0 }); 4]);
         assert_eq!(names, ["can/0", "can/1", "can/2", "ball"]);
         for (k, surface) in mesh.surfaces.iter().enumerate() {

@@ -65,7 +65,7 @@ impl Builder {
         }
         for (object, position) in self.objects.iter().zip(&self.positions) {
             if let (Some(object), Some(position)) = (object, position) {
-                scene.places.of.insert(object.name.clone(), *position);
+                scene.origins.of.insert(object.name.clone(), *position);
             }
         }
         scene

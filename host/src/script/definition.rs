@@ -44,14 +44,14 @@ struct DeclaredParameter {
 /// What was given, and what was asked for so far.
 #[derive(Default)]
 pub(super) struct ScriptParameters {
-    given: Vec<ParameterAssignment>,
-    asked: Vec<DeclaredParameter>,
+    assigned: Vec<ParameterAssignment>,
+    declared: Vec<DeclaredParameter>,
 }
 
 impl ScriptParameters {
     /// Nothing asked for yet. Of several definitions of a name the last holds.
     pub(super) fn new(given: &[ParameterAssignment]) -> ScriptParameters {
-        ScriptParameters { given: given.to_vec(), asked: Vec::new() }
+        ScriptParameters { assigned: given.to_vec(), declared: Vec::new() }
     }
 
     /// The value that was given for `name`, of the kind of `default`; without one, `default`.
@@ -59,8 +59,8 @@ impl ScriptParameters {
         if !is_name(name) {
             return Err(format!("name must be letters, digits and underscores, not {name:?}"));
         }
-        if !self.asked.iter().any(|asked| asked.name == name) {
-            if self.asked.len() == MOST_PARAMETERS {
+        if !self.declared.iter().any(|asked| asked.name == name) {
+            if self.declared.len() == MOST_PARAMETERS {
                 return Err(format!("a script has at most {MOST_PARAMETERS} parameters"));
             }
             let text = default.read_lock::<ImmutableString>().map_or(0, |text| text.len());
@@ -71,9 +71,9 @@ impl ScriptParameters {
                 return Err(format!("the {what} of a parameter has at most {MOST_BYTES} bytes"));
             }
             let (name, meaning) = (name.to_owned(), meaning.to_owned());
-            self.asked.push(DeclaredParameter { name, default: default.clone(), meaning });
+            self.declared.push(DeclaredParameter { name, default: default.clone(), meaning });
         }
-        let Some(ParameterAssignment { value, .. }) = self.given.iter().rev().find(|d| d.name == name) else {
+        let Some(ParameterAssignment { value, .. }) = self.assigned.iter().rev().find(|d| d.name == name) else {
             return Ok(default);
         };
         let read = if default.is_bool() {
@@ -90,16 +90,16 @@ impl ScriptParameters {
 
     /// The first definition that the script did not ask for.
     pub(super) fn unknown(&self) -> Option<&ParameterAssignment> {
-        self.given.iter().find(|given| !self.asked.iter().any(|asked| asked.name == given.name))
+        self.assigned.iter().find(|given| !self.declared.iter().any(|asked| asked.name == given.name))
     }
 
     /// What the script asked for, in words.
     pub(super) fn list(&self) -> String {
-        if self.asked.is_empty() {
+        if self.declared.is_empty() {
             return "the script asks for no parameters".into();
         }
         let mut text = String::from("the script asks for");
-        for DeclaredParameter { name, default, meaning } in &self.asked {
+        for DeclaredParameter { name, default, meaning } in &self.declared {
             let colon = if meaning.is_empty() { "" } else { ": " };
             // Writing to a string cannot fail.
             let _ = write!(text, "\n  {name}={default}  {}{colon}{meaning}", kind(default));

@@ -91,7 +91,7 @@ pub fn evaluate(text: &str, name: &str, folder: &Path, inputs: &Inputs) -> Resul
         return Err(ScriptError::Definition { file: name.to_owned(), parameter, value, known });
     }
     let mut scene = state.borrow().finish();
-    scene.places.file = name.to_owned();
+    scene.origins.file = name.to_owned();
     scene.check().map_err(|source| ScriptError::Scene { file: name.to_owned(), source: Box::new(source) })?;
     let printed = printed.take().finish();
     let files = state.borrow().folders.named();

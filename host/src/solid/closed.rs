@@ -22,7 +22,7 @@ pub struct Solid {
     /// Its triangles by place, once someone asked for them.
     sorted: OnceLock<Arc<TriangleBvh>>,
     /// Those that make one face with another, once an operation asked for them.
-    mates: OnceLock<Arc<Vec<u32>>>,
+    quad_partners: OnceLock<Arc<Vec<u32>>>,
 }
 
 impl PartialEq for Solid {
@@ -34,7 +34,7 @@ impl PartialEq for Solid {
 impl Solid {
     /// A mesh that is known to be what a solid has.
     pub(super) fn of(mesh: Mesh) -> Solid {
-        Solid { mesh, sorted: OnceLock::new(), mates: OnceLock::new() }
+        Solid { mesh, sorted: OnceLock::new(), quad_partners: OnceLock::new() }
     }
 
     /// Its surface.
@@ -53,7 +53,7 @@ impl Solid {
     }
 
     pub(super) fn operand(&self) -> Operand<'_> {
-        let mates = self.mates.get_or_init(|| Arc::new(quad_partners(&self.mesh)));
-        Operand { mesh: &self.mesh, sorted: self.sorted(), mates, overlaps: &[] }
+        let mates = self.quad_partners.get_or_init(|| Arc::new(quad_partners(&self.mesh)));
+        Operand { mesh: &self.mesh, sorted: self.sorted(), quad_partners: mates, overlaps: &[] }
     }
 }

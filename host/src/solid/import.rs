@@ -64,7 +64,7 @@ pub fn imported_on_lattice(mesh: Mesh) -> Result<(Solid, Option<SolidError>), So
     if overlaps.is_empty() && sheets == 1 {
         return Ok((solid, None));
     }
-    let Resolution { outcome, is_same, odd } = resolve(solid.mesh(), &overlaps)?;
+    let Resolution { outcome, is_same, improper_winding: odd } = resolve(solid.mesh(), &overlaps)?;
     if let Some((..0, _)) = odd
         && let Some(error) = inside_out(&solid)
     {

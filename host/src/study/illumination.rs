@@ -51,7 +51,8 @@ pub struct IlluminationRow {
     pub shares: Vec<f64>,
     /// The share of an even sky's light that a viewer sees who looks at each of these angles, where that differs: for a
     /// member that is not reciprocal. More than 1 makes light in pictures.
-    pub seen: Option<Vec<f64>>,
+    #[serde(rename = "seen")]
+    pub viewed: Option<Vec<f64>>,
     /// The greatest error that the cubature states for them.
     pub error: f64,
     /// Greatest |f − f'| / (f + f') with light and viewer exchanged; 0 if it is reciprocal.
@@ -106,7 +107,7 @@ fn row(name: &str, roughness: f64, distribution: &dyn Distribution) -> Illuminat
         name: name.to_owned(),
         roughness,
         shares: integrals.iter().map(|integral| integral.value).collect(),
-        seen: seen.map(|seen| seen.iter().map(|integral| integral.value).collect()),
+        viewed: seen.map(|seen| seen.iter().map(|integral| integral.value).collect()),
         error: integrals.iter().chain(seen.iter().flatten()).map(|integral| integral.error).fold(0.0, f64::max),
         reciprocity,
         evaluation,
@@ -123,7 +124,7 @@ impl IlluminationStudy {
 
     /// Names and numbers of the lines of a row: of the emitted shares, and of the seen ones where these differ.
     fn lines(row: &IlluminationRow) -> Vec<(String, Vec<f64>)> {
-        let sides = [(row.name.clone(), Some(&row.shares)), (format!("{}{VIEWED}", row.name), row.seen.as_ref())];
+        let sides = [(row.name.clone(), Some(&row.shares)), (format!("{}{VIEWED}", row.name), row.viewed.as_ref())];
         let rest = [row.error, row.reciprocity, row.evaluation, row.sample];
         let cells = |shares: &Vec<f64>| [row.roughness].into_iter().chain(shares.iter().copied()).chain(rest).collect();
         sides.into_iter().filter_map(|(name, shares)| Some((name, cells(shares?)))).collect()
@@ -180,7 +181,7 @@ impl IlluminationStudy {
                     .collect(),
             };
             let of_row = |row: &IlluminationRow| {
-                let seen = row.seen.as_ref().map(|seen| of_shares(format!("{}{VIEWED}", row.name), seen));
+                let seen = row.viewed.as_ref().map(|seen| of_shares(format!("{}{VIEWED}", row.name), seen));
                 std::iter::once(of_shares(row.name.clone(), &row.shares)).chain(seen).collect::<Vec<_>>()
             };
             Plot {

@@ -31,7 +31,7 @@ struct IntersectionStudy {
     scene: Scene,
     diagonal: f64,
     settings: u32,
-    what: IntersectionParameter,
+    parameter: IntersectionParameter,
 }
 
 /// Makes the study of the tolerance of triangles.
@@ -51,14 +51,14 @@ fn study(scene: &Scene, options: &Options, watch: &Watch<'_>, what: Intersection
         return Err(StudyError::Nothing("no two objects of the scene meet in a curve"));
     }
     let diagonal = Prepared::new(&scene)?.bounds.diagonal();
-    sweep(&IntersectionStudy { scene, diagonal, settings: options.settings.clamp(1, 7), what }, watch)
+    sweep(&IntersectionStudy { scene, diagonal, settings: options.settings.clamp(1, 7), parameter: what }, watch)
 }
 
 impl Knob for IntersectionStudy {
     type Answer = Vec<Intersection>;
 
     fn setting(&self) -> &'static str {
-        match self.what {
+        match self.parameter {
             IntersectionParameter::Triangles => "tolerance of the triangles (scene units)",
             IntersectionParameter::Newton => "Newton tolerance (part of the size)",
         }
@@ -66,7 +66,7 @@ impl Knob for IntersectionStudy {
 
     /// The reference of either is nine times finer than the finest, or what rounding allows.
     fn settings(&self) -> (Vec<f64>, f64) {
-        let setting = |i: u32| match self.what {
+        let setting = |i: u32| match self.parameter {
             IntersectionParameter::Triangles => self.diagonal * COARSEST / STEP.powi(i as i32),
             IntersectionParameter::Newton => LOOSEST * NEWTON_STEP.powi(i as i32),
         };
@@ -75,7 +75,7 @@ impl Knob for IntersectionStudy {
 
     fn run(&self, setting: f64, _: &Watch<'_>) -> Result<Trial<Vec<Intersection>>, StudyError> {
         let mut scene = self.scene.clone();
-        let (tolerance, newton) = match self.what {
+        let (tolerance, newton) = match self.parameter {
             IntersectionParameter::Triangles => (setting, CurvePrecision::default().newton),
             IntersectionParameter::Newton => (self.diagonal * MIDDLE, setting),
         };
@@ -87,8 +87,8 @@ impl Knob for IntersectionStudy {
         let count = |of: fn(&Intersection) -> usize| answer.iter().map(of).sum::<usize>() as f64;
         let counts = vec![
             ("points", count(|found| found.points().count())),
-            ("not accurate", count(|found| found.points().filter(|point| point.failure.is_some()).count())),
-            ("pairs of triangles", count(|found| found.work.pairs)),
+            ("not accurate", count(|found| found.points().filter(|point| point.inaccuracy.is_some()).count())),
+            ("pairs of triangles", count(|found| found.counts.pairs)),
         ];
         Ok(Trial { answer, seconds, counts })
     }

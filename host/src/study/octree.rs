@@ -22,7 +22,7 @@ struct OctreeStudy {
     prepared: Prepared,
     rays: Vec<Ray>,
     settings: u32,
-    what: OctreeParameter,
+    parameter: OctreeParameter,
 }
 
 /// What the rays hit: down the index, and from cell to cell.
@@ -54,11 +54,11 @@ impl OctreeStudy {
             Ray { origin: from, direction: to - from }
         };
         let rays = (0..u64::from(options.width).pow(2)).map(chord).collect();
-        Ok(OctreeStudy { prepared, rays, settings: options.settings.clamp(1, 16), what })
+        Ok(OctreeStudy { prepared, rays, settings: options.settings.clamp(1, 16), parameter: what })
     }
 
     fn reference(&self) -> f64 {
-        match self.what {
+        match self.parameter {
             // All triangles in one leaf.
             OctreeParameter::LeafTriangles => self.prepared.triangles.len() as f64,
             OctreeParameter::Depth => 0.0,
@@ -70,14 +70,14 @@ impl Knob for OctreeStudy {
     type Answer = Hits;
 
     fn setting(&self) -> &'static str {
-        match self.what {
+        match self.parameter {
             OctreeParameter::LeafTriangles => "triangles in a leaf",
             OctreeParameter::Depth => "levels",
         }
     }
 
     fn settings(&self) -> (Vec<f64>, f64) {
-        let tried = (0..self.settings).map(|i| match self.what {
+        let tried = (0..self.settings).map(|i| match self.parameter {
             OctreeParameter::LeafTriangles => 2f64.powi(i as i32),
             OctreeParameter::Depth => f64::from(i) + 1.0,
         });
@@ -90,7 +90,7 @@ impl Knob for OctreeStudy {
             let hits = closest_many(vertices, triangles, &self.rays, 0.0, f64::INFINITY);
             return Ok(Trial { answer: Hits { hits: [hits.clone(), hits] }, seconds: 0.0, counts: Vec::new() });
         }
-        let settings = match self.what {
+        let settings = match self.parameter {
             OctreeParameter::LeafTriangles => OctreeSettings { leaf_triangles: setting as usize, ..OctreeSettings::default() },
             OctreeParameter::Depth => OctreeSettings { depth: setting as u32, ..OctreeSettings::default() },
         };

@@ -167,7 +167,7 @@ fn finer_triangles_bring_lines_nearer_to_the_curve_and_a_finer_iteration_the_poi
 fn the_family_of_distributions_is_measured_and_plotted() {
     let study = illumination(&[0.5], &Watch::NOBODY).expect("a study");
     let row = |name: &str| study.rows.iter().find(|row| row.name == name).expect("a member");
-    let seen: Vec<&str> = study.rows.iter().filter(|row| row.seen.is_some()).map(|row| row.name.as_str()).collect();
+    let seen: Vec<&str> = study.rows.iter().filter(|row| row.viewed.is_some()).map(|row| row.name.as_str()).collect();
     assert_eq!(seen, ["Phong", "Blinn", "improved (7)"], "those that are not reciprocal");
     assert_eq!(study.csv().lines().count(), study.rows.len() + seen.len() + 1);
     assert!(row("Lambert").shares.iter().all(|share| (share - 1.0).abs() < 1e-9));

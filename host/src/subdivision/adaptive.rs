@@ -448,7 +448,7 @@ impl Division {
         let rim = if patch.is_closed {
             SharpRim::default()
         } else {
-            SharpRim { creases: (0..count).map(|k| k + 1 == count).collect(), held: vec![false; count] }
+            SharpRim { creases: (0..count).map(|k| k + 1 == count).collect(), pinned: vec![false; count] }
         };
         let vertex = Face::new(corners, rim);
         let limit = |face: &Rc<Face>| FanCorner::new(face, 0).limit();
@@ -462,16 +462,16 @@ impl Division {
 fn edge_face(first: &FanCorner, second: &FanCorner) -> Rc<Face> {
     let (end, end_beyond) = (first.last(), second.at(1));
     let rims = [&first.face.rim, &second.face.rim];
-    let is_held = rims[0].held.get(end).copied().unwrap_or(false);
+    let is_held = rims[0].pinned.get(end).copied().unwrap_or(false);
     let [a, b, c, d] = [first.here(), first.face.corners[end], second.face.corners[end_beyond], second.here()];
     if is_held {
-        return Face::new(vec![a, b, d], SharpRim { creases: vec![false; 3], held: vec![false, true, false] });
+        return Face::new(vec![a, b, d], SharpRim { creases: vec![false; 3], pinned: vec![false, true, false] });
     }
     // The edge ends at a crease if both faces have a side on it.
     let before_end = first.at(first.face.corners.len() - 2);
     let is_crease = |rim: &SharpRim, side: usize| rim.creases.get(side).copied().unwrap_or(false);
     if is_crease(rims[0], before_end) && is_crease(rims[1], end_beyond) {
-        return Face::new(vec![a, b, c, d], SharpRim { creases: vec![false, true, false, false], held: vec![false; 4] });
+        return Face::new(vec![a, b, c, d], SharpRim { creases: vec![false, true, false, false], pinned: vec![false; 4] });
     }
     Face::new(vec![a, b, c, d], SharpRim::default())
 }

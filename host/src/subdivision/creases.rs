@@ -16,7 +16,7 @@ pub(super) struct Creases<'a> {
     sectors: Vec<Sector>,
     ring: Vec<u32>,
     /// For each vertex how much it is held: 1 where the surface has a corner.
-    pub vertex_hold: Vec<f64>,
+    pub vertex_pinning: Vec<f64>,
     /// The corners of faces that alone fill the angle of a crease: the face is cut there along the crease.
     pub cut: Vec<bool>,
 }
@@ -34,7 +34,7 @@ impl<'a> Creases<'a> {
             .map(|vertex| mesh.vertex_sharpness.get(vertex).map_or(0.0, |sharpness| pinning(*sharpness)))
             .collect();
         let mut creases =
-            Creases { mesh, last: mesh.last(), sectors: Vec::new(), ring: Vec::new(), vertex_hold, cut: Vec::new() };
+            Creases { mesh, last: mesh.last(), sectors: Vec::new(), ring: Vec::new(), vertex_pinning: vertex_hold, cut: Vec::new() };
         creases.find_sectors();
         creases.pin_corners();
         creases
@@ -88,13 +88,13 @@ impl<'a> Creases<'a> {
                 sharpest[end].sort_unstable_by(f64::total_cmp);
             }
         }
-        for (hold, sharpest) in self.vertex_hold.iter_mut().zip(&sharpest) {
+        for (hold, sharpest) in self.vertex_pinning.iter_mut().zip(&sharpest) {
             *hold = hold.max(sharpest[0]);
         }
         self.cut = vec![false; self.mesh.corners.len()];
         for sector in self.sectors.iter().filter(|sector| !sector.is_closed && sector.end - sector.begin == 1) {
             let corner = self.ring[sector.begin];
-            let hold = &mut self.vertex_hold[self.mesh.corners[corner as usize] as usize];
+            let hold = &mut self.vertex_pinning[self.mesh.corners[corner as usize] as usize];
             let [before, behind] = [self.last[corner as usize], corner].map(|side| self.mesh.twins[side as usize]);
             if before == NONE || behind == NONE || self.mesh.next[behind as usize] == before {
                 *hold = 1.0;
@@ -103,7 +103,7 @@ impl<'a> Creases<'a> {
             }
         }
         for (cut, &vertex) in self.cut.iter_mut().zip(&self.mesh.corners) {
-            *cut &= self.vertex_hold[vertex as usize] < 1.0;
+            *cut &= self.vertex_pinning[vertex as usize] < 1.0;
         }
     }
 
@@ -112,7 +112,7 @@ impl<'a> Creases<'a> {
         let next = self.mesh.next[corner as usize];
         let last = self.last[corner as usize];
         let before_last = self.last[last as usize];
-        let hold = |corner: u32| self.vertex_hold[self.mesh.corners[corner as usize] as usize];
+        let hold = |corner: u32| self.vertex_pinning[self.mesh.corners[corner as usize] as usize];
         let sides = [before_last, last, corner, next].map(|side| self.mesh.sharpness(side));
         Pinning::by(sides, [last, corner, next].map(hold))
     }
@@ -143,7 +143,7 @@ impl<'a> Creases<'a> {
         }
         for sector in &self.sectors {
             let corners = &self.ring[sector.begin..sector.end];
-            if self.vertex_hold[self.mesh.corners[corners[0] as usize] as usize] == 1.0 {
+            if self.vertex_pinning[self.mesh.corners[corners[0] as usize] as usize] == 1.0 {
                 corners.windows(2).for_each(|pair| joined.join(pair[0], pair[1]));
             }
         }

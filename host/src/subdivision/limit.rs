@@ -135,7 +135,7 @@ pub(super) struct SharpRim {
     /// Whether the side behind each corner is a crease or a border.
     pub creases: Vec<bool>,
     /// Whether each corner is held.
-    pub held: Vec<bool>,
+    pub pinned: Vec<bool>,
 }
 
 impl SharpRim {
@@ -144,14 +144,14 @@ impl SharpRim {
         let vertex = |corner: u32| creases.mesh.corners[corner as usize] as usize;
         let rim = SharpRim {
             creases: sides.clone().map(|side| creases.is_crease(side)).collect(),
-            held: sides.map(|corner| creases.vertex_hold[vertex(corner)] == 1.0).collect(),
+            pinned: sides.map(|corner| creases.vertex_pinning[vertex(corner)] == 1.0).collect(),
         };
-        if rim.creases.contains(&true) || rim.held.contains(&true) { rim } else { SharpRim::default() }
+        if rim.creases.contains(&true) || rim.pinned.contains(&true) { rim } else { SharpRim::default() }
     }
 
     /// Whether nothing is sharp.
     pub fn is_smooth(&self) -> bool {
-        self.held.is_empty()
+        self.pinned.is_empty()
     }
 
     /// The corners of the face after a step.
@@ -166,7 +166,7 @@ impl SharpRim {
             let [before_last, last, next] = [count - 2, count - 1, 1].map(|shift| (k + shift) % count);
             let one = |is: bool| f64::from(u8::from(is));
             let sides = [before_last, last, k, next].map(|side| one(self.creases[side]));
-            let hold = Pinning::by(sides, [last, k, next].map(|corner| one(self.held[corner])));
+            let hold = Pinning::by(sides, [last, k, next].map(|corner| one(self.pinned[corner])));
             *new = held(corners, k, hold, *new);
         }
         new
@@ -174,12 +174,12 @@ impl SharpRim {
 
     /// Where its corners shrink to; not of a smooth face.
     pub fn attractors(&self) -> Attractors {
-        let count = self.held.len();
+        let count = self.pinned.len();
         let mut targets: Vec<Target> =
-            (0..count).map(|k| if self.held[k] { Target::Corner(k) } else { Target::Free }).collect();
+            (0..count).map(|k| if self.pinned[k] { Target::Corner(k) } else { Target::Free }).collect();
         for k in (0..count).filter(|&k| self.creases[k]) {
             let after = (k + 1) % count;
-            match (self.held[k], self.held[after]) {
+            match (self.pinned[k], self.pinned[after]) {
                 (true, true) => {}
                 (true, false) => targets[after] = Target::Corner(k),
                 (false, true) => targets[k] = Target::Corner(after),

@@ -14,7 +14,7 @@ pub(super) struct Rings {
     /// For each ring where it begins in `corners`, and last the length of that.
     pub starts: Vec<u32>,
     /// For each corner its place in `corners`.
-    pub places: Vec<u32>,
+    pub ring_indices: Vec<u32>,
 }
 
 impl Rings {
@@ -23,11 +23,11 @@ impl Rings {
         let mut rings = Rings {
             corners: vec![0; count],
             starts: Vec::with_capacity(mesh.points.len() + 1),
-            places: vec![u32::MAX; count],
+            ring_indices: vec![u32::MAX; count],
         };
         let mut begin = 0;
         for first in 0..count as u32 {
-            if rings.places[first as usize] != u32::MAX {
+            if rings.ring_indices[first as usize] != u32::MAX {
                 continue;
             }
             rings.starts.push(begin);
@@ -35,7 +35,7 @@ impl Rings {
             let mut corner = first;
             loop {
                 rings.corners[end as usize] = corner;
-                rings.places[corner as usize] = end;
+                rings.ring_indices[corner as usize] = end;
                 end += 1;
                 // Clockwise, which needs no search for the side before.
                 corner = mesh.next[mesh.twins[corner as usize] as usize];
@@ -46,7 +46,7 @@ impl Rings {
             let ring = &mut rings.corners[begin as usize..end as usize];
             ring[1..].reverse();
             for (place, &corner) in (begin..).zip(&*ring) {
-                rings.places[corner as usize] = place;
+                rings.ring_indices[corner as usize] = place;
             }
             begin = end;
         }

@@ -40,7 +40,7 @@ pub(super) fn refined(mesh: &Polyhedron) -> Polyhedron {
         let twin = mesh.twins[side as usize];
         let [after_side, after_twin] = [side, twin].map(|h| mesh.next[h as usize]);
         let first = count + 4 * edge as u32;
-        let [at_end, at_start] = [after_twin, after_side].map(|h| vertex_corners + rings.places[h as usize]);
+        let [at_end, at_start] = [after_twin, after_side].map(|h| vertex_corners + rings.ring_indices[h as usize]);
         corners.copy_from_slice(&[after_side, side, after_twin, twin]);
         next.copy_from_slice(&[first + 1, first + 2, first + 3, first]);
         twins.copy_from_slice(&[side, at_end, twin, at_start]);

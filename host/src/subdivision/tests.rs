@@ -394,7 +394,7 @@ fn tessellation_keeps_the_tolerance_without_cracks() {
     let open = assert_within(&sheet(5, 4), 0.003, 4);
     // One closed border and a disk.
     let report = open.edge_report();
-    assert_eq!((report.crowded, report.misoriented), (0, 0));
+    assert_eq!((report.non_manifold, report.misoriented), (0, 0));
     assert_eq!(open.vertices.len() + open.triangles.len() - report.edges, 1);
 }
 

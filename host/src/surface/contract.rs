@@ -63,8 +63,8 @@ fn swept() -> Vec<(&'static str, Box<dyn Surface>)> {
     let edge = [DVec2::new(-0.4, 0.1), DVec2::new(0.3, -0.2)];
     let part = |widening: TwistAndTaper| Box::new(Swept::new(Arc::clone(&spine), widening, edge, [0.0, 1.0]));
     vec![
-        ("swept edge", part(TwistAndTaper { turns: 0.0, scale: 1.0 }) as Box<dyn Surface>),
-        ("twisted and tapered edge", part(TwistAndTaper { turns: 0.4, scale: 0.0 })),
+        ("swept edge", part(TwistAndTaper { twist_turns: 0.0, scale: 1.0 }) as Box<dyn Surface>),
+        ("twisted and tapered edge", part(TwistAndTaper { twist_turns: 0.4, scale: 0.0 })),
     ]
 }
 

@@ -203,7 +203,7 @@ fn joined_surfaces_have_no_crack() {
     let [a, b] = joined(&bbb_surface(1.0), &neighbour(1.0), [HighU, LowU], Smoothness::G1).unwrap();
     let patches = [a.patches(), b.patches()].concat();
     let report = tessellate(&patches, Tolerance::new(0.01, 180.0)).unwrap().edge_report();
-    assert_eq!((report.crowded, report.misoriented, report.euler_characteristic()), (0, 0, 1));
+    assert_eq!((report.non_manifold, report.misoriented, report.euler_characteristic()), (0, 0, 1));
 }
 
 /// Surfaces that are hard to tessellate.
@@ -242,7 +242,7 @@ fn spline_surfaces_are_tessellated_within_the_tolerance_without_cracks() {
             assert_eq!(surfaces[0], surfaces[1], "{name}");
             for (mesh, least) in meshes.iter().zip([0.1, 0.3]) {
                 let report = mesh.edge_report();
-                assert_eq!((report.crowded, report.misoriented, report.collapsed), (0, 0, 0), "{name}");
+                assert_eq!((report.non_manifold, report.misoriented, report.collapsed), (0, 0, 0), "{name}");
                 let error =
                     chord_error(mesh, patches, if mesh.triangles.len() < 3000 { 3 } else { 1 }).unwrap().maximum;
                 assert!(error <= chord, "{name}: {} of {chord}", error / chord);
@@ -287,7 +287,7 @@ fn the_teapot_has_no_cracks_when_refined_where_it_bends() {
         let patches = teapot();
         let mesh = tessellate_adaptively(&patches, Tolerance::new(chord, 180.0)).unwrap();
         let report = mesh.edge_report();
-        assert_eq!((report.crowded, report.misoriented, report.collapsed), (0, 0, 0));
+        assert_eq!((report.non_manifold, report.misoriented, report.collapsed), (0, 0, 0));
         assert_eq!(report.euler_characteristic(), 2 - 1);
         assert!(mesh.with_holes_filled().is_closed());
         let error = chord_error(&mesh, &patches, 3).unwrap().maximum;
@@ -300,7 +300,7 @@ fn normals_follow_the_angle_also_where_the_bend_is_sharp() {
     for (name, surface) in hard().into_iter().filter(|(name, _)| !name.contains("1000000")) {
         let mesh = tessellate_adaptively(surface.patches(), Tolerance::new(10.0, 25.0)).unwrap();
         let report = mesh.edge_report();
-        assert_eq!((report.crowded, report.misoriented), (0, 0), "{name}");
+        assert_eq!((report.non_manifold, report.misoriented), (0, 0), "{name}");
         let sharp = (0..mesh.triangles.len()).filter(|&triangle| {
             let (n, p) = (mesh.corner_normals[triangle], mesh.corners(triangle));
             let pairs = [(0, 1), (1, 2), (2, 0)];

@@ -16,7 +16,7 @@ const STATIONS: usize = 32;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwistAndTaper {
     /// How far it has turned about the curve at the end, from x towards y; turns.
-    pub turns: f64,
+    pub twist_turns: f64,
     /// How much wider it is at the end than at the beginning, 0 or more.
     pub scale: f64,
 }
@@ -116,7 +116,7 @@ impl Spine {
     fn axes(&self, widening: TwistAndTaper, t: f64) -> [DVec3; 2] {
         let Frame { along, x, .. } = self.frame(t);
         let y = along.cross(x);
-        let [sine, cosine] = sine_and_cosine((widening.turns + self.closing) * self.fraction(t));
+        let [sine, cosine] = sine_and_cosine((widening.twist_turns + self.closing) * self.fraction(t));
         [x * cosine + y * sine, y * cosine - x * sine]
     }
 
@@ -129,7 +129,7 @@ impl Spine {
         let scale = between(1.0, widening.scale, self.fraction(t));
         let offset = x * point.x + y * point.y;
         let rate = 1.0 / (high - low);
-        let turning = (widening.turns + self.closing) * TAU * rate * scale;
+        let turning = (widening.twist_turns + self.closing) * TAU * rate * scale;
         let first = self.curve.derivatives(t)[0];
         let carried = first * (1.0 - self.bend_in_space(t).dot(offset) * scale);
         let by_t = carried + offset * ((widening.scale - 1.0) * rate) + (y * point.x - x * point.y) * turning;

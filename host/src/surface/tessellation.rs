@@ -140,19 +140,19 @@ impl SegmentEstimate {
 /// The segments that the directions u and v of a surface take by a first look, not rounded; `None` if a point is not
 /// finite.
 pub(super) fn estimated_segments<S: Surface>(surface: &S, tolerance: Tolerance) -> Option<[f64; 2]> {
-    estimate(surface).map(|looks| looks.map(|look| look.segments(tolerance)))
+    estimate(surface).map(|estimates| estimates.map(|look| look.segments(tolerance)))
 }
 
 impl Grids {
     fn fitted<S: Surface>(surfaces: &[S], borders: &SharedCurves, tolerance: Tolerance) -> Result<Grids, TessellationError> {
-        let looks: Vec<Option<[SegmentEstimate; 2]>> = surfaces.par_iter().map(estimate).collect();
-        if let Some(surface) = looks.iter().position(Option::is_none) {
+        let estimates: Vec<Option<[SegmentEstimate; 2]>> = surfaces.par_iter().map(estimate).collect();
+        if let Some(surface) = estimates.iter().position(Option::is_none) {
             return Err(TessellationError::NotFinite { surface });
         }
-        let looks: Vec<[SegmentEstimate; 2]> = looks.into_iter().flatten().collect();
+        let looks: Vec<[SegmentEstimate; 2]> = estimates.into_iter().flatten().collect();
         let mut grids = Grids { strips: borders.strips(), segments: vec![1; borders.first.len()] };
-        for (surface, looks) in looks.iter().enumerate() {
-            for (axis, look) in looks.iter().enumerate() {
+        for (surface, estimates) in looks.iter().enumerate() {
+            for (axis, look) in estimates.iter().enumerate() {
                 // Where the sides across are one curve, the direction goes around: less than a triangle would be flat.
                 let [from, to] = [2 - 2 * axis, 3 - 2 * axis].map(|side| borders.sides[surface][side].curve);
                 let least = if from == to { 3.0 } else { 1.0 };
@@ -167,7 +167,7 @@ impl Grids {
         &mut self,
         surfaces: &[S],
         borders: &SharedCurves,
-        looks: &[[SegmentEstimate; 2]],
+        estimates: &[[SegmentEstimate; 2]],
         chord: f64,
     ) -> Result<(), TessellationError> {
         let mut known: Vec<([usize; 2], f64)> = vec![([0; 2], 0.0); surfaces.len()];
@@ -182,7 +182,7 @@ impl Grids {
             let errors = known.iter().enumerate().filter(|(_, (_, error))| *error > MEASURED_PART * chord);
             for (surface, &(counts, error)) in errors {
                 fits = false;
-                let part = |axis: usize| looks[surface][axis].sagitta / (counts[axis] * counts[axis]) as f64;
+                let part = |axis: usize| estimates[surface][axis].sagitta / (counts[axis] * counts[axis]) as f64;
                 for axis in [0, 1] {
                     // A direction that has no share in the error is left alone.
                     if part(axis) >= 0.05 * part(1 - axis) {
@@ -227,8 +227,8 @@ fn grid_uv([low, high]: [DVec2; 2], counts: [usize; 2], i: usize, j: usize) -> D
 /// A first look at both directions; `None` if a point is not finite.
 fn estimate<S: Surface>(surface: &S) -> Option<[SegmentEstimate; 2]> {
     let domain = surface.domain();
-    let mut looks = [SegmentEstimate { sagitta: 0.0, turn: 0.0 }; 2];
-    for (axis, look) in looks.iter_mut().enumerate() {
+    let mut estimates = [SegmentEstimate { sagitta: 0.0, turn: 0.0 }; 2];
+    for (axis, look) in estimates.iter_mut().enumerate() {
         for line in 0..ESTIMATE_LINES {
             // Points at the ends and middles of the segments of one parameter line.
             let sample = |k: usize| {
@@ -257,7 +257,7 @@ fn estimate<S: Surface>(surface: &S) -> Option<[SegmentEstimate; 2]> {
             }
         }
     }
-    Some(looks)
+    Some(estimates)
 }
 
 /// Whether a quad with the corners 00, 10, 11, 01 is cut from 10 to 01: if that is clearly nearer to the surface than the
@@ -434,7 +434,7 @@ mod tests {
         for chord in [0.1, 0.01, 0.001, 0.0001] {
             let mesh = ball(chord);
             let report = mesh.edge_report();
-            assert!(report.is_closed() && report.collapsed + report.slivers == 0 && report.euler_characteristic() == 2);
+            assert!(report.is_closed() && report.collapsed + report.degenerate == 0 && report.euler_characteristic() == 2);
             let (lost_area, lost_volume) = (1.0 - mesh.area() / area, 1.0 - mesh.signed_volume() / volume);
             // A shell as thick as the chord around the inscribed ball bounds the lost volume.
             assert!(lost_volume > 0.0 && lost_volume < 3.0 * chord / 2.0, "{lost_volume} for {chord}");
@@ -483,7 +483,7 @@ mod tests {
         for chord in [0.05, 0.01, 0.002] {
             let mesh = tessellate(&teapot(), Tolerance::new(chord, 30.0)).unwrap();
             let report = mesh.edge_report();
-            assert_eq!((report.crowded, report.misoriented, report.collapsed, report.slivers), (0, 0, 0, 0));
+            assert_eq!((report.non_manifold, report.misoriented, report.collapsed, report.degenerate), (0, 0, 0, 0));
             // Two discs (body with rim, lid) and two tubes (handle, spout); the handle touches the body in one vertex.
             assert_eq!(report.euler_characteristic(), 2 - 1);
             assert_eq!(mesh.welded().vertices.len(), mesh.vertices.len());

@@ -21,8 +21,8 @@ const QUIT_TIME: Duration = Duration::from_secs(2);
 #[derive(Debug)]
 pub struct Emulator {
     child: Child,
-    orders: mpsc::Sender<String>,
-    patience: Timeouts,
+    commands: mpsc::Sender<String>,
+    timeouts: Timeouts,
     replies: mpsc::Receiver<String>,
     line: Address,
     has_window: bool,
@@ -39,7 +39,7 @@ impl Emulator {
     ///
     /// # Errors
     /// [`WorkstationError::Start`] names the program.
-    pub fn start(patience: Timeouts, files: &Path, window: bool) -> Result<Emulator, WorkstationError> {
+    pub fn start(timeouts: Timeouts, files: &Path, window: bool) -> Result<Emulator, WorkstationError> {
         let program = program();
         let error = |e: std::io::Error| WorkstationError::Start { program: program.clone(), reason: e.to_string() };
         let mut child = Command::new(&program)
@@ -57,7 +57,7 @@ impl Emulator {
             return Err(error(std::io::ErrorKind::BrokenPipe.into()));
         };
         let (orders, replies) = (write_lines(orders), read_lines(replies));
-        let line = match until_ready(&replies, patience.attach) {
+        let line = match until_ready(&replies, timeouts.attach) {
             Ok(line) => line,
             Err(reason) => {
                 // Nobody else would end it while this process lives.
@@ -66,7 +66,7 @@ impl Emulator {
                 return Err(error(std::io::Error::other(reason)));
             }
         };
-        Ok(Emulator { child, orders, patience, replies, line, has_window: window })
+        Ok(Emulator { child, commands: orders, timeouts, replies, line, has_window: window })
     }
 
     /// Where its host line is.
@@ -103,11 +103,11 @@ impl Emulator {
     /// [`Patience::order`], [`WorkstationError::Ended`] if the process is gone.
     pub fn operator_command(&mut self, order: &str) -> Result<String, WorkstationError> {
         self.send_operator_command(order)?;
-        match self.replies.recv_timeout(self.patience.order) {
+        match self.replies.recv_timeout(self.timeouts.operator_command) {
             Ok(reply) => understood(order, &reply),
             Err(mpsc::RecvTimeoutError::Disconnected) => Err(WorkstationError::Ended),
             Err(mpsc::RecvTimeoutError::Timeout) => {
-                let seconds = self.patience.order.as_secs();
+                let seconds = self.timeouts.operator_command.as_secs();
                 Err(WorkstationError::Timeout { what: format!("the reply to '{order}'"), seconds })
             }
         }
@@ -117,8 +117,8 @@ impl Emulator {
     ///
     /// # Errors
     /// [`WorkstationError::Ended`] if the process is gone.
-    pub fn send_operator_command(&mut self, order: &str) -> Result<(), WorkstationError> {
-        self.orders.send(order.into()).map_err(|_| WorkstationError::Ended)
+    pub fn send_operator_command(&mut self, command: &str) -> Result<(), WorkstationError> {
+        self.commands.send(command.into()).map_err(|_| WorkstationError::Ended)
     }
 
     /// The next reply line, if it is there.
@@ -154,12 +154,12 @@ fn until_ready(said: &mpsc::Receiver<String>, patience: Duration) -> Result<Addr
 }
 
 /// A reply without its `ok`.
-fn understood(order: &str, reply: &str) -> Result<String, WorkstationError> {
+fn understood(command: &str, reply: &str) -> Result<String, WorkstationError> {
     match reply.strip_prefix("ok") {
         Some(text) => Ok(text.trim_start().to_string()),
         None => {
             let reason = reply.strip_prefix("error ").unwrap_or(reply).to_string();
-            Err(WorkstationError::OperatorCommand { order: order.to_string(), reason })
+            Err(WorkstationError::OperatorCommand { command: command.to_string(), reason })
         }
     }
 }
@@ -192,7 +192,7 @@ fn write_lines(mut to: impl Write + Send + 'static) -> mpsc::Sender<String> {
 
 impl Drop for Emulator {
     fn drop(&mut self) {
-        let _ = self.orders.send("quit".into());
+        let _ = self.commands.send("quit".into());
         let end = Instant::now() + QUIT_TIME;
         while Instant::now() < end {
             match self.child.try_wait() {

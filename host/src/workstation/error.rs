@@ -48,10 +48,10 @@ pub enum WorkstationError {
     #[error("the workstation process ended")]
     Ended,
     /// An order to the operator line was refused.
-    #[error("the workstation's operator line refused '{order}': {reason}")]
+    #[error("the workstation's operator line refused '{command}': {reason}")]
     OperatorCommand {
         /// The order, as it was sent.
-        order: String,
+        command: String,
         /// What is wrong, in words.
         reason: String,
     },

@@ -10,7 +10,7 @@ pub struct Timeouts {
     /// Until it answers, or reads more of what is sent.
     pub answer: Duration,
     /// Until an order of its operator is carried out.
-    pub order: Duration,
+    pub operator_command: Duration,
 }
 
 impl Timeouts {
@@ -19,13 +19,13 @@ impl Timeouts {
     /// - `seconds`: 1 and above.
     pub fn of(seconds: u32) -> Timeouts {
         let time = Duration::from_secs(seconds.into());
-        Timeouts { attach: time, answer: time, order: time }
+        Timeouts { attach: time, answer: time, operator_command: time }
     }
 }
 
 impl Default for Timeouts {
     fn default() -> Timeouts {
         let [attach, answer, order] = [30, 30, 120].map(Duration::from_secs);
-        Timeouts { attach, answer, order }
+        Timeouts { attach, answer, operator_command: order }
     }
 }

@@ -54,26 +54,26 @@ impl Line for UnixStream {
 /// A wait for something from the workstation.
 struct Wait<'a> {
     what: &'a str,
-    patience: Duration,
+    timeout: Duration,
     end: Instant,
 }
 
 impl<'a> Wait<'a> {
-    fn begin(what: &'a str, patience: Duration) -> Wait<'a> {
-        Wait { what, patience, end: Instant::now() + patience }
+    fn begin(what: &'a str, timeout: Duration) -> Wait<'a> {
+        Wait { what, timeout, end: Instant::now() + timeout }
     }
 
     /// The time that is left.
     fn left(&self) -> Result<Duration, WorkstationError> {
         let left = self.end.checked_duration_since(Instant::now()).filter(|time| !time.is_zero());
-        left.ok_or_else(|| WorkstationError::Timeout { what: self.what.into(), seconds: self.patience.as_secs() })
+        left.ok_or_else(|| WorkstationError::Timeout { what: self.what.into(), seconds: self.timeout.as_secs() })
     }
 }
 
 /// An attached workstation.
 pub struct Session {
     line: Box<dyn Line>,
-    patience: Timeouts,
+    timeouts: Timeouts,
     out: Vec<u8>,
     reader: MessageReader,
     messages: VecDeque<Vec<u8>>,
@@ -94,20 +94,20 @@ impl Session {
     ///
     /// # Errors
     /// [`WorkstationError::Attach`], [`WorkstationError::Closed`].
-    pub fn attach(address: &Address, patience: Timeouts) -> Result<Session, WorkstationError> {
+    pub fn attach(address: &Address, timeouts: Timeouts) -> Result<Session, WorkstationError> {
         let failed = |reason: String| WorkstationError::Attach { line: address.clone(), reason };
         let (sender, opened) = mpsc::channel();
         let target = address.clone();
         // The system looks names up, and waits for those who listen and do not accept, without limits of ours.
         thread::spawn(move || sender.send(open(&target)));
-        let line = opened.recv_timeout(patience.attach).map_err(|_| {
-            failed(format!("no answer within {} s (--patience gives it more time)", patience.attach.as_secs()))
+        let line = opened.recv_timeout(timeouts.attach).map_err(|_| {
+            failed(format!("no answer within {} s (--patience gives it more time)", timeouts.attach.as_secs()))
         })?;
         let line = line.map_err(|e| failed(e.to_string()))?;
-        line.set_write_timeout(patience.answer).map_err(|e| failed(e.to_string()))?;
+        line.set_write_timeout(timeouts.answer).map_err(|e| failed(e.to_string()))?;
         let mut session = Session {
             line,
-            patience,
+            timeouts,
             out: Vec::new(),
             reader: MessageReader::default(),
             messages: VecDeque::new(),
@@ -122,7 +122,7 @@ impl Session {
 
     /// How long the workstation may take.
     pub fn timeouts(&self) -> Timeouts {
-        self.patience
+        self.timeouts
     }
 
     /// Sends commands in binary form.
@@ -164,7 +164,7 @@ impl Session {
         written.map_err(|error| match error.kind() {
             io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut => {
                 let what = "it to read what is sent".to_string();
-                WorkstationError::Timeout { what, seconds: self.patience.answer.as_secs() }
+                WorkstationError::Timeout { what, seconds: self.timeouts.answer.as_secs() }
             }
             _ => closed(error),
         })
@@ -174,8 +174,8 @@ impl Session {
     ///
     /// # Errors
     /// [`WorkstationError::Silent`] if none comes within `patience`, [`WorkstationError::Closed`].
-    pub fn message(&mut self, patience: Duration, what: &str) -> Result<Vec<u8>, WorkstationError> {
-        self.next(&Wait::begin(what, patience))
+    pub fn message(&mut self, timeout: Duration, what: &str) -> Result<Vec<u8>, WorkstationError> {
+        self.next(&Wait::begin(what, timeout))
     }
 
     /// The next message within the time of a wait.
@@ -215,7 +215,7 @@ impl Session {
         let mark = format!("PERIS MARK {}", self.marks);
         self.commands(&[network::send(Value::string(&mark), 1, "HOST_MESSAGE")])?;
         let mut others = VecDeque::new();
-        let wait = Wait::begin("the end of what was sent", self.patience.answer);
+        let wait = Wait::begin("the end of what was sent", self.timeouts.answer);
         let result = loop {
             match self.next(&wait) {
                 Ok(message) if message == mark.as_bytes() => break Ok(()),
@@ -239,7 +239,7 @@ impl Session {
         self.commands(&network::request_view())?;
         let mut lines = Vec::new();
         let mut others = VecDeque::new();
-        let wait = Wait::begin("the matrix of the view", self.patience.answer);
+        let wait = Wait::begin("the matrix of the view", self.timeouts.answer);
         while lines.len() < 5 {
             let message = self.next(&wait)?;
             if lines.is_empty() && !message.starts_with(b"MATRIX_4X4") {

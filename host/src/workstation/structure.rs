@@ -117,45 +117,45 @@ pub fn with_light(
     light: Option<&Tiling>,
 ) -> Result<StructureCommands, WorkstationError> {
     let camera = &initial.camera;
-    let mut shown = StructureCommands { depth_clipping: camera.far.is_some() || camera.near > 0.0, ..StructureCommands::default() };
+    let mut out = StructureCommands { depth_clipping: camera.far.is_some() || camera.near > 0.0, ..StructureCommands::default() };
     let angle = scene.settings.geometry.angle;
     let objects: Result<Vec<Vec<MaterialPart>>, WorkstationError> = (1..)
         .zip(&scene.objects)
-        .map(|(number, object)| data(number, object, angle, camera, drawing, &mut shown))
+        .map(|(number, object)| data(number, object, angle, camera, drawing, &mut out))
         .collect();
-    let shaded = if drawing.facets { shown.points } else { light.map_or(0, Tiling::corners) };
+    let shaded = if drawing.facets { out.points } else { light.map_or(0, Tiling::corners) };
     if shaded > 0 {
         let bytes = u32::try_from(shaded as u64 * BYTES_PER_VERTEX).unwrap_or(u32::MAX);
-        shown.commands.push(Command::ReserveWorkingStorage(bytes));
+        out.commands.push(Command::ReserveWorkingStorage(bytes));
     }
-    begin(&mut shown.commands, ROOT);
-    view(&mut shown.commands, initial, bounds, shown.depth_clipping);
+    begin(&mut out.commands, ROOT);
+    view(&mut out.commands, initial, bounds, out.depth_clipping);
     if drawing.facets {
-        operate(&mut shown.commands, Some("SHADE"), Operate::SurfaceRendering);
+        operate(&mut out.commands, Some("SHADE"), Operate::SurfaceRendering);
         let lights = facets::illumination(&scene.lights, bounds.center());
         let lights = lights.into_iter().map(|light| Command::Define { name: None, object: Node::Illumination(light) });
-        shown.commands.extend(lights);
+        out.commands.extend(lights);
     }
     for (number, parts) in (1..).zip(objects?) {
-        begin(&mut shown.commands, &format!("O{number}"));
+        begin(&mut out.commands, &format!("O{number}"));
         for (k, MaterialPart { material, data }) in (1..).zip(parts) {
             // The colour of vectors has no value: brightness comes from the intensity.
             let [hue, saturation] = facets::hue_saturation(facets::main_color(&material));
-            operate(&mut shown.commands, None, Operate::SetColor { hue, saturation });
+            operate(&mut out.commands, None, Operate::SetColor { hue, saturation });
             let node = if k == 1 { "D".to_owned() } else { format!("D{k}") };
-            shown.commands.push(Command::Define { name: Some(name(&node)), object: data });
+            out.commands.push(Command::Define { name: Some(name(&node)), object: data });
         }
-        shown.commands.push(Command::EndStructure);
+        out.commands.push(Command::EndStructure);
     }
     if let Some(light) = light {
-        operate(&mut shown.commands, None, Operate::SetDisplays { scopes: Scopes::All, on: false });
-        operate(&mut shown.commands, Some("SHADE"), Operate::SurfaceRendering);
+        operate(&mut out.commands, None, Operate::SetDisplays { scopes: Scopes::All, on: false });
+        operate(&mut out.commands, Some("SHADE"), Operate::SurfaceRendering);
         let polygons = tiles::polygons(light)?;
-        shown.commands.extend(polygons.into_iter().map(|object| Command::Define { name: None, object }));
+        out.commands.extend(polygons.into_iter().map(|object| Command::Define { name: None, object }));
     }
-    shown.commands.push(Command::EndStructure);
-    shown.commands.push(Command::Display(name(ROOT)));
-    Ok(shown)
+    out.commands.push(Command::EndStructure);
+    out.commands.push(Command::Display(name(ROOT)));
+    Ok(out)
 }
 
 fn begin(commands: &mut Vec<Command>, structure: &str) {
@@ -237,7 +237,7 @@ fn data(
     angle: f64,
     camera: &Camera,
     drawing: &Drawing,
-    shown: &mut StructureCommands,
+    out: &mut StructureCommands,
 ) -> Result<Vec<MaterialPart>, WorkstationError> {
     let failed = |e: String| WorkstationError::Scene(format!("{}: {e}", object.name));
     let chord = drawing.tolerance * object.shape.extent().unwrap_or(1.0);
@@ -260,7 +260,7 @@ fn data(
             first.extend(lines);
         }
         let part = |(material, runs): (Material, &Polylines)| {
-            let data = vectors(runs, shown).map(Node::VectorList).map_err(failed)?;
+            let data = vectors(runs, out).map(Node::VectorList).map_err(failed)?;
             Ok(MaterialPart { material, data })
         };
         return materials.into_iter().zip(&runs).map(part).collect();
@@ -270,11 +270,11 @@ fn data(
     let groups = facets::polygons(&mesh, &selection, &material_of, &surfaces).map_err(failed)?;
     for (surface, material) in surfaces.iter().zip(&materials) {
         let attributes = Node::Attributes(facets::attributes(material));
-        shown.commands.push(Command::Define { name: Some(name(surface)), object: attributes });
+        out.commands.push(Command::Define { name: Some(name(surface)), object: attributes });
     }
     let corners = 3 * groups.iter().map(Vec::len).sum::<usize>();
-    shown.points += corners;
-    shown.lines += corners;
+    out.points += corners;
+    out.lines += corners;
     Ok(materials
         .into_iter()
         .zip(groups)
@@ -283,7 +283,7 @@ fn data(
 }
 
 /// Runs of lines in scene coordinates.
-fn vectors(runs: &Polylines, shown: &mut StructureCommands) -> Result<VectorList, String> {
+fn vectors(runs: &Polylines, out: &mut StructureCommands) -> Result<VectorList, String> {
     let mut list = VectorList {
         block_normalized: false,
         fourth: protocol::command::Fourth::Intensity,
@@ -304,8 +304,8 @@ fn vectors(runs: &Polylines, shown: &mut StructureCommands) -> Result<VectorList
             list.lines.push(i > 0);
         }
     }
-    shown.lines += runs.lines();
-    shown.points += list.points.len();
+    out.lines += runs.lines();
+    out.points += list.points.len();
     Ok(list)
 }
 
@@ -340,10 +340,10 @@ mod tests {
     fn colored(drawing: &Drawing) -> Vec<(f64, String, usize)> {
         let bounds = Bounds::of([DVec3::splat(-2.0), DVec3::splat(2.0)]);
         let initial = InitialView { camera: Camera::framing(&bounds), center: bounds.center(), elongation: 1.0 };
-        let shown = commands(&drilled(), &initial, &bounds, drawing).unwrap();
+        let out = commands(&drilled(), &initial, &bounds, drawing).unwrap();
         let mut found = Vec::new();
         let mut hue_now = f64::NAN;
-        for command in &shown.commands {
+        for command in &out.commands {
             let Command::Define { name, object } = command else { continue };
             let named = name.as_ref().map(ToString::to_string).unwrap_or_default();
             match object {

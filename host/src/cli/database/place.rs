@@ -45,11 +45,11 @@ impl RecordAddress {
 }
 
 /// The kind of a record; an error that lists the kinds, if there are several, or the names, if there is none.
-pub(super) fn kind_of(place: &RecordAddress) -> Result<RecordKind, CommandFailure> {
-    if let Some(kind) = place.kind {
+pub(super) fn kind_of(address: &RecordAddress) -> Result<RecordKind, CommandFailure> {
+    if let Some(kind) = address.kind {
         return Ok(kind);
     }
-    let names = match place.file() {
+    let names = match address.file() {
         Some(file) => {
             let store = Store::open(file)?;
             RecordKind::ALL.map(|kind| store.names(kind))
@@ -59,7 +59,7 @@ pub(super) fn kind_of(place: &RecordAddress) -> Result<RecordKind, CommandFailur
     let (mut kinds, mut known) = (Vec::new(), Vec::new());
     for (kind, names) in RecordKind::ALL.into_iter().zip(names) {
         let names: Vec<String> = names?;
-        if names.contains(&place.name) {
+        if names.contains(&address.name) {
             kinds.push(kind);
         }
         known.extend(names);
@@ -70,12 +70,12 @@ pub(super) fn kind_of(place: &RecordAddress) -> Result<RecordKind, CommandFailur
         [kind] => Ok(kind),
         [] => {
             let known: Vec<&str> = known.iter().map(String::as_str).collect();
-            let advice = spelling::advice(&place.name, &known);
-            Err(DatabaseError::Unknown { kind: "record".into(), name: place.name.clone(), advice }.into())
+            let advice = spelling::advice(&address.name, &known);
+            Err(DatabaseError::Unknown { kind: "record".into(), name: address.name.clone(), advice }.into())
         }
         _ => {
             let kinds: Vec<String> = kinds.iter().map(|kind| format!("--kind {kind}")).collect();
-            let message = format!("there are several records \"{}\"; say {}", place.name, kinds.join(" or "));
+            let message = format!("there are several records \"{}\"; say {}", address.name, kinds.join(" or "));
             Err(CommandFailure::new(Exit::Usage, anyhow::anyhow!(message)))
         }
     }

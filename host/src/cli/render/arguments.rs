@@ -173,12 +173,12 @@ impl RenderArguments {
         let given = [
             ("--error", self.error.is_some()),
             ("--seconds", self.seconds.is_some()),
-            ("--resume", self.resume.is_some() && !row.solves),
+            ("--resume", self.resume.is_some() && !row.solves_radiosity),
             ("--pixel", self.pixel.is_some()),
             ("--denoise", self.denoise),
         ];
         let message = match given.iter().find(|(_, given)| *given) {
-            _ if self.light.is_some() && !row.follows_light => "--light is of two-way ray tracing only".to_owned(),
+            _ if self.light.is_some() && !row.can_map_photons => "--light is of two-way ray tracing only".to_owned(),
             Some((name, _)) if !row.adds_samples => {
                 format!("{} has no {name}: it takes all samples at once", row.word)
             }

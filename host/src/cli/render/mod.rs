@@ -78,7 +78,7 @@ fn run(arguments: &RenderArguments) -> Result<(), CommandFailure> {
     if let (true, Some(state), Some(fingerprint)) = (row.adds_samples, &state, fingerprint) {
         all.saved = Some(Saved::read(arguments, every, state, fingerprint, &order)?);
     }
-    let task = Task { prepared: &prepared, plan: &plan, shelf: shelf.as_ref(), watch };
+    let task = Task { prepared: &prepared, plan: &plan, photon_store: shelf.as_ref(), watch };
     let PreparedRenderer { renderer, radiosity } = in_pool(arguments, || arguments.renderer.prepare(&task))?;
     all.radiosity = radiosity;
     if let (Some(pixel), AnyRenderer::BySamples(tracer)) = (arguments.pixel, &renderer) {

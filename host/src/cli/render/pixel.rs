@@ -15,14 +15,14 @@ pub(super) fn explain(
     arguments: &RenderArguments,
     tracer: &RayTracer<'_>,
     view: &View,
-    order: &RenderOrder,
+    options: &RenderOrder,
     [x, y]: [u32; 2],
 ) -> Result<(), CommandFailure> {
-    if x >= order.width || y >= order.height {
-        let message = format!("pixel {x},{y} is outside the picture of {} x {}", order.width, order.height);
+    if x >= options.width || y >= options.height {
+        let message = format!("pixel {x},{y} is outside the picture of {} x {}", options.width, options.height);
         return Err(CommandFailure::new(Exit::Usage, anyhow::anyhow!(message)));
     }
-    let samples = tracer.explain(view, order, [x, y], order.samples)?;
+    let samples = tracer.explain(view, options, [x, y], options.samples)?;
     let mean = samples.iter().map(|sample| DVec3::from_array(sample.radiance)).sum::<DVec3>() / samples.len() as f64;
     let told = if arguments.explain { EXPLAINED.min(samples.len()) } else { 0 };
     if arguments.json {

@@ -32,16 +32,16 @@ impl Saved<'_> {
         every: Duration,
         destination: &'a Destination,
         mut fingerprint: Fingerprint,
-        order: &RenderOrder,
+        options: &RenderOrder,
     ) -> Result<Saved<'a>, CommandFailure> {
         if let Some(views) = arguments.views {
             // Views that are finished get no more samples.
-            let RenderOrder { samples, target, .. } = order;
+            let RenderOrder { samples, target, .. } = options;
             fingerprint = fingerprint.with(&format!("{views} {:?} {samples} {target:?}", arguments.turn));
         }
         let mut saved = Saved { destination, fingerprint, views: 0, film: None, every };
         if destination.path().exists() {
-            let RenderState { views, film } = RenderState::read(destination.path(), order, fingerprint)?;
+            let RenderState { views, film } = RenderState::read(destination.path(), options, fingerprint)?;
             (saved.views, saved.film) = (views as usize, Some(film));
         }
         Ok(saved)
@@ -88,8 +88,8 @@ impl Intermediate {
             Some(PathBuf::from(name))
         };
         let row = arguments.renderer.row();
-        let is_followed = row.follows_light && arguments.light.is_none() && plan.needs(Stage::PhotonMap);
-        let is_solved = row.solves || (row.adds_samples && plan.needs(Stage::Radiosity));
+        let is_followed = row.can_map_photons && arguments.light.is_none() && plan.needs(Stage::PhotonMap);
+        let is_solved = row.solves_radiosity || (row.adds_samples && plan.needs(Stage::Radiosity));
         Intermediate {
             light: is_followed.then(|| beside(".light")).flatten(),
             radiosity: is_solved.then(|| beside(".radiosity")).flatten(),

@@ -179,7 +179,7 @@ impl ViewBatch<'_> {
             "render_seconds": rendering.seconds,
             "threads": rendering.threads,
             "rays": rendering.rays,
-            "caught_light": rendering.balance,
+            "caught_light": rendering.flux_balance,
             "spans": rendering.spans,
             "radiosity": self.radiosity,
             "denoised": self.arguments.denoise,
@@ -219,7 +219,7 @@ impl ViewBatch<'_> {
     /// Says how much work it was.
     fn report_statistics(&self, rendering: &Rendering) {
         say!("{} triangles", self.prepared.triangles.len());
-        if let Some(balance) = &rendering.balance {
+        if let Some(balance) = &rendering.flux_balance {
             say!("{balance}");
         }
         self.radiosity.iter().flat_map(RadiosityReport::lines).for_each(|line| say!("{line}"));

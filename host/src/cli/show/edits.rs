@@ -25,7 +25,7 @@ pub(super) struct Edit {
     /// It, ready to be shown.
     pub(super) model: Model,
     /// Whether it is seen as the scene before was, because its script asks for the same camera.
-    pub(super) keeps_view: bool,
+    pub(super) same_view: bool,
 }
 
 /// When a file was written, and its bytes; none for a file that is not there.
@@ -106,7 +106,7 @@ pub(super) fn watch(
                 let scene = source::lit(evaluated)?.scene;
                 let (model, _) = modelled(&scene, &arguments, keeps_view.then_some(initial))?;
                 (camera, initial) = (asked, *model.initial());
-                Ok(Edit { scene, model, keeps_view })
+                Ok(Edit { scene, model, same_view: keeps_view })
             });
             if sender.send(edit).is_err() {
                 return;

@@ -45,16 +45,16 @@ fn run(arguments: &ShowArguments) -> Result<(), CommandFailure> {
     let Evaluated { scene, files, .. } = source::lit(evaluated)?;
     let (model, light) = modelled(&scene, arguments, None)?;
     let edits = watched.map(|watched| edits::watch(arguments, watched, &files, camera, *model.initial()));
-    let patience = arguments.waits.timeouts();
+    let timeouts = arguments.waits.timeouts();
     let (mut emulator, line) = match &arguments.to {
         Some(line) => (None, line.clone()),
         None => {
-            let emulator = start(arguments, patience)?;
+            let emulator = start(arguments, timeouts)?;
             let line = emulator.line().clone();
             (Some(emulator), line)
         }
     };
-    let session = Session::attach(&line, patience)?;
+    let session = Session::attach(&line, timeouts)?;
     let mut production = Production::show(model, session)?;
     report(arguments, &line, production.sent(), light.as_ref());
     drop(light);
@@ -83,16 +83,16 @@ fn run(arguments: &ShowArguments) -> Result<(), CommandFailure> {
 }
 
 /// Starts a PS 340 of our own, with a window if there is a display to open it on.
-fn start(arguments: &ShowArguments, patience: Timeouts) -> Result<Emulator, CommandFailure> {
+fn start(arguments: &ShowArguments, timeouts: Timeouts) -> Result<Emulator, CommandFailure> {
     let has_display =
         ["DISPLAY", "WAYLAND_DISPLAY"].iter().any(|name| std::env::var_os(name).is_some_and(|d| !d.is_empty()));
     if has_display && !arguments.headless {
-        match Emulator::start(patience, &arguments.files, true) {
+        match Emulator::start(timeouts, &arguments.files, true) {
             Ok(emulator) => return Ok(emulator),
             Err(error) => warn(&format!("{error}; it is started without a window")),
         }
     }
-    Ok(Emulator::start(patience, &arguments.files, false)?)
+    Ok(Emulator::start(timeouts, &arguments.files, false)?)
 }
 
 /// Says what was sent.

@@ -30,21 +30,21 @@ pub(super) struct Server<'a> {
     production: &'a mut Production,
     emulator: &'a mut Option<Emulator>,
     arguments: &'a ShowArguments,
-    told: &'a mut ViewReporter,
-    order: RenderOrder,
+    view_reporter: &'a mut ViewReporter,
+    options: RenderOrder,
     display: DisplayTransform,
     rendering: Option<Progressive>,
     /// What the rendering does now, in words.
     stage: &'static str,
     /// What the key to render says now.
     label: String,
-    orders: OperatorCommands,
+    operator_commands: OperatorCommands,
 }
 
 /// Orders from standard input for the operator of a workstation of our own.
 struct OperatorCommands {
     /// None if there are none any more.
-    given: Option<mpsc::Receiver<String>>,
+    input: Option<mpsc::Receiver<String>>,
     /// Orders whose replies are still to come.
     unanswered: u64,
     /// When the machine was last seen at work on one.
@@ -61,19 +61,19 @@ impl<'a> Server<'a> {
         scene: &Scene,
     ) -> Server<'a> {
         let given = emulator.as_ref().map(|_| read_commands());
-        let orders = OperatorCommands { given, unanswered: 0, at_work: Instant::now() };
+        let orders = OperatorCommands { input: given, unanswered: 0, at_work: Instant::now() };
         let order = render_options(scene, arguments);
         Server {
             production,
             emulator,
             arguments,
-            told,
-            order,
+            view_reporter: told,
+            options: order,
             display: scene.display,
             rendering: None,
             stage: "",
             label: String::new(),
-            orders,
+            operator_commands: orders,
         }
     }
 
@@ -100,7 +100,7 @@ impl<'a> Server<'a> {
                 Some(FunctionKey::Render) => self.render()?,
                 Some(FunctionKey::Cancel) => self.rendering.iter().for_each(Progressive::cancel),
                 Some(FunctionKey::Reset) => self.production.reset()?,
-                Some(FunctionKey::Camera) => self.told.report(self.production)?,
+                Some(FunctionKey::Camera) => self.view_reporter.report(self.production)?,
                 Some(FunctionKey::End) => return Ok(()),
                 None => say!("message: {}", String::from_utf8_lossy(&message)),
             }
@@ -110,8 +110,8 @@ impl<'a> Server<'a> {
     /// Gives orders that were read to the operator, and says his replies; whether that is the end.
     fn perform_commands(&mut self) -> Result<bool, CommandFailure> {
         let Some(emulator) = self.emulator.as_mut() else { return Ok(false) };
-        let orders = &mut self.orders;
-        match orders.given.as_ref().map(mpsc::Receiver::try_recv) {
+        let orders = &mut self.operator_commands;
+        match orders.input.as_ref().map(mpsc::Receiver::try_recv) {
             Some(Ok(order)) if order == "quit" => return Ok(true),
             Some(Ok(order)) => {
                 emulator.send_operator_command(&order)?;
@@ -120,7 +120,7 @@ impl<'a> Server<'a> {
             }
             // With a window, somebody else gives orders. Without one, the end of the orders is the end, once all are answered
             // and what they began has ended.
-            Some(Err(mpsc::TryRecvError::Disconnected)) if emulator.has_window() => orders.given = None,
+            Some(Err(mpsc::TryRecvError::Disconnected)) if emulator.has_window() => orders.input = None,
             Some(Err(mpsc::TryRecvError::Disconnected)) if orders.unanswered == 0 && self.rendering.is_none() => {
                 return Ok(true);
             }
@@ -132,7 +132,7 @@ impl<'a> Server<'a> {
             say!("{}", reply.replace("\\n", "\n"));
         }
         let session = self.production.session();
-        if orders.unanswered > 0 && orders.at_work.elapsed() > session.timeouts().order {
+        if orders.unanswered > 0 && orders.at_work.elapsed() > session.timeouts().operator_command {
             // Orders such as 'frames 10000' take their time; a machine that lives answers its hosts meanwhile.
             session.synchronize()?;
             orders.at_work = Instant::now();
@@ -143,7 +143,7 @@ impl<'a> Server<'a> {
     /// Shows a scene in place of the one before, or says why there is none.
     fn replace(&mut self, edit: Result<Edit, CommandFailure>) -> Result<(), CommandFailure> {
         progress::clear();
-        let Edit { scene, model, keeps_view } = match edit {
+        let Edit { scene, model, same_view: keeps_view } = match edit {
             Ok(edit) => edit,
             Err(failure) => {
                 let text = story(&failure.error);
@@ -154,7 +154,7 @@ impl<'a> Server<'a> {
         if self.rendering.take().is_some() {
             self.write_label(KEYS[0].1)?;
         }
-        (self.order, self.display) = (render_options(&scene, self.arguments), scene.display);
+        (self.options, self.display) = (render_options(&scene, self.arguments), scene.display);
         self.production.replace(model, keeps_view)?;
         self.production.show_message(" ")?;
         let sent = self.production.sent();
@@ -167,7 +167,7 @@ impl<'a> Server<'a> {
     /// Begins to render the view that is set.
     fn render(&mut self) -> Result<(), CommandFailure> {
         let matrix = self.production.view()?;
-        self.rendering = Some(self.production.begin_rendering(&matrix, &self.order, &self.display)?);
+        self.rendering = Some(self.production.begin_rendering(&matrix, &self.options, &self.display)?);
         self.write_label("0 %")
     }
 
@@ -187,7 +187,7 @@ impl<'a> Server<'a> {
                 }
                 RenderingEvent::Part { shown, rows, samples, seconds_left } => {
                     self.production.show_rows(&shown, |row| rows[row as usize])?;
-                    let all = self.order.samples;
+                    let all = self.options.samples;
                     let amount = Progress { done: samples, all: all.into(), unit: "samples" };
                     let left = progress::clock(seconds_left);
                     progress::update(amount);

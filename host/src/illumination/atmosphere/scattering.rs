@@ -91,7 +91,7 @@ impl<'a> Scattering<'a> {
         mut tell: impl FnMut(usize, f64, [f64; 3], f64, f64),
     ) {
         let distance = to_ground(radius, view.y).unwrap_or_else(|| to_top(radius, view.y));
-        let mut passed = [1.0; NODES];
+        let mut transmittance = [1.0; NODES];
         for step in 0..steps {
             let [from, to] = [step, step + 1].map(|step| (step as f64 / steps as f64).powi(2) * distance);
             let place = DVec3::Y * radius + view * (0.5 * (from + to));
@@ -103,10 +103,10 @@ impl<'a> Scattering<'a> {
                 let extinction = extinction(&self.air.scaled, &density, node).max(1e-12);
                 let kept = (-extinction * (to - from)).exp();
                 // The integral over the step of what arrives of an even source.
-                let part = passed[node] * (1.0 - kept) / extinction;
+                let part = transmittance[node] * (1.0 - kept) / extinction;
                 let [air, haze] = [0, 1].map(|kind| self.air.scattering[kind][node] * density[kind]);
                 tell(node, part, [air + Air::TURNED * haze, air, haze], further[node], lit[node]);
-                passed[node] *= kept;
+                transmittance[node] *= kept;
             }
         }
     }

@@ -19,10 +19,10 @@ pub(super) struct AreaLight {
 }
 
 impl Emitter for AreaLight {
-    fn sample_incident(&self, point: DVec3, _: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<LightSample> {
+    fn sample_incident(&self, point: DVec3, _: Option<DVec3>, uniform: [f64; 2], wavelength_set: usize) -> Option<LightSample> {
         let drawn = self.patch.sample(point, uniform)?;
-        let irradiance = self.strength.of(comb) * drawn.density.recip();
-        Some(LightSample { towards: drawn.towards, distance: drawn.distance, irradiance, density: Some(drawn.density) })
+        let irradiance = self.strength.of(wavelength_set) * drawn.pdf.recip();
+        Some(LightSample { towards: drawn.towards, distance: drawn.distance, irradiance, pdf: Some(drawn.pdf) })
     }
 
     /// A sphere's points lie on a smaller one, so that they are spread as its disc is, as seen from anywhere.
@@ -34,8 +34,8 @@ impl Emitter for AreaLight {
     }
 
     #[inline]
-    fn incident_from(&self, from: &LightPoint, point: DVec3, comb: usize) -> Option<LightSample> {
-        from.incident(self.strength.of(comb), point)
+    fn incident_from(&self, from: &LightPoint, point: DVec3, wavelength_set: usize) -> Option<LightSample> {
+        from.incident(self.strength.of(wavelength_set), point)
     }
 
     fn origin(&self) -> LightOrigin {
@@ -47,13 +47,13 @@ impl Emitter for AreaLight {
         Some(EmissionSample::Point { at, normal: Some(normal), area: self.patch.area() })
     }
 
-    fn intensity(&self, normal: Option<DVec3>, direction: DVec3, comb: usize) -> Channels {
-        let strength = self.strength.of(comb);
+    fn intensity(&self, normal: Option<DVec3>, direction: DVec3, wavelength_set: usize) -> Channels {
+        let strength = self.strength.of(wavelength_set);
         normal.map_or(strength, |normal| strength * (self.patch.area() * normal.dot(direction).max(0.0)))
     }
 
-    fn power(&self, _: f64, comb: usize) -> Channels {
-        self.strength.of(comb) * (PI * self.patch.area())
+    fn power(&self, _: f64, wavelength_set: usize) -> Channels {
+        self.strength.of(wavelength_set) * (PI * self.patch.area())
     }
 
     fn is_delta(&self) -> bool {
@@ -64,11 +64,11 @@ impl Emitter for AreaLight {
         true
     }
 
-    fn intersect(&self, ray: &Ray, t_min: f64, t_max: f64, comb: usize) -> Option<LightHit> {
+    fn intersect(&self, ray: &Ray, t_min: f64, t_max: f64, wavelength_set: usize) -> Option<LightHit> {
         let (t, front) = self.patch.intersect(ray, t_min, t_max)?;
         let length = ray.direction.length();
-        let radiance = if front { self.strength.of(comb) } else { Channels::ZERO };
-        Some(LightHit { t, radiance, density: self.patch.pdf(ray.origin, ray.direction / length, t * length) })
+        let radiance = if front { self.strength.of(wavelength_set) } else { Channels::ZERO };
+        Some(LightHit { t, radiance, pdf: self.patch.pdf(ray.origin, ray.direction / length, t * length) })
     }
 }
 

@@ -16,7 +16,7 @@ pub struct LightSample {
     /// its radiance over the density with which this direction was drawn.
     pub irradiance: Channels,
     /// That density, 1/sr; none where light comes from one direction only.
-    pub density: Option<f64>,
+    pub pdf: Option<f64>,
 }
 
 /// What a ray sees of a light.
@@ -27,7 +27,7 @@ pub struct LightHit {
     /// Its radiance there, W/(m² sr); 0 on the dark side.
     pub radiance: Channels,
     /// The density with which [`Source::beam`](super::Source::beam) would have drawn this direction, 1/sr.
-    pub density: f64,
+    pub pdf: f64,
 }
 
 /// One of a few fixed points that stand for a light.
@@ -120,13 +120,13 @@ impl LightPoint {
     #[inline]
     pub(super) fn incident(&self, radiance: Channels, point: DVec3) -> Option<LightSample> {
         let (Some((area, normal, sides)), Some(at)) = (self.surface, self.at) else { return None };
-        let beam = from_point(at - point, radiance * area)?;
+        let light_sample = from_point(at - point, radiance * area)?;
         let facing = match (normal, sides) {
             (None, _) => 1.0,
-            (Some(normal), EmittingSides::Front) => -normal.dot(beam.towards),
-            (Some(normal), EmittingSides::Both) => normal.dot(beam.towards).abs(),
+            (Some(normal), EmittingSides::Front) => -normal.dot(light_sample.towards),
+            (Some(normal), EmittingSides::Both) => normal.dot(light_sample.towards).abs(),
         };
-        (facing > 0.0).then(|| LightSample { irradiance: beam.irradiance * facing, ..beam })
+        (facing > 0.0).then(|| LightSample { irradiance: light_sample.irradiance * facing, ..light_sample })
     }
 }
 
@@ -138,6 +138,6 @@ pub(super) fn from_point(offset: DVec3, intensity: Channels) -> Option<LightSamp
         towards: offset / distance,
         distance,
         irradiance: intensity * distance.recip() * distance.recip(),
-        density: None,
+        pdf: None,
     })
 }

@@ -54,8 +54,8 @@ fn there_is_a_light_of_every_kind() {
 /// Irradiance of a surface that faces up, by the beams of a light.
 fn sampled(source: &LightSource) -> f64 {
     let term = |uniform| {
-        let beam = source.sample_incident(POINT, Some(DVec3::Y), uniform, 0);
-        beam.map_or(0.0, |beam| beam.irradiance.0[0] * beam.towards.y.max(0.0))
+        let light_sample = source.sample_incident(POINT, Some(DVec3::Y), uniform, 0);
+        light_sample.map_or(0.0, |beam| beam.irradiance.0[0] * beam.towards.y.max(0.0))
     };
     unit_square(term, 1e-6, 100_000).value
 }
@@ -63,9 +63,9 @@ fn sampled(source: &LightSource) -> f64 {
 /// The radiance that comes from a direction, and the density with which beams are drawn there.
 fn seen(source: &LightSource, towards: DVec3) -> (f64, f64) {
     let ray = Ray { origin: POINT, direction: towards };
-    let glow = source.intersect(&ray, 0.0, f64::INFINITY, 0).or_else(|| source.sky_radiance(&ray, Some(DVec3::Y), 0));
-    if let Some(glow) = glow {
-        return (glow.radiance.0[0], glow.density);
+    let light_hit = source.intersect(&ray, 0.0, f64::INFINITY, 0).or_else(|| source.sky_radiance(&ray, Some(DVec3::Y), 0));
+    if let Some(light_hit) = light_hit {
+        return (light_hit.radiance.0[0], light_hit.pdf);
     }
     // A triangle is met by whoever knows it.
     let [a, b, c] = TRIANGLE;
@@ -74,7 +74,7 @@ fn seen(source: &LightSource, towards: DVec3) -> (f64, f64) {
     let met = POINT + towards * distance;
     let is_in = [(a, b), (b, c), (c, a)].iter().all(|(p, q)| (*q - *p).cross(met - *p).dot(normal) > 0.0);
     match source.pdf_on_triangle(distance, towards.dot(normal)) {
-        density if density > 0.0 && distance > 0.0 && is_in => (1.0, density),
+        pdf if pdf > 0.0 && distance > 0.0 && is_in => (1.0, pdf),
         _ => (0.0, 0.0),
     }
 }
@@ -84,16 +84,16 @@ fn sampled_irradiance_is_that_of_all_that_is_seen() {
     let sequence = SobolSequence::new(3, 1);
     let count = 1 << 18;
     for source in sources().iter().filter(|source| !source.is_delta()) {
-        let (mut irradiance, mut density) = (0.0, 0.0);
+        let (mut irradiance, mut pdf) = (0.0, 0.0);
         for index in 0..count {
             let (radiance, _) = seen(source, cosine_hemisphere(sequence.point(index, 0), DVec3::Y));
             irradiance += radiance * PI / f64::from(count);
             // The density of all directions: over the one with which they are drawn here, the sphere's is flat.
-            density += seen(source, sphere(sequence.point(index, 1))).1 * 2.0 * TAU / f64::from(count);
+            pdf += seen(source, sphere(sequence.point(index, 1))).1 * 2.0 * TAU / f64::from(count);
         }
         let found = sampled(source);
         assert!((found / irradiance - 1.0).abs() < 5e-3, "{}: {found} {irradiance}", source.kind());
-        assert!((density - 1.0).abs() < 2e-2, "{}: the density of its beams integrates to {density}", source.kind());
+        assert!((pdf - 1.0).abs() < 2e-2, "{}: the density of its beams integrates to {pdf}", source.kind());
     }
 }
 
@@ -103,20 +103,20 @@ fn beams_have_the_densities_that_are_told_and_come_from_where_lights_are() {
     for source in sources() {
         for _ in 0..200 {
             let uniform = stream.point();
-            let Some(beam) = source.sample_incident(POINT, Some(DVec3::Y), uniform, 0) else { continue };
-            assert_eq!(beam.density.is_none(), source.is_delta(), "{}", source.kind());
-            if let Some(density) = beam.density {
-                let (radiance, told) = seen(&source, beam.towards);
-                let error = (told / density - 1.0).abs().max((beam.irradiance.0[0] * density / radiance - 1.0).abs());
-                assert!(error < 1e-6, "{}: {density} {told} {radiance}", source.kind());
+            let Some(light_sample) = source.sample_incident(POINT, Some(DVec3::Y), uniform, 0) else { continue };
+            assert_eq!(light_sample.pdf.is_none(), source.is_delta(), "{}", source.kind());
+            if let Some(pdf) = light_sample.pdf {
+                let (radiance, told) = seen(&source, light_sample.towards);
+                let error = (told / pdf - 1.0).abs().max((light_sample.irradiance.0[0] * pdf / radiance - 1.0).abs());
+                assert!(error < 1e-6, "{}: {pdf} {told} {radiance}", source.kind());
             }
             let is_there = match source.origin() {
                 LightOrigin::Within(bounds) => {
-                    let end = POINT + beam.towards * beam.distance;
+                    let end = POINT + light_sample.towards * light_sample.distance;
                     (end - end.clamp(bounds.min, bounds.max)).length() < 1e-9
                 }
-                LightOrigin::Towards(towards) => beam.towards == towards && beam.distance.is_infinite(),
-                LightOrigin::Everywhere => beam.distance.is_infinite() && source.is_infinite(),
+                LightOrigin::Towards(towards) => light_sample.towards == towards && light_sample.distance.is_infinite(),
+                LightOrigin::Everywhere => light_sample.distance.is_infinite() && source.is_infinite(),
             };
             assert!(is_there, "{}", source.kind());
         }
@@ -128,7 +128,7 @@ fn points_that_stand_for_a_light_light_as_it_does() {
     // A disc in the sky stands in its middle, and other skies have no points.
     for source in sources().iter().filter(|source| !source.is_infinite()) {
         let points = source.points(4096);
-        let term = |point| source.incident_from(point, POINT, 0).map_or(0.0, |beam| beam.irradiance.0[0] * beam.towards.y);
+        let term = |point| source.incident_from(point, POINT, 0).map_or(0.0, |light_sample| light_sample.irradiance.0[0] * light_sample.towards.y);
         let (found, expected) = (points.iter().map(term).sum::<f64>(), sampled(source));
         assert!((found / expected - 1.0).abs() < 5e-3, "{}: {found} {expected}", source.kind());
         assert!(points.len() == 1 || !source.is_delta(), "{}", source.kind());

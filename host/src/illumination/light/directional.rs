@@ -16,9 +16,9 @@ pub(super) struct DirectionalLight {
 }
 
 impl Emitter for DirectionalLight {
-    fn sample_incident(&self, _: DVec3, _: Option<DVec3>, _: [f64; 2], comb: usize) -> Option<LightSample> {
-        let irradiance = self.strength.of(comb);
-        Some(LightSample { towards: self.towards, distance: f64::INFINITY, irradiance, density: None })
+    fn sample_incident(&self, _: DVec3, _: Option<DVec3>, _: [f64; 2], wavelength_set: usize) -> Option<LightSample> {
+        let irradiance = self.strength.of(wavelength_set);
+        Some(LightSample { towards: self.towards, distance: f64::INFINITY, irradiance, pdf: None })
     }
 
     fn points(&self, _: u32) -> Vec<LightPoint> {
@@ -29,16 +29,16 @@ impl Emitter for DirectionalLight {
         LightOrigin::Towards(self.towards)
     }
 
-    fn sample_emission(&self, _: [f64; 2], comb: usize) -> Option<EmissionSample> {
-        Some(EmissionSample::Parallel { direction: -self.towards, irradiance: self.strength.of(comb) })
+    fn sample_emission(&self, _: [f64; 2], wavelength_set: usize) -> Option<EmissionSample> {
+        Some(EmissionSample::Parallel { direction: -self.towards, irradiance: self.strength.of(wavelength_set) })
     }
 
-    fn intensity(&self, _: Option<DVec3>, _: DVec3, comb: usize) -> Channels {
-        self.strength.of(comb)
+    fn intensity(&self, _: Option<DVec3>, _: DVec3, wavelength_set: usize) -> Channels {
+        self.strength.of(wavelength_set)
     }
 
-    fn power(&self, radius: f64, comb: usize) -> Channels {
+    fn power(&self, radius: f64, wavelength_set: usize) -> Channels {
         let disc = PI * radius * radius;
-        self.strength.of(comb) * disc
+        self.strength.of(wavelength_set) * disc
     }
 }

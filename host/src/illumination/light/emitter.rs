@@ -8,28 +8,28 @@ use glam::DVec3;
 /// A light of one kind, ready for rendering. [`Source`](super::Source) says what each function gives.
 pub(super) trait Emitter {
     /// Light that arrives at a point if nothing stands between.
-    fn sample_incident(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<LightSample>;
+    fn sample_incident(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2], wavelength_set: usize) -> Option<LightSample>;
 
     /// A few points that stand for it.
     fn points(&self, count: u32) -> Vec<LightPoint>;
 
     /// Light that arrives from one of its points.
-    fn incident_from(&self, _: &LightPoint, point: DVec3, comb: usize) -> Option<LightSample> {
+    fn incident_from(&self, _: &LightPoint, point: DVec3, wavelength_set: usize) -> Option<LightSample> {
         // What has no size is its only point, and the middle of a disc in the sky stands for it.
-        self.sample_incident(point, None, [0.0; 2], comb)
+        self.sample_incident(point, None, [0.0; 2], wavelength_set)
     }
 
     /// Where its light comes from.
     fn origin(&self) -> LightOrigin;
 
     /// Where light leaves it.
-    fn sample_emission(&self, uniform: [f64; 2], comb: usize) -> Option<EmissionSample>;
+    fn sample_emission(&self, uniform: [f64; 2], wavelength_set: usize) -> Option<EmissionSample>;
 
     /// Flux in each solid angle that leaves such a place.
-    fn intensity(&self, normal: Option<DVec3>, direction: DVec3, comb: usize) -> Channels;
+    fn intensity(&self, normal: Option<DVec3>, direction: DVec3, wavelength_set: usize) -> Channels;
 
     /// All flux that it sends out.
-    fn power(&self, radius: f64, comb: usize) -> Channels;
+    fn power(&self, radius: f64, wavelength_set: usize) -> Channels;
 
     /// Whether its light comes from one direction only at every point.
     fn is_delta(&self) -> bool {

@@ -35,10 +35,10 @@ impl GoniometricLight {
 }
 
 impl Emitter for GoniometricLight {
-    fn sample_incident(&self, point: DVec3, _: Option<DVec3>, _: [f64; 2], comb: usize) -> Option<LightSample> {
-        let beam = from_point(self.at - point, self.strength.of(comb))?;
-        let watts = self.table.candelas(self.axes.transpose() * -beam.towards) / LUMENS_PER_WATT;
-        (watts > 0.0).then(|| LightSample { irradiance: beam.irradiance * watts, ..beam })
+    fn sample_incident(&self, point: DVec3, _: Option<DVec3>, _: [f64; 2], wavelength_set: usize) -> Option<LightSample> {
+        let light_sample = from_point(self.at - point, self.strength.of(wavelength_set))?;
+        let watts = self.table.candelas(self.axes.transpose() * -light_sample.towards) / LUMENS_PER_WATT;
+        (watts > 0.0).then(|| LightSample { irradiance: light_sample.irradiance * watts, ..light_sample })
     }
 
     fn points(&self, _: u32) -> Vec<LightPoint> {
@@ -53,13 +53,13 @@ impl Emitter for GoniometricLight {
         Some(EmissionSample::Point { at: self.at, normal: None, area: 0.0 })
     }
 
-    fn intensity(&self, _: Option<DVec3>, direction: DVec3, comb: usize) -> Channels {
-        self.strength.of(comb) * (self.table.candelas(self.axes.transpose() * direction) / LUMENS_PER_WATT)
+    fn intensity(&self, _: Option<DVec3>, direction: DVec3, wavelength_set: usize) -> Channels {
+        self.strength.of(wavelength_set) * (self.table.candelas(self.axes.transpose() * direction) / LUMENS_PER_WATT)
     }
 
-    fn power(&self, _: f64, comb: usize) -> Channels {
+    fn power(&self, _: f64, wavelength_set: usize) -> Channels {
         let lumens = over_the_sphere(|direction| self.table.candelas(direction));
-        self.strength.of(comb) * (lumens / LUMENS_PER_WATT)
+        self.strength.of(wavelength_set) * (lumens / LUMENS_PER_WATT)
     }
 }
 

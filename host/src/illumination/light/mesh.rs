@@ -50,16 +50,16 @@ impl MeshLight {
         let offset = at - point;
         let distance = offset.length();
         let towards = offset / distance;
-        let density = distance * distance / (normal.dot(towards).abs() * self.area);
-        (distance > 0.0 && density.is_finite() && density > 0.0).then_some((towards, distance, density))
+        let pdf = distance * distance / (normal.dot(towards).abs() * self.area);
+        (distance > 0.0 && pdf.is_finite() && pdf > 0.0).then_some((towards, distance, pdf))
     }
 }
 
 impl Emitter for MeshLight {
-    fn sample_incident(&self, point: DVec3, _: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<LightSample> {
-        let (towards, distance, density) = self.sample(point, uniform)?;
-        let irradiance = self.strength.of(comb) * density.recip();
-        Some(LightSample { towards, distance, irradiance, density: Some(density) })
+    fn sample_incident(&self, point: DVec3, _: Option<DVec3>, uniform: [f64; 2], wavelength_set: usize) -> Option<LightSample> {
+        let (towards, distance, pdf) = self.sample(point, uniform)?;
+        let irradiance = self.strength.of(wavelength_set) * pdf.recip();
+        Some(LightSample { towards, distance, irradiance, pdf: Some(pdf) })
     }
 
     fn points(&self, count: u32) -> Vec<LightPoint> {
@@ -70,8 +70,8 @@ impl Emitter for MeshLight {
     }
 
     #[inline]
-    fn incident_from(&self, from: &LightPoint, point: DVec3, comb: usize) -> Option<LightSample> {
-        from.incident(self.strength.of(comb), point)
+    fn incident_from(&self, from: &LightPoint, point: DVec3, wavelength_set: usize) -> Option<LightSample> {
+        from.incident(self.strength.of(wavelength_set), point)
     }
 
     fn origin(&self) -> LightOrigin {
@@ -83,13 +83,13 @@ impl Emitter for MeshLight {
         Some(EmissionSample::Point { at, normal: Some(normal), area: self.area })
     }
 
-    fn intensity(&self, normal: Option<DVec3>, direction: DVec3, comb: usize) -> Channels {
-        let strength = self.strength.of(comb);
+    fn intensity(&self, normal: Option<DVec3>, direction: DVec3, wavelength_set: usize) -> Channels {
+        let strength = self.strength.of(wavelength_set);
         normal.map_or(strength, |normal| strength * (self.area * normal.dot(direction).abs()))
     }
 
-    fn power(&self, _: f64, comb: usize) -> Channels {
-        self.strength.of(comb) * (TAU * self.area)
+    fn power(&self, _: f64, wavelength_set: usize) -> Channels {
+        self.strength.of(wavelength_set) * (TAU * self.area)
     }
 
     fn is_delta(&self) -> bool {

@@ -50,7 +50,7 @@ pub(super) struct ShapeSample {
     /// From the lit point to it.
     pub(super) distance: f64,
     /// The density of the direction, 1/sr.
-    pub(super) density: f64,
+    pub(super) pdf: f64,
 }
 
 impl LightShape {
@@ -174,8 +174,8 @@ impl LightShape {
                 if let Some(seen) = self.spherical_rectangle(point) {
                     let offset = seen.sample(uniform);
                     let distance = offset.length();
-                    let density = seen.solid_angle().recip();
-                    return (distance > 0.0).then(|| ShapeSample { towards: offset / distance, distance, density });
+                    let pdf = seen.solid_angle().recip();
+                    return (distance > 0.0).then(|| ShapeSample { towards: offset / distance, distance, pdf });
                 }
                 self.by_area(point, corner + across * uniform[0] + up * uniform[1], normal)
             }
@@ -225,8 +225,8 @@ impl LightShape {
         let distance = offset.length();
         let towards = offset / distance;
         let facing = -normal.dot(towards);
-        let density = distance * distance / (facing * self.area());
-        (distance > 0.0 && facing > 0.0 && density.is_finite()).then_some(ShapeSample { towards, distance, density })
+        let pdf = distance * distance / (facing * self.area());
+        (distance > 0.0 && facing > 0.0 && pdf.is_finite()).then_some(ShapeSample { towards, distance, pdf })
     }
 
     /// The rectangle as a point sees it, unless it is too small or none.
@@ -305,5 +305,5 @@ fn sample_sphere(offset: DVec3, radius: f64, [x, y]: [f64; 2]) -> Option<ShapeSa
     let (across, up) = axis.any_orthonormal_pair();
     let towards = ((across * cos + up * sin) * sine + axis * (1.0 - height)).normalize();
     let half_chord = (radius * radius - far * far * sine * sine).max(0.0).sqrt();
-    Some(ShapeSample { towards, distance: far * (1.0 - height) - half_chord, density: (TAU * cap).recip() })
+    Some(ShapeSample { towards, distance: far * (1.0 - height) - half_chord, pdf: (TAU * cap).recip() })
 }

@@ -15,8 +15,8 @@ pub(super) struct PointLight {
 }
 
 impl Emitter for PointLight {
-    fn sample_incident(&self, point: DVec3, _: Option<DVec3>, _: [f64; 2], comb: usize) -> Option<LightSample> {
-        from_point(self.at - point, self.strength.of(comb))
+    fn sample_incident(&self, point: DVec3, _: Option<DVec3>, _: [f64; 2], wavelength_set: usize) -> Option<LightSample> {
+        from_point(self.at - point, self.strength.of(wavelength_set))
     }
 
     fn points(&self, _: u32) -> Vec<LightPoint> {
@@ -31,11 +31,11 @@ impl Emitter for PointLight {
         Some(EmissionSample::Point { at: self.at, normal: None, area: 0.0 })
     }
 
-    fn intensity(&self, _: Option<DVec3>, _: DVec3, comb: usize) -> Channels {
-        self.strength.of(comb)
+    fn intensity(&self, _: Option<DVec3>, _: DVec3, wavelength_set: usize) -> Channels {
+        self.strength.of(wavelength_set)
     }
 
-    fn power(&self, _: f64, comb: usize) -> Channels {
-        self.strength.of(comb) * (2.0 * TAU)
+    fn power(&self, _: f64, wavelength_set: usize) -> Channels {
+        self.strength.of(wavelength_set) * (2.0 * TAU)
     }
 }

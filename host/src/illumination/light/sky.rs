@@ -64,11 +64,11 @@ impl Sky {
     }
 
     /// Radiance from a direction, unit length.
-    pub fn radiance(&self, towards: DVec3, comb: usize) -> Channels {
+    pub fn radiance(&self, towards: DVec3, wavelength_set: usize) -> Channels {
         match &self.map {
             None if self.is_beside(towards) => Channels::ZERO,
-            None => self.factor.of(comb),
-            Some(map) => self.factor.of(comb) * map.radiance(place(self.back(towards)), comb),
+            None => self.factor.of(wavelength_set),
+            Some(map) => self.factor.of(wavelength_set) * map.radiance(place(self.back(towards)), wavelength_set),
         }
     }
 
@@ -88,7 +88,7 @@ impl Sky {
             PortalChoice::Anywhere(uniform) => self.sample_anywhere(normal, uniform)?,
             PortalChoice::None => return None,
         };
-        Some((towards, self.pdf(point, towards, normal))).filter(|(_, density)| *density > 0.0)
+        Some((towards, self.pdf(point, towards, normal))).filter(|(_, pdf)| *pdf > 0.0)
     }
 
     /// The density with which [`Sky::draw`] draws a direction, 1/sr.
@@ -109,7 +109,7 @@ impl Sky {
     /// The density with which [`Sky::draw_anywhere`] draws a direction, 1/sr.
     fn pdf_anywhere(&self, towards: DVec3, normal: Option<DVec3>) -> f64 {
         if let Some(disc) = &self.disc {
-            return if self.is_beside(towards) { 0.0 } else { disc.density };
+            return if self.is_beside(towards) { 0.0 } else { disc.pdf };
         }
         let Some(map) = &self.map else {
             return normal.map_or(0.5 / TAU, |normal| normal.dot(towards).max(0.0) / PI);
@@ -122,7 +122,7 @@ impl Sky {
     /// A direction from which light sets out into the scene, about as bright as it is, and its density, 1/sr.
     pub(super) fn sample_emission(&self, uniform: [f64; 2]) -> Option<(DVec3, f64)> {
         let towards = self.sample_anywhere(None, uniform)?;
-        Some((towards, self.pdf_anywhere(towards, None))).filter(|(_, density)| *density > 0.0)
+        Some((towards, self.pdf_anywhere(towards, None))).filter(|(_, pdf)| *pdf > 0.0)
     }
 
     /// Whether it has the same radiance in all directions.
@@ -141,18 +141,18 @@ impl Sky {
     }
 
     /// The integral of its radiance over all directions.
-    pub(super) fn total(&self, comb: usize) -> Channels {
+    pub(super) fn total(&self, wavelength_set: usize) -> Channels {
         let all = match (&self.map, &self.disc) {
-            (Some(map), _) => map.total(comb),
-            (None, Some(disc)) => Channels::splat(disc.density.recip()),
+            (Some(map), _) => map.total(wavelength_set),
+            (None, Some(disc)) => Channels::splat(disc.pdf.recip()),
             (None, None) => Channels::splat(2.0 * TAU),
         };
-        self.factor.of(comb) * all
+        self.factor.of(wavelength_set) * all
     }
 
     /// About the mean of its luminance over all directions.
     pub fn mean(&self) -> f64 {
-        let part = self.disc.as_ref().map_or(1.0, |disc| 1.0 / (2.0 * TAU * disc.density));
+        let part = self.disc.as_ref().map_or(1.0, |disc| 1.0 / (2.0 * TAU * disc.pdf));
         self.factor.mean().max() * self.map.as_ref().map_or(part, Map::mean)
     }
 
@@ -176,7 +176,7 @@ struct Disc {
     /// One less the cosine of its radius, without cancellation.
     rise: f64,
     /// The reciprocal of its solid angle, 1/sr.
-    density: f64,
+    pdf: f64,
 }
 
 impl Disc {
@@ -184,7 +184,7 @@ impl Disc {
         let SkyDisc { towards, radius } = disc;
         let (a, b) = towards.any_orthonormal_pair();
         let rise = 2.0 * (0.5 * radius).sin().powi(2);
-        Disc { towards, aside: [a, b], rise, density: 1.0 / disc.solid_angle() }
+        Disc { towards, aside: [a, b], rise, pdf: 1.0 / disc.solid_angle() }
     }
 
     /// Whether a direction, unit length, is in it.
@@ -276,22 +276,22 @@ impl Map {
         (above - below) * rows / PI
     }
 
-    fn radiance(&self, place: DVec2, comb: usize) -> Channels {
+    fn radiance(&self, place: DVec2, wavelength_set: usize) -> Channels {
         if self.parts.is_empty() {
-            return self.light(self.panorama.at(place), comb);
+            return self.light(self.panorama.at(place), wavelength_set);
         }
         let mut sum = Channels::ZERO;
-        self.panorama.parts_at(place, |part, value| sum += self.parts[part].of(comb) * value);
+        self.panorama.parts_at(place, |part, value| sum += self.parts[part].of(wavelength_set) * value);
         sum
     }
 
-    fn light(&self, bands: DVec3, comb: usize) -> Channels {
-        let of = |band: usize| self.primaries[band].of(comb) * bands[band];
+    fn light(&self, bands: DVec3, wavelength_set: usize) -> Channels {
+        let of = |band: usize| self.primaries[band].of(wavelength_set) * bands[band];
         of(0) + of(1) + of(2)
     }
 
     /// The integral over all directions.
-    fn total(&self, comb: usize) -> Channels {
+    fn total(&self, wavelength_set: usize) -> Channels {
         let [width, rows] = self.panorama.cells();
         let step = PI / rows as f64;
         let mut sums = DVec3::ZERO;
@@ -305,7 +305,7 @@ impl Map {
             };
             sums += (0..width).map(|x| self.panorama.texel(x, y)).sum::<DVec3>() * (hat * TAU / width as f64);
         }
-        self.light(sums, comb)
+        self.light(sums, wavelength_set)
     }
 
     fn mean(&self) -> f64 {

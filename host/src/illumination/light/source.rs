@@ -110,8 +110,8 @@ impl LightSource {
     /// - `normal`: of the element at the point, unit length, if there is one: directions above it are drawn more often.
     /// - `uniform`: a point of the unit square, which chooses the point of a light that has a size.
     #[inline]
-    pub fn sample_incident(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<LightSample> {
-        self.0.emitter().sample_incident(point, normal, uniform, comb)
+    pub fn sample_incident(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2], wavelength_set: usize) -> Option<LightSample> {
+        self.0.emitter().sample_incident(point, normal, uniform, wavelength_set)
     }
 
     /// Points that stand for it: itself if it has no size, the middle of a disc in the sky, none for another sky.
@@ -123,8 +123,8 @@ impl LightSource {
 
     /// Light that arrives from one of [`Source::points`] if nothing stands between.
     #[inline]
-    pub fn incident_from(&self, from: &LightPoint, point: DVec3, comb: usize) -> Option<LightSample> {
-        self.0.emitter().incident_from(from, point, comb)
+    pub fn incident_from(&self, from: &LightPoint, point: DVec3, wavelength_set: usize) -> Option<LightSample> {
+        self.0.emitter().incident_from(from, point, wavelength_set)
     }
 
     /// Where its light comes from.
@@ -135,27 +135,27 @@ impl LightSource {
     /// Draws where light leaves the source; none where there is none.
     ///
     /// - `uniform`: a point of the unit square.
-    pub fn sample_emission(&self, uniform: [f64; 2], comb: usize) -> Option<EmissionSample> {
-        self.0.emitter().sample_emission(uniform, comb)
+    pub fn sample_emission(&self, uniform: [f64; 2], wavelength_set: usize) -> Option<EmissionSample> {
+        self.0.emitter().sample_emission(uniform, wavelength_set)
     }
 
     /// Flux in each solid angle that leaves a place of [`Source::start`] in a direction, over the density of the place,
     /// W/sr.
     ///
     /// - `normal`: of the surface there, if it is one. `direction`: where it goes, unit length.
-    pub fn intensity(&self, normal: Option<DVec3>, direction: DVec3, comb: usize) -> Channels {
-        self.0.emitter().intensity(normal, direction, comb)
+    pub fn intensity(&self, normal: Option<DVec3>, direction: DVec3, wavelength_set: usize) -> Channels {
+        self.0.emitter().intensity(normal, direction, wavelength_set)
     }
 
     /// All flux that it sends out, W; of light from infinitely far away, what goes through a sphere of a radius.
-    pub fn power(&self, radius: f64, comb: usize) -> Channels {
-        self.0.emitter().power(radius, comb)
+    pub fn power(&self, radius: f64, wavelength_set: usize) -> Channels {
+        self.0.emitter().power(radius, wavelength_set)
     }
 
     /// What a ray sees of a light that is a surface of its own.
     #[inline]
-    pub fn intersect(&self, ray: &Ray, t_min: f64, t_max: f64, comb: usize) -> Option<LightHit> {
-        self.0.emitter().intersect(ray, t_min, t_max, comb)
+    pub fn intersect(&self, ray: &Ray, t_min: f64, t_max: f64, wavelength_set: usize) -> Option<LightHit> {
+        self.0.emitter().intersect(ray, t_min, t_max, wavelength_set)
     }
 
     /// What is seen of a sky; none of another light, and beside a disc.
@@ -163,8 +163,8 @@ impl LightSource {
     /// - `ray`: of unit length, from the point from which it is seen.
     /// - `normal`: of the element from which it is seen, as in [`Source::beam`].
     #[inline]
-    pub fn sky_radiance(&self, ray: &Ray, normal: Option<DVec3>, comb: usize) -> Option<LightHit> {
-        self.0.emitter().sky_radiance(ray, normal, comb)
+    pub fn sky_radiance(&self, ray: &Ray, normal: Option<DVec3>, wavelength_set: usize) -> Option<LightHit> {
+        self.0.emitter().sky_radiance(ray, normal, wavelength_set)
     }
 
     /// The density with which [`Source::beam`] draws a direction in which emitting triangles are met, 1/sr.

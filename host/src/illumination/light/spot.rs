@@ -29,10 +29,10 @@ impl SpotLight {
 }
 
 impl Emitter for SpotLight {
-    fn sample_incident(&self, point: DVec3, _: Option<DVec3>, _: [f64; 2], comb: usize) -> Option<LightSample> {
-        let beam = from_point(self.at - point, self.strength.of(comb))?;
-        let part = self.part(-beam.towards.dot(self.axis));
-        (part > 0.0).then(|| LightSample { irradiance: beam.irradiance * part, ..beam })
+    fn sample_incident(&self, point: DVec3, _: Option<DVec3>, _: [f64; 2], wavelength_set: usize) -> Option<LightSample> {
+        let light_sample = from_point(self.at - point, self.strength.of(wavelength_set))?;
+        let part = self.part(-light_sample.towards.dot(self.axis));
+        (part > 0.0).then(|| LightSample { irradiance: light_sample.irradiance * part, ..light_sample })
     }
 
     fn points(&self, _: u32) -> Vec<LightPoint> {
@@ -47,12 +47,12 @@ impl Emitter for SpotLight {
         Some(EmissionSample::Point { at: self.at, normal: None, area: 0.0 })
     }
 
-    fn intensity(&self, _: Option<DVec3>, direction: DVec3, comb: usize) -> Channels {
-        self.strength.of(comb) * self.part(direction.dot(self.axis))
+    fn intensity(&self, _: Option<DVec3>, direction: DVec3, wavelength_set: usize) -> Channels {
+        self.strength.of(wavelength_set) * self.part(direction.dot(self.axis))
     }
 
-    fn power(&self, _: f64, comb: usize) -> Channels {
-        self.strength.of(comb) * (TAU * (1.0 - 0.5 * (self.inner + self.outer)))
+    fn power(&self, _: f64, wavelength_set: usize) -> Channels {
+        self.strength.of(wavelength_set) * (TAU * (1.0 - 0.5 * (self.inner + self.outer)))
     }
 
     fn cone(&self) -> Option<(DVec3, DVec3, f64)> {

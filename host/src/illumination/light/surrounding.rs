@@ -17,10 +17,10 @@ pub(super) struct EnvironmentLight {
 }
 
 impl Emitter for EnvironmentLight {
-    fn sample_incident(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2], comb: usize) -> Option<LightSample> {
-        let (towards, density) = self.sky.sample(point, normal, uniform)?;
-        let irradiance = self.sky.radiance(towards, comb) * density.recip();
-        Some(LightSample { towards, distance: f64::INFINITY, irradiance, density: Some(density) })
+    fn sample_incident(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2], wavelength_set: usize) -> Option<LightSample> {
+        let (towards, pdf) = self.sky.sample(point, normal, uniform)?;
+        let irradiance = self.sky.radiance(towards, wavelength_set) * pdf.recip();
+        Some(LightSample { towards, distance: f64::INFINITY, irradiance, pdf: Some(pdf) })
     }
 
     fn points(&self, _: u32) -> Vec<LightPoint> {
@@ -31,19 +31,19 @@ impl Emitter for EnvironmentLight {
         LightOrigin::Everywhere
     }
 
-    fn sample_emission(&self, uniform: [f64; 2], comb: usize) -> Option<EmissionSample> {
-        let (towards, density) = self.sky.sample_emission(uniform)?;
-        let irradiance = self.sky.radiance(towards, comb) * density.recip();
+    fn sample_emission(&self, uniform: [f64; 2], wavelength_set: usize) -> Option<EmissionSample> {
+        let (towards, pdf) = self.sky.sample_emission(uniform)?;
+        let irradiance = self.sky.radiance(towards, wavelength_set) * pdf.recip();
         Some(EmissionSample::Parallel { direction: -towards, irradiance })
     }
 
-    fn intensity(&self, _: Option<DVec3>, _: DVec3, comb: usize) -> Channels {
-        self.strength.of(comb)
+    fn intensity(&self, _: Option<DVec3>, _: DVec3, wavelength_set: usize) -> Channels {
+        self.strength.of(wavelength_set)
     }
 
-    fn power(&self, radius: f64, comb: usize) -> Channels {
+    fn power(&self, radius: f64, wavelength_set: usize) -> Channels {
         let disc = PI * radius * radius;
-        self.sky.total(comb) * disc
+        self.sky.total(wavelength_set) * disc
     }
 
     fn is_delta(&self) -> bool {
@@ -62,12 +62,12 @@ impl Emitter for EnvironmentLight {
         self.sky.disc().is_none()
     }
 
-    fn sky_radiance(&self, ray: &Ray, normal: Option<DVec3>, comb: usize) -> Option<LightHit> {
+    fn sky_radiance(&self, ray: &Ray, normal: Option<DVec3>, wavelength_set: usize) -> Option<LightHit> {
         let Ray { origin, direction: towards } = *ray;
         if self.sky.is_beside(towards) {
             return None;
         }
-        let (radiance, density) = (self.sky.radiance(towards, comb), self.sky.pdf(origin, towards, normal));
-        Some(LightHit { t: f64::INFINITY, radiance, density })
+        let (radiance, pdf) = (self.sky.radiance(towards, wavelength_set), self.sky.pdf(origin, towards, normal));
+        Some(LightHit { t: f64::INFINITY, radiance, pdf })
     }
 }

@@ -21,7 +21,7 @@ fn irradiance(source: &LightSource, point: DVec3, normal: DVec3) -> f64 {
     let term = |uniform| {
         source
             .sample_incident(point, None, uniform, 0)
-            .map_or(0.0, |beam| beam.irradiance.0[0] * beam.towards.dot(normal).max(0.0))
+            .map_or(0.0, |light_sample| light_sample.irradiance.0[0] * light_sample.towards.dot(normal).max(0.0))
     };
     unit_square(term, 1e-9, 200_000).value
 }
@@ -29,12 +29,12 @@ fn irradiance(source: &LightSource, point: DVec3, normal: DVec3) -> f64 {
 #[test]
 fn irradiance_of_a_point_falls_with_the_square_of_the_distance() {
     let point = source(Light::Point { at: DVec3::new(0.0, 3.0, 0.0), intensity: Color::grey(18.0) });
-    let beam = point.sample_incident(DVec3::ZERO, None, [0.5; 2], 0).expect("light");
-    assert_eq!((beam.irradiance.0[0], beam.distance, beam.towards), (2.0, 3.0, DVec3::Y));
+    let light_sample = point.sample_incident(DVec3::ZERO, None, [0.5; 2], 0).expect("light");
+    assert_eq!((light_sample.irradiance.0[0], light_sample.distance, light_sample.towards), (2.0, 3.0, DVec3::Y));
     assert!(point.sample_incident(DVec3::new(0.0, 3.0, 0.0), None, [0.5; 2], 0).is_none(), "no direction at the light itself");
     for far in [1e-9, 1e9] {
-        let beam = point.sample_incident(DVec3::new(far, 3.0, 0.0), None, [0.5; 2], 0).expect("light");
-        assert!((beam.irradiance.0[0] * far * far / 18.0 - 1.0).abs() < 1e-12);
+        let light_sample = point.sample_incident(DVec3::new(far, 3.0, 0.0), None, [0.5; 2], 0).expect("light");
+        assert!((light_sample.irradiance.0[0] * far * far / 18.0 - 1.0).abs() < 1e-12);
     }
 }
 
@@ -122,13 +122,13 @@ fn densities_are_those_of_the_drawn_directions() {
     for patch in patches {
         let source = area(patch);
         for _ in 0..200 {
-            let beam = source.sample_incident(DVec3::ZERO, None, stream.point(), 0).expect("light");
-            let ray = Ray { origin: DVec3::ZERO, direction: beam.towards * 2.0 };
+            let light_sample = source.sample_incident(DVec3::ZERO, None, stream.point(), 0).expect("light");
+            let ray = Ray { origin: DVec3::ZERO, direction: light_sample.towards * 2.0 };
             // A point of the border may fall on either side of it.
-            let Some(glow) = source.intersect(&ray, 0.0, f64::INFINITY, 0) else { continue };
-            assert!((2.0 * glow.t - beam.distance).abs() < 1e-6, "{patch:?}");
-            assert!((glow.density / beam.density.expect("spread") - 1.0).abs() < 1e-6, "{patch:?}");
-            assert_eq!(glow.radiance.0[0], 1.0);
+            let Some(light_hit) = source.intersect(&ray, 0.0, f64::INFINITY, 0) else { continue };
+            assert!((2.0 * light_hit.t - light_sample.distance).abs() < 1e-6, "{patch:?}");
+            assert!((light_hit.pdf / light_sample.pdf.expect("spread") - 1.0).abs() < 1e-6, "{patch:?}");
+            assert_eq!(light_hit.radiance.0[0], 1.0);
         }
     }
 }
@@ -144,7 +144,7 @@ fn a_spot_falls_from_all_to_nothing_between_its_angles() {
     });
     let at = |degrees: f64| {
         let (sin, cos) = degrees.to_radians().sin_cos();
-        spot.sample_incident(DVec3::new(sin, 1.0 - cos, 0.0), None, [0.5; 2], 0).map_or(0.0, |beam| beam.irradiance.0[0])
+        spot.sample_incident(DVec3::new(sin, 1.0 - cos, 0.0), None, [0.5; 2], 0).map_or(0.0, |light_sample| light_sample.irradiance.0[0])
     };
     assert!((at(0.0) - 1.0).abs() < 1e-12 && (at(19.9) - 1.0).abs() < 1e-12 && at(40.1) == 0.0);
     let middle = ((20f64.to_radians().cos() + 40f64.to_radians().cos()) / 2.0).acos().to_degrees();
@@ -184,8 +184,8 @@ fn a_luminaire_shines_as_its_file_says() {
         goniometry: table,
         color: Color::grey(1.0),
     };
-    let beam = source(light).sample_incident(DVec3::ZERO, None, [0.5; 2], 0).expect("light");
-    assert!((beam.irradiance.0[0] - 200.0 / 683.0 / 4.0).abs() < 1e-12);
+    let light_sample = source(light).sample_incident(DVec3::ZERO, None, [0.5; 2], 0).expect("light");
+    assert!((light_sample.irradiance.0[0] - 200.0 / 683.0 / 4.0).abs() < 1e-12);
 }
 
 #[test]
@@ -213,9 +213,9 @@ fn a_sky_of_one_radiance_lights_a_plane_with_pi_times_it() {
     assert_eq!(sky.sky_radiance(&from_origin(DVec3::X), None, 0).expect("a sky").radiance.0[0], 2.0);
     // By the cosine above an element, each direction brings as much.
     for uniform in [[0.1, 0.2], [0.7, 0.9], [0.99, 0.5]] {
-        let beam = sky.sample_incident(DVec3::ZERO, Some(DVec3::Y), uniform, 0).expect("light");
-        assert!((beam.irradiance.0[0] * beam.towards.y - 2.0 * PI).abs() < 1e-9);
-        assert_eq!(sky.sky_radiance(&from_origin(beam.towards), Some(DVec3::Y), 0).map(|glow| glow.density), beam.density);
+        let light_sample = sky.sample_incident(DVec3::ZERO, Some(DVec3::Y), uniform, 0).expect("light");
+        assert!((light_sample.irradiance.0[0] * light_sample.towards.y - 2.0 * PI).abs() < 1e-9);
+        assert_eq!(sky.sky_radiance(&from_origin(light_sample.towards), Some(DVec3::Y), 0).map(|light_hit| light_hit.pdf), light_sample.pdf);
     }
 }
 
@@ -226,7 +226,7 @@ fn a_map_is_seen_where_its_directions_are_and_drawn_as_bright_as_it_is() {
     let drawn = irradiance(&sky, DVec3::ZERO, DVec3::new(0.6, 0.8, 0.0));
     let term = |uniform| {
         let towards = sphere(uniform);
-        sky.sky_radiance(&from_origin(towards), None, 0).map_or(0.0, |glow| glow.radiance.0[0])
+        sky.sky_radiance(&from_origin(towards), None, 0).map_or(0.0, |light_hit| light_hit.radiance.0[0])
             * towards.dot(DVec3::new(0.6, 0.8, 0.0)).max(0.0)
     };
     let even = 4.0 * PI * unit_square(term, 1e-4, 400_000).value;
@@ -234,14 +234,14 @@ fn a_map_is_seen_where_its_directions_are_and_drawn_as_bright_as_it_is() {
     // The density integrates to 1.
     let all = 4.0
         * PI
-        * unit_square(|u| sky.sky_radiance(&from_origin(sphere(u)), None, 0).map_or(0.0, |glow| glow.density), 1e-4, 400_000)
+        * unit_square(|u| sky.sky_radiance(&from_origin(sphere(u)), None, 0).map_or(0.0, |light_hit| light_hit.pdf), 1e-4, 400_000)
             .value;
     assert!((all - 1.0).abs() < 2e-3, "{all}");
     let mut stream = RandomStream::new(2, 2);
     for _ in 0..100 {
-        let beam = sky.sample_incident(DVec3::ZERO, None, stream.point(), 0).expect("light");
-        let glow = sky.sky_radiance(&from_origin(beam.towards), None, 0).expect("a sky");
-        assert!((glow.density / beam.density.expect("spread") - 1.0).abs() < 1e-9);
+        let light_sample = sky.sample_incident(DVec3::ZERO, None, stream.point(), 0).expect("light");
+        let light_hit = sky.sky_radiance(&from_origin(light_sample.towards), None, 0).expect("a sky");
+        assert!((light_hit.pdf / light_sample.pdf.expect("spread") - 1.0).abs() < 1e-9);
     }
     let ahead = source(Light::Sky { map: Some(map()), radiance: Color::grey(1.0), turned: 0.0 });
     // In the middle of column 4 of row 1, which is 60 degrees from the zenith, and straight up, where row 0 is.
@@ -265,18 +265,18 @@ fn a_disc_in_the_sky_is_drawn_evenly_and_seen_where_it_is() {
     assert!(!sun.is_sky() && sun.is_infinite() && sun.emits_photons());
     let mut stream = RandomStream::new(4, 9);
     for _ in 0..1000 {
-        let beam = sun.sample_incident(DVec3::ZERO, None, stream.point(), 0).expect("light");
-        let angle = beam.towards.cross(disc.towards).length().asin();
-        assert!(angle <= disc.radius * (1.0 + 1e-9) && (beam.towards.length() - 1.0).abs() < 1e-12);
-        let seen = sun.sky_radiance(&from_origin(beam.towards), None, 0).expect("it is there");
-        assert_eq!(Some(seen.density), beam.density);
+        let light_sample = sun.sample_incident(DVec3::ZERO, None, stream.point(), 0).expect("light");
+        let angle = light_sample.towards.cross(disc.towards).length().asin();
+        assert!(angle <= disc.radius * (1.0 + 1e-9) && (light_sample.towards.length() - 1.0).abs() < 1e-12);
+        let seen = sun.sky_radiance(&from_origin(light_sample.towards), None, 0).expect("it is there");
+        assert_eq!(Some(seen.pdf), light_sample.pdf);
     }
     assert!(
         sun.sky_radiance(&from_origin(-disc.towards), None, 0).is_none() && sun.sky_radiance(&from_origin(DVec3::Y), None, 0).is_none()
     );
     let [point] = sun.points(7)[..] else { panic!("one point") };
-    let beam = sun.incident_from(&point, DVec3::ZERO, 0).expect("light");
-    assert!((beam.irradiance.0[0] - 2.0).abs() < 1e-6 && (beam.towards - disc.towards).length() < 1e-12);
+    let light_sample = sun.incident_from(&point, DVec3::ZERO, 0).expect("light");
+    assert!((light_sample.irradiance.0[0] - 2.0).abs() < 1e-6 && (light_sample.towards - disc.towards).length() < 1e-12);
 }
 
 #[test]
@@ -294,8 +294,8 @@ fn polygons_of_a_patch_lie_on_it_and_turn_counter_clockwise_about_where_it_emits
             let normal = (b - a).cross(c - a).normalize();
             let middle = polygon.iter().sum::<DVec3>() / polygon.len() as f64;
             let before = Ray { origin: middle + normal * 5.0, direction: -normal };
-            let glow = area_hit(&patch, &before).expect("it is met");
-            assert!((glow.t - 5.0).abs() < 0.01 && glow.radiance.0[0] == 1.0, "{patch:?}: {glow:?}");
+            let light_hit = area_hit(&patch, &before).expect("it is met");
+            assert!((light_hit.t - 5.0).abs() < 0.01 && light_hit.radiance.0[0] == 1.0, "{patch:?}: {light_hit:?}");
             let twice: DVec3 = polygon.windows(2).map(|pair| (pair[0] - a).cross(pair[1] - a)).sum();
             assert!(polygon.len() >= 3 && twice.dot(normal) > 0.0);
             area += twice.length() / 2.0;
@@ -331,32 +331,32 @@ fn portals_change_where_a_sky_is_looked_for_and_not_how_much_it_lights() {
         for known in [Some(normal), None] {
             let mean = |source: &LightSource| {
                 let term = |uniform| {
-                    let beam = source.sample_incident(DVec3::ZERO, known, uniform, 0);
-                    beam.map_or(0.0, |beam| beam.irradiance.0[0] * beam.towards.dot(normal).max(0.0))
+                    let light_sample = source.sample_incident(DVec3::ZERO, known, uniform, 0);
+                    light_sample.map_or(0.0, |beam| beam.irradiance.0[0] * beam.towards.dot(normal).max(0.0))
                 };
                 unit_square(term, 1e-4, 400_000).value
             };
             let (plain, portal) = (mean(&sky), mean(&seen));
             assert!((portal / plain - 1.0).abs() < 3e-3, "{portal} {plain}");
-            let density = |u| seen.sky_radiance(&from_origin(sphere(u)), known, 0).map_or(0.0, |glow| glow.density);
-            let all = 4.0 * PI * unit_square(density, 1e-4, 400_000).value;
+            let pdf = |u| seen.sky_radiance(&from_origin(sphere(u)), known, 0).map_or(0.0, |light_hit| light_hit.pdf);
+            let all = 4.0 * PI * unit_square(pdf, 1e-4, 400_000).value;
             assert!((all - 1.0).abs() < 3e-3, "{all}");
         }
         let mut stream = RandomStream::new(5, 1);
         let mut through = 0;
         for _ in 0..1000 {
-            let Some(beam) = seen.sample_incident(DVec3::ZERO, Some(normal), stream.point(), 0) else { continue };
-            let glow = seen.sky_radiance(&from_origin(beam.towards), Some(normal), 0).expect("a sky");
-            assert!((glow.density / beam.density.expect("spread") - 1.0).abs() < 1e-9);
-            let at = beam.towards / -beam.towards.z;
-            through += i32::from(beam.towards.z < 0.0 && at.x.abs() < 0.5 && (0.2..1.2).contains(&at.y));
+            let Some(light_sample) = seen.sample_incident(DVec3::ZERO, Some(normal), stream.point(), 0) else { continue };
+            let light_hit = seen.sky_radiance(&from_origin(light_sample.towards), Some(normal), 0).expect("a sky");
+            assert!((light_hit.pdf / light_sample.pdf.expect("spread") - 1.0).abs() < 1e-9);
+            let at = light_sample.towards / -light_sample.towards.z;
+            through += i32::from(light_sample.towards.z < 0.0 && at.x.abs() < 0.5 && (0.2..1.2).contains(&at.y));
         }
         assert!((380..560).contains(&through), "{through} of 1000 go ahead");
         // Where there is none before a point, nothing changes.
         let below = DVec3::new(0.0, -5.0, 9.0);
         assert_eq!(
-            seen.sample_incident(below, None, [0.3, 0.4], 0).map(|beam| beam.towards),
-            seen.with_portals(&[]).sample_incident(below, None, [0.3, 0.4], 0).map(|beam| beam.towards)
+            seen.sample_incident(below, None, [0.3, 0.4], 0).map(|light_sample| light_sample.towards),
+            seen.with_portals(&[]).sample_incident(below, None, [0.3, 0.4], 0).map(|light_sample| light_sample.towards)
         );
     }
 }

@@ -30,15 +30,15 @@ pub struct TextureMixture<'a> {
 
 impl TextureMixture<'_> {
     /// What the patterns give at the wavelengths of a comb.
-    pub fn at(&self, comb: usize) -> TextureValues {
-        let mut painting = vec![Channels::ZERO; self.count];
+    pub fn at(&self, wavelength_set: usize) -> TextureValues {
+        let mut texture_values = vec![Channels::ZERO; self.count];
         for (pattern, curve, amount) in &self.parts {
-            painting[*pattern] += curve.of(comb) * *amount;
+            texture_values[*pattern] += curve.of(wavelength_set) * *amount;
         }
         for (pattern, number) in &self.numbers {
-            painting[*pattern] = Channels::splat(*number);
+            texture_values[*pattern] = Channels::splat(*number);
         }
-        painting
+        texture_values
     }
 }
 
@@ -98,12 +98,12 @@ pub enum LobeSelection {
 }
 
 impl LobeSelection {
-    fn has(self, which: LobeClass, flags: Flags) -> bool {
+    fn has(self, class: LobeClass, flags: Flags) -> bool {
         match self {
-            LobeSelection::All => LobeClass::CONTINUING.contains(&which),
-            LobeSelection::NonDelta => LobeClass::CONTINUING.contains(&which) && !flags.has(Flags::DELTA),
-            LobeSelection::Narrow => which == LobeClass::Narrow,
-            LobeSelection::Broad => matches!(which, LobeClass::Broad | LobeClass::Radiosity),
+            LobeSelection::All => LobeClass::CONTINUING.contains(&class),
+            LobeSelection::NonDelta => LobeClass::CONTINUING.contains(&class) && !flags.has(Flags::DELTA),
+            LobeSelection::Narrow => class == LobeClass::Narrow,
+            LobeSelection::Broad => matches!(class, LobeClass::Broad | LobeClass::Radiosity),
         }
     }
 }
@@ -111,7 +111,7 @@ impl LobeSelection {
 /// A lobe of a material.
 #[derive(Clone, Debug)]
 struct Member {
-    which: LobeClass,
+    class: LobeClass,
     /// What the lobe says of itself.
     flags: Flags,
     lobe: AnyLobe,
@@ -121,23 +121,23 @@ struct Member {
 #[derive(Clone, Debug)]
 pub struct Bsdf {
     lobes: Vec<Member>,
-    throws: bool,
-    takes: bool,
-    passes: bool,
-    spreads: bool,
+    casts_caustics: bool,
+    stores_photons: bool,
+    transmits_straight: bool,
+    continues_non_delta: bool,
     /// What the ambient term reflects; none if it is what is reflected alike to everywhere.
     pub(super) ambient: Option<PreparedPaint>,
     /// What changes from place to place.
     pub(super) patterns: Vec<PreparedTexture>,
     pub(super) relief: Option<Relief>,
     /// The part of light that goes straight through; none if none does.
-    pub(super) passing: Option<StraightTransmission>,
+    pub(super) straight_transmission: Option<StraightTransmission>,
     /// Radiance that it emits; none if it does not.
     pub emission: Option<SpectralTable>,
     /// What is inside, where it is transparent.
     pub interior: Option<InteriorMedium>,
     /// The direction along which it is brushed.
-    pub along: Option<DVec3>,
+    pub brushed_along: Option<DVec3>,
 }
 
 /// The part of light that goes straight through.
@@ -150,10 +150,10 @@ pub(super) enum StraightTransmission {
 }
 
 impl StraightTransmission {
-    fn of(&self, sighting: &ShadingContext) -> Channels {
+    fn of(&self, context: &ShadingContext) -> Channels {
         match self {
-            StraightTransmission::Paint(shade) => shade.of(sighting),
-            StraightTransmission::Pane(surface) => surface.straight_transmittance(sighting),
+            StraightTransmission::Paint(shade) => shade.of(context),
+            StraightTransmission::Pane(surface) => surface.straight_transmittance(context),
         }
     }
 }
@@ -178,116 +178,116 @@ impl Bsdf {
     pub(super) fn new(ambient: PreparedPaint, relief: Option<Relief>, emission: Option<SpectralTable>) -> Bsdf {
         Bsdf {
             lobes: Vec::new(),
-            throws: false,
-            takes: false,
-            passes: false,
-            spreads: false,
+            casts_caustics: false,
+            stores_photons: false,
+            transmits_straight: false,
+            continues_non_delta: false,
             ambient: Some(ambient),
             patterns: Vec::new(),
             relief,
-            passing: None,
+            straight_transmission: None,
             emission,
             interior: None,
-            along: None,
+            brushed_along: None,
         }
     }
 
     /// Radiance towards the viewer for each unit of flux density that arrives from a light, 1/sr: D K / (N·V).
     ///
     /// Of directions that only a mirror or a smooth interface would reach nothing is known here.
-    pub fn value(&self, which: LobeClass, sighting: &ShadingContext, light: DVec3) -> Channels {
-        self.of_class(which).fold(Channels::ZERO, |sum, lobe| sum + lobe.value(sighting, light))
+    pub fn value(&self, class: LobeClass, context: &ShadingContext, light: DVec3) -> Channels {
+        self.of_class(class).fold(Channels::ZERO, |sum, lobe| sum + lobe.value(context, light))
     }
 
     /// Radiance towards the viewer for each unit of flux density that arrives from a light, 1/sr, by the lobes that are
     /// `among`; nothing of what only a mirror or a smooth interface would reach.
-    pub fn value_among(&self, among: LobeSelection, sighting: &ShadingContext, light: DVec3) -> Channels {
-        let members = self.lobes.iter().filter(|member| among.has(member.which, member.flags));
-        members.fold(Channels::ZERO, |sum, member| sum + member.lobe.value(sighting, light))
+    pub fn value_among(&self, selection: LobeSelection, context: &ShadingContext, light: DVec3) -> Channels {
+        let members = self.lobes.iter().filter(|member| selection.has(member.class, member.flags));
+        members.fold(Channels::ZERO, |sum, member| sum + member.lobe.value(context, light))
     }
 
     /// Radiance towards the viewer for each unit of flux density that arrives from a light, 1/sr, by all lobes; nothing of
     /// what only a mirror or a smooth interface would reach.
     #[inline]
-    pub fn total_value(&self, sighting: &ShadingContext, light: DVec3) -> Channels {
-        self.lobes.iter().fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.value(sighting, light))
+    pub fn total_value(&self, context: &ShadingContext, light: DVec3) -> Channels {
+        self.lobes.iter().fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.value(context, light))
     }
 
     /// The density with which [`Optics::onward`] draws a direction by broad or by narrow lobes, 1/sr.
     ///
     /// - `among`: as there.
-    pub fn pdf(&self, which: LobeClass, sighting: &ShadingContext, light: DVec3, among: LobeSelection) -> f64 {
-        let shares = self.shares(sighting, among);
-        let members = self.lobes.iter().zip(&shares).filter(|(member, _)| member.which == which);
-        members.map(|(member, share)| share * member.lobe.pdf(sighting, light)).sum()
+    pub fn pdf(&self, class: LobeClass, context: &ShadingContext, light: DVec3, selection: LobeSelection) -> f64 {
+        let shares = self.shares(context, selection);
+        let members = self.lobes.iter().zip(&shares).filter(|(member, _)| member.class == class);
+        members.map(|(member, share)| share * member.lobe.pdf(context, light)).sum()
     }
 
     /// The density with which [`Optics::onward`] draws a direction among lobes, 1/sr.
-    pub fn pdf_among(&self, among: LobeSelection, sighting: &ShadingContext, light: DVec3) -> f64 {
-        let members = self.lobes.iter().zip(self.shares(sighting, among)).filter(|(_, share)| *share > 0.0);
-        members.map(|(member, share)| share * member.lobe.pdf(sighting, light)).sum()
+    pub fn pdf_among(&self, selection: LobeSelection, context: &ShadingContext, light: DVec3) -> f64 {
+        let members = self.lobes.iter().zip(self.shares(context, selection)).filter(|(_, share)| *share > 0.0);
+        members.map(|(member, share)| share * member.lobe.pdf(context, light)).sum()
     }
 
     /// The directions of mirrors and smooth interfaces, all of them.
-    pub fn specular_samples(&self, sighting: &ShadingContext) -> impl Iterator<Item = BsdfSample> {
-        let narrow = |member: &&Member| member.which == LobeClass::Narrow && member.flags.has(Flags::DELTA);
+    pub fn specular_samples(&self, context: &ShadingContext) -> impl Iterator<Item = BsdfSample> {
+        let narrow = |member: &&Member| member.class == LobeClass::Narrow && member.flags.has(Flags::DELTA);
         let members = self.lobes.iter().filter(narrow);
-        members.flat_map(|member| member.lobe.specular_samples(sighting)).flatten().filter(|onward| onward.weight.max() > 0.0)
+        members.flat_map(|member| member.lobe.specular_samples(context)).flatten().filter(|sample| sample.weight.max() > 0.0)
     }
 
     /// What goes straight through, if anything does.
-    pub fn straight_sample(&self, sighting: &ShadingContext) -> Option<BsdfSample> {
-        let weight = self.passing.as_ref()?.of(sighting);
-        Some(BsdfSample { light: -sighting.view, weight, density: None, is_straight: true, is_broad: false })
+    pub fn straight_sample(&self, context: &ShadingContext) -> Option<BsdfSample> {
+        let weight = self.straight_transmission.as_ref()?.of(context);
+        Some(BsdfSample { light: -context.view, weight, pdf: None, is_straight: true, is_broad: false })
     }
 
     /// One direction, drawn about as what comes from there counts; none where what is drawn counts nothing.
     ///
     /// - `choice`: uniform in 0..1, chooses among lobes. `point`: uniform in the unit square.
     /// - `among`: which lobes it is drawn among.
-    pub fn sample(&self, sighting: &ShadingContext, choice: f64, point: [f64; 2], among: LobeSelection) -> Option<BsdfSample> {
-        let shares = self.shares(sighting, among);
+    pub fn sample(&self, context: &ShadingContext, choice: f64, point: [f64; 2], selection: LobeSelection) -> Option<BsdfSample> {
+        let shares = self.shares(context, selection);
         let (index, choice) = choose_share(&shares, choice)?;
-        let Member { which, lobe, .. } = self.lobes.get(index)?;
-        let drawn = lobe.sample(sighting, choice, point)?;
-        if drawn.density.is_none() {
+        let Member { class, lobe, .. } = self.lobes.get(index)?;
+        let drawn = lobe.sample(context, choice, point)?;
+        if drawn.pdf.is_none() {
             return Some(BsdfSample { weight: drawn.weight * shares[index].recip(), ..drawn });
         }
         // What all lobes of the kind give there, over the density with which all of them draw it.
         let light = drawn.light;
-        let (mut value, mut density) = (Channels::ZERO, 0.0);
-        let is_broad = *which != LobeClass::Narrow;
-        for (Member { which, lobe, .. }, share) in self.lobes.iter().zip(&shares).filter(|(_, share)| **share > 0.0) {
-            if is_broad == (*which != LobeClass::Narrow) {
-                value += lobe.value(sighting, light);
-                density += share * lobe.pdf(sighting, light);
+        let (mut value, mut pdf) = (Channels::ZERO, 0.0);
+        let is_broad = *class != LobeClass::Narrow;
+        for (Member { class, lobe, .. }, share) in self.lobes.iter().zip(&shares).filter(|(_, share)| **share > 0.0) {
+            if is_broad == (*class != LobeClass::Narrow) {
+                value += lobe.value(context, light);
+                pdf += share * lobe.pdf(context, light);
             }
         }
-        let weight = value * (light.z.abs() / density);
-        (density > 0.0 && weight.is_finite()).then_some(BsdfSample { weight, density: Some(density), is_broad, ..drawn })
+        let weight = value * (light.z.abs() / pdf);
+        (pdf > 0.0 && weight.is_finite()).then_some(BsdfSample { weight, pdf: Some(pdf), is_broad, ..drawn })
     }
 
     /// What ambient light, the same radiance from everywhere, adds: its reflected fraction.
-    pub fn ambient(&self, sighting: &ShadingContext) -> Channels {
-        self.ambient.as_ref().map_or_else(|| self.diffuse_albedo(sighting), |ambient| ambient.of(sighting))
+    pub fn ambient(&self, context: &ShadingContext) -> Channels {
+        self.ambient.as_ref().map_or_else(|| self.diffuse_albedo(context), |ambient| ambient.of(context))
     }
 
     /// About what ambient light adds by what mirrors, metals, coats and glass reflect, where that is not followed.
-    pub fn glossy_albedo(&self, sighting: &ShadingContext) -> Channels {
-        self.lobes.iter().fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.glossy_albedo(sighting))
+    pub fn glossy_albedo(&self, context: &ShadingContext) -> Channels {
+        self.lobes.iter().fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.glossy_albedo(context))
     }
 
     /// The part of light from all around that is reflected alike to everywhere: Lambert's term, and what a ground under a
     /// coat gives in the mean.
-    pub fn diffuse_albedo(&self, sighting: &ShadingContext) -> Channels {
-        self.lobes.iter().fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.diffuse_albedo(sighting))
+    pub fn diffuse_albedo(&self, context: &ShadingContext) -> Channels {
+        self.lobes.iter().fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.diffuse_albedo(context))
     }
 
     /// About the part of light from all around that is reflected to the viewer, but for what a mirror or a smooth interface
     /// passes on.
-    pub fn non_delta_albedo(&self, sighting: &ShadingContext) -> Channels {
+    pub fn non_delta_albedo(&self, context: &ShadingContext) -> Channels {
         let spread = self.lobes.iter().filter(|member| !member.flags.has(Flags::DELTA));
-        spread.fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.diffuse_albedo(sighting) + lobe.glossy_albedo(sighting))
+        spread.fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.diffuse_albedo(context) + lobe.glossy_albedo(context))
     }
 
     /// Whether some light is reflected alike to everywhere.
@@ -301,62 +301,62 @@ impl Bsdf {
     }
 
     /// What its patterns are mixed of in the mean over a place, for any wavelengths.
-    pub fn texture_mixture(&self, place: &TextureFootprint) -> TextureMixture<'_> {
+    pub fn texture_mixture(&self, footprint: &TextureFootprint) -> TextureMixture<'_> {
         let mut mixture = TextureMixture { count: self.patterns.len(), ..TextureMixture::default() };
         for (index, pattern) in self.patterns.iter().enumerate() {
             match pattern {
-                PreparedTexture::Paint(painted) => {
-                    painted.each(place, 1.0, &mut |curve, amount| mixture.parts.push((index, curve, amount)));
+                PreparedTexture::Paint(paint) => {
+                    paint.each(footprint, 1.0, &mut |curve, amount| mixture.parts.push((index, curve, amount)));
                 }
-                PreparedTexture::Number(number) => mixture.numbers.push((index, number.at(place))),
+                PreparedTexture::Number(number) => mixture.numbers.push((index, number.at(footprint))),
             }
         }
         mixture
     }
 
     /// What its patterns give in the mean over a place.
-    pub fn texture_values(&self, place: &TextureFootprint, comb: usize) -> TextureValues {
-        self.patterns.iter().map(|pattern| pattern.at(place, comb)).collect()
+    pub fn texture_values(&self, footprint: &TextureFootprint, wavelength_set: usize) -> TextureValues {
+        self.patterns.iter().map(|pattern| pattern.at(footprint, wavelength_set)).collect()
     }
 
     /// The normal of an element, tilted by the relief.
     ///
     /// - `normal`: of the surface, unit length, outwards.
-    pub fn tilted(&self, place: &TextureFootprint, normal: DVec3) -> DVec3 {
-        self.relief.as_ref().map_or(normal, |relief| relief.normal(place, normal))
+    pub fn tilted(&self, footprint: &TextureFootprint, normal: DVec3) -> DVec3 {
+        self.relief.as_ref().map_or(normal, |relief| relief.normal(footprint, normal))
     }
 
     /// Whether light goes straight through.
     pub fn is_passable(&self) -> bool {
-        self.passes
+        self.transmits_straight
     }
 
     /// The part of light that goes straight through.
     ///
     /// - `cosine`: of the angle between light and normal, 0..=1. `place`: asked for only if a pattern has to be looked up.
-    pub fn straight_transmittance(&self, comb: usize, cosine: f64, place: impl FnOnce() -> TextureFootprint) -> Channels {
-        let Some(passing) = &self.passing else { return Channels::ZERO };
-        let painted = if self.patterns.is_empty() { TextureValues::new() } else { self.texture_values(&place(), comb) };
+    pub fn straight_transmittance(&self, wavelength_set: usize, cosine: f64, footprint: impl FnOnce() -> TextureFootprint) -> Channels {
+        let Some(passing) = &self.straight_transmission else { return Channels::ZERO };
+        let texture_values = if self.patterns.is_empty() { TextureValues::new() } else { self.texture_values(&footprint(), wavelength_set) };
         let view = DVec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
-        passing.of(&ShadingContext { view, comb, side: InterfaceIndices::AIR, lane: 0, painted: &painted })
+        passing.of(&ShadingContext { view, wavelength_set, indices: InterfaceIndices::AIR, lane: 0, texture_values: &texture_values })
     }
 
     /// Whether it is a polished interface: what goes through has one direction.
     pub fn is_clear(&self) -> bool {
-        let is_clear = |member: &Member| member.which == LobeClass::Narrow && member.flags.has(Flags::CLEAR);
+        let is_clear = |member: &Member| member.class == LobeClass::Narrow && member.flags.has(Flags::CLEAR);
         self.interior.is_some() && self.lobes.iter().any(is_clear)
     }
 
     /// The part of light that a polished interface lets through, as if it were not bent.
     ///
     /// - `cosine`: of the angle between light and normal, 0..=1. `place`: asked for only if a pattern has to be looked up.
-    pub fn clear_transmittance(&self, comb: usize, cosine: f64, place: impl FnOnce() -> TextureFootprint) -> Channels {
+    pub fn clear_transmittance(&self, wavelength_set: usize, cosine: f64, footprint: impl FnOnce() -> TextureFootprint) -> Channels {
         let Some(interior) = &self.interior else { return Channels::ZERO };
-        let painted = if self.patterns.is_empty() { TextureValues::new() } else { self.texture_values(&place(), comb) };
+        let texture_values = if self.patterns.is_empty() { TextureValues::new() } else { self.texture_values(&footprint(), wavelength_set) };
         let view = DVec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
-        let side = InterfaceIndices { behind: interior.index.of(comb), ..InterfaceIndices::AIR };
-        let sighting = ShadingContext { view, comb, side, lane: 0, painted: &painted };
-        self.of_class(LobeClass::Narrow).fold(Channels::ZERO, |sum, lobe| sum + lobe.clear_transmittance(&sighting))
+        let side = InterfaceIndices { behind: interior.index.of(wavelength_set), ..InterfaceIndices::AIR };
+        let context = ShadingContext { view, wavelength_set, indices: side, lane: 0, texture_values: &texture_values };
+        self.of_class(LobeClass::Narrow).fold(Channels::ZERO, |sum, lobe| sum + lobe.clear_transmittance(&context))
     }
 
     /// Whether some lobe of a kind answers lights.
@@ -366,51 +366,51 @@ impl Bsdf {
 
     /// Whether rays are carried on.
     pub fn continues_paths(&self) -> bool {
-        self.lobes.iter().any(|member| LobeClass::CONTINUING.contains(&member.which))
+        self.lobes.iter().any(|member| LobeClass::CONTINUING.contains(&member.class))
     }
 
     /// Whether some lobe passes light on as a beam, other than straight.
     pub fn casts_caustics(&self) -> bool {
-        self.throws
+        self.casts_caustics
     }
 
     /// Whether some lobe spreads the light that comes to it.
     pub fn stores_photons(&self) -> bool {
-        self.takes
+        self.stores_photons
     }
 
     /// Radiance towards the viewer for each unit of flux density that arrives, 1/sr, of all lobes but the narrow ones.
-    pub fn non_narrow_value(&self, sighting: &ShadingContext, light: DVec3) -> Channels {
-        let spread = self.lobes.iter().filter(|member| member.which != LobeClass::Narrow);
-        spread.fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.value(sighting, light))
+    pub fn non_narrow_value(&self, context: &ShadingContext, light: DVec3) -> Channels {
+        let spread = self.lobes.iter().filter(|member| member.class != LobeClass::Narrow);
+        spread.fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.value(context, light))
     }
 
     /// Radiance towards the viewer for each unit of flux density, 1/sr, of all lobes but the narrow ones, where it is one
     /// for all light from above; none where it is not.
-    pub fn constant_value(&self, sighting: &ShadingContext) -> Option<Channels> {
-        let mut spread = self.lobes.iter().filter(|member| member.which != LobeClass::Narrow);
+    pub fn constant_value(&self, context: &ShadingContext) -> Option<Channels> {
+        let mut spread = self.lobes.iter().filter(|member| member.class != LobeClass::Narrow);
         spread.try_fold(Channels::ZERO, |sum, Member { flags, lobe, .. }| {
-            flags.has(Flags::EVEN).then(|| sum + lobe.value(sighting, DVec3::Z))
+            flags.has(Flags::EVEN).then(|| sum + lobe.value(context, DVec3::Z))
         })
     }
 
     /// Whether light that is followed from lamps goes on from it about everywhere.
     pub fn is_broad(&self) -> bool {
-        let goes_on = |member: &Member| LobeSelection::Broad.has(member.which, member.flags) && !member.flags.has(Flags::BLACK);
+        let goes_on = |member: &Member| LobeSelection::Broad.has(member.class, member.flags) && !member.flags.has(Flags::BLACK);
         self.lobes.iter().any(goes_on)
     }
 
     /// Whether some lobe that carries rays on does so in more than single directions.
     pub fn continues_non_delta(&self) -> bool {
-        self.spreads
+        self.continues_non_delta
     }
 
     /// Adds a lobe.
     ///
     /// - `carried`: how it carries on diffuse light, as far as it does.
-    pub(super) fn add(&mut self, lobe: AnyLobe, carried: Interreflection) {
+    pub(super) fn add(&mut self, lobe: AnyLobe, interreflection: Interreflection) {
         let flags = lobe.flags();
-        let which = match carried {
+        let class = match interreflection {
             Interreflection::LeftOut => LobeClass::LightsOnly,
             Interreflection::Solved if flags.has(Flags::DIFFUSE) => LobeClass::Radiosity,
             Interreflection::Solved => LobeClass::LightsOnly,
@@ -418,16 +418,16 @@ impl Bsdf {
             Interreflection::Followed => LobeClass::Narrow,
         };
         let is_black = flags.has(Flags::BLACK);
-        let is_continued = LobeClass::CONTINUING.contains(&which);
-        self.spreads |= is_continued && !flags.has(Flags::DELTA) && !is_black;
-        match which {
+        let is_continued = LobeClass::CONTINUING.contains(&class);
+        self.continues_non_delta |= is_continued && !flags.has(Flags::DELTA) && !is_black;
+        match class {
             _ if is_black => {}
-            LobeClass::Narrow if flags.has(Flags::STRAIGHT) => self.passes = true,
-            LobeClass::Narrow if flags.has(Flags::PANE) => (self.passes, self.throws) = (true, true),
-            LobeClass::Narrow => self.throws = true,
-            LobeClass::Broad | LobeClass::Radiosity | LobeClass::LightsOnly => self.takes = true,
+            LobeClass::Narrow if flags.has(Flags::STRAIGHT) => self.transmits_straight = true,
+            LobeClass::Narrow if flags.has(Flags::PANE) => (self.transmits_straight, self.casts_caustics) = (true, true),
+            LobeClass::Narrow => self.casts_caustics = true,
+            LobeClass::Broad | LobeClass::Radiosity | LobeClass::LightsOnly => self.stores_photons = true,
         }
-        self.lobes.push(Member { which, flags, lobe });
+        self.lobes.push(Member { class, flags, lobe });
     }
 
     /// Takes in a number that changes from place to place.
@@ -450,15 +450,15 @@ impl Bsdf {
         self.lobes.iter().map(|member| &member.lobe)
     }
 
-    fn of_class(&self, which: LobeClass) -> impl Iterator<Item = &AnyLobe> {
-        self.lobes.iter().filter(move |member| member.which == which).map(|member| &member.lobe)
+    fn of_class(&self, class: LobeClass) -> impl Iterator<Item = &AnyLobe> {
+        self.lobes.iter().filter(move |member| member.class == class).map(|member| &member.lobe)
     }
 
     /// The chances of the lobes; they add up to 1, or are all 0.
-    fn shares(&self, sighting: &ShadingContext, among: LobeSelection) -> [f64; MOST_LOBES] {
+    fn shares(&self, context: &ShadingContext, selection: LobeSelection) -> [f64; MOST_LOBES] {
         let mut shares = [0.0; MOST_LOBES];
-        for (share, Member { which, flags, lobe }) in shares.iter_mut().zip(&self.lobes) {
-            *share = if among.has(*which, *flags) { lobe.strength(sighting) } else { 0.0 };
+        for (share, Member { class, flags, lobe }) in shares.iter_mut().zip(&self.lobes) {
+            *share = if selection.has(*class, *flags) { lobe.strength(context) } else { 0.0 };
         }
         let all: f64 = shares.iter().sum();
         if all > 0.0 {

@@ -89,9 +89,9 @@ impl Lobe for CoatReflection {
         }
     }
 
-    fn value(&self, sighting: &ShadingContext, light: DVec3) -> Channels {
-        let view = sighting.view;
-        if sighting.is_behind(light) {
+    fn value(&self, context: &ShadingContext, light: DVec3) -> Channels {
+        let view = context.view;
+        if context.is_behind(light) {
             return Channels::ZERO;
         }
         let Some((facets, half)) = self.facets.as_ref().zip((light + view).try_normalize()) else {
@@ -100,32 +100,32 @@ impl Lobe for CoatReflection {
         Channels::splat(self.reflected(half.dot(view)) * facets.density(light, view) / view.z)
     }
 
-    fn pdf(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
+    fn pdf(&self, context: &ShadingContext, light: DVec3) -> f64 {
         match &self.facets {
-            Some(facets) if !sighting.is_behind(light) => facets.pdf(sighting.view, light),
+            Some(facets) if !context.is_behind(light) => facets.pdf(context.view, light),
             _ => 0.0,
         }
     }
 
-    fn sample(&self, sighting: &ShadingContext, _: f64, point: [f64; 2]) -> Option<BsdfSample> {
+    fn sample(&self, context: &ShadingContext, _: f64, point: [f64; 2]) -> Option<BsdfSample> {
         match &self.facets {
-            Some(facets) => facets.sample(sighting.view, point).map(BsdfSample::unweighted),
-            None => self.specular_samples(sighting)[0],
+            Some(facets) => facets.sample(context.view, point).map(BsdfSample::unweighted),
+            None => self.specular_samples(context)[0],
         }
     }
 
-    fn strength(&self, sighting: &ShadingContext) -> f64 {
+    fn strength(&self, context: &ShadingContext) -> f64 {
         // Where Fresnel's term vanishes, so does what is reflected; a rough coat may still show tilted facets.
-        self.reflected(sighting.view.z).max(if self.facets.is_none() { 0.0 } else { 0.02 })
+        self.reflected(context.view.z).max(if self.facets.is_none() { 0.0 } else { 0.02 })
     }
 
-    fn specular_samples(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
-        let mirrored = || BsdfSample::specular(sighting.mirror_direction(), self.glossy_albedo(sighting));
+    fn specular_samples(&self, context: &ShadingContext) -> [Option<BsdfSample>; 2] {
+        let mirrored = || BsdfSample::specular(context.mirror_direction(), self.glossy_albedo(context));
         [self.facets.is_none().then(mirrored), None]
     }
 
-    fn glossy_albedo(&self, sighting: &ShadingContext) -> Channels {
-        Channels::splat(self.reflected(sighting.view.z))
+    fn glossy_albedo(&self, context: &ShadingContext) -> Channels {
+        Channels::splat(self.reflected(context.view.z))
     }
 }
 
@@ -155,23 +155,23 @@ enum Fraction {
 
 impl CoatedDiffuse {
     /// - `index`: of the coat over that of what is above. `reflectance`: of the ground. `combs`: how many there are.
-    pub(super) fn new(coat: Arc<CoatReflection>, index: f64, reflectance: &PreparedPaint, combs: usize) -> CoatedDiffuse {
+    pub(super) fn new(coat: Arc<CoatReflection>, index: f64, reflectance: &PreparedPaint, sets: usize) -> CoatedDiffuse {
         let mean = coat.mean_through();
         // Where the coat is the thinner medium, nothing is reflected back but what Fresnel's term says.
         let back = (1.0 - mean / (index * index)).max(0.0);
         let fraction = match reflectance {
             PreparedPaint::Plain(curve) => {
-                Fraction::Known(SpectralTable::each(combs, |comb| curve.of(comb).map(|k| series(k, mean, back))))
+                Fraction::Known(SpectralTable::each(sets, |wavelength_set| curve.of(wavelength_set).map(|k| series(k, mean, back))))
             }
-            painted => Fraction::Textured(painted.clone()),
+            textured => Fraction::Textured(textured.clone()),
         };
         CoatedDiffuse { coat, mean, back, fraction }
     }
 
-    fn fraction(&self, sighting: &ShadingContext) -> Channels {
+    fn fraction(&self, context: &ShadingContext) -> Channels {
         match &self.fraction {
-            Fraction::Known(curve) => curve.of(sighting.comb),
-            Fraction::Textured(shade) => shade.of(sighting).map(|k| series(k, self.mean, self.back)),
+            Fraction::Known(curve) => curve.of(context.wavelength_set),
+            Fraction::Textured(shade) => shade.of(context).map(|k| series(k, self.mean, self.back)),
         }
     }
 }
@@ -185,28 +185,28 @@ impl Lobe for CoatedDiffuse {
         Flags::BROAD | Flags::DIFFUSE | Flags::BLACK.when(is_black)
     }
 
-    fn value(&self, sighting: &ShadingContext, light: DVec3) -> Channels {
-        if sighting.is_behind(light) {
+    fn value(&self, context: &ShadingContext, light: DVec3) -> Channels {
+        if context.is_behind(light) {
             return Channels::ZERO;
         }
-        self.fraction(sighting) * (self.coat.through(light.z) * self.coat.through(sighting.view.z))
+        self.fraction(context) * (self.coat.through(light.z) * self.coat.through(context.view.z))
     }
 
-    fn pdf(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
-        cosine_pdf(sighting, light)
+    fn pdf(&self, context: &ShadingContext, light: DVec3) -> f64 {
+        cosine_pdf(context, light)
     }
 
     fn sample(&self, _: &ShadingContext, _: f64, point: [f64; 2]) -> Option<BsdfSample> {
         cosine_sample(point)
     }
 
-    fn strength(&self, sighting: &ShadingContext) -> f64 {
-        self.fraction(sighting).max() * std::f64::consts::PI * self.coat.through(sighting.view.z)
+    fn strength(&self, context: &ShadingContext) -> f64 {
+        self.fraction(context).max() * std::f64::consts::PI * self.coat.through(context.view.z)
     }
 
     /// π D T̄² of the D without its two T.
-    fn diffuse_albedo(&self, sighting: &ShadingContext) -> Channels {
-        self.fraction(sighting) * (std::f64::consts::PI * self.mean * self.mean)
+    fn diffuse_albedo(&self, context: &ShadingContext) -> Channels {
+        self.fraction(context) * (std::f64::consts::PI * self.mean * self.mean)
     }
 }
 

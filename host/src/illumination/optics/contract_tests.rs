@@ -92,7 +92,7 @@ fn lobes() -> Vec<AnyLobe> {
 fn context(degrees: f64, before: f64, behind: f64) -> ShadingContext<'static> {
     let (sin, cos) = degrees.to_radians().sin_cos();
     let side = InterfaceIndices { before: Channels::splat(before), behind: Channels::splat(behind), inside: before > behind };
-    ShadingContext { view: DVec3::new(sin, 0.0, cos), comb: 0, side, lane: 0, painted: &TEXTURE_VALUES }
+    ShadingContext { view: DVec3::new(sin, 0.0, cos), wavelength_set: 0, indices: side, lane: 0, texture_values: &TEXTURE_VALUES }
 }
 
 /// From outside and from inside, steeply and at a flat angle.
@@ -128,7 +128,7 @@ fn there_is_a_lobe_of_every_kind() {
 /// - `sample`: draws a direction, or none. `density`: 1/sr.
 fn deviations(
     mut sample: impl FnMut(&mut RandomStream) -> Option<DVec3>,
-    density: impl Fn(DVec3) -> f64,
+    pdf: impl Fn(DVec3) -> f64,
 ) -> Result<f64, String> {
     let mut stream = RandomStream::new(11, 7);
     // What is drawn in vain counts, too.
@@ -146,7 +146,7 @@ fn deviations(
             let (row, column) = ((bin / BINS[1]) as f64, (bin % BINS[1]) as f64);
             let cosines = [row, row + 1.0].map(|row| 2.0 * row / BINS[0] as f64 - 1.0);
             let turns = [column, column + 1.0].map(|column| column / BINS[1] as f64);
-            SAMPLES as f64 * over(cosines, turns, 800, &density)
+            SAMPLES as f64 * over(cosines, turns, 800, &pdf)
         })
         .collect();
     let all: f64 = expected.iter().sum();
@@ -174,10 +174,10 @@ fn deviations(
 fn samples_are_drawn_as_densities_say() {
     let spread: Vec<AnyLobe> = lobes().into_iter().filter(|lobe| !lobe.flags().has(Flags::DELTA)).collect();
     spread.par_iter().for_each(|lobe| {
-        for sighting in contexts() {
-            let drawn = |stream: &mut RandomStream| lobe.sample(&sighting, stream.uniform(), stream.point());
-            let found = deviations(|stream| Some(drawn(stream)?.light), |light| lobe.pdf(&sighting, light));
-            assert!(found.clone().is_ok_and(|d| d < DOUBT), "{} at {}: {found:?}", lobe.kind(), sighting.view);
+        for context in contexts() {
+            let drawn = |stream: &mut RandomStream| lobe.sample(&context, stream.uniform(), stream.point());
+            let found = deviations(|stream| Some(drawn(stream)?.light), |light| lobe.pdf(&context, light));
+            assert!(found.clone().is_ok_and(|d| d < DOUBT), "{} at {}: {found:?}", lobe.kind(), context.view);
         }
     });
 }
@@ -188,12 +188,12 @@ fn samples_of_a_tenth_more_roughness_are_told_apart() {
         let finish = Finish::Rough { name: "GGX".into(), roughness: roughness.into() };
         let shipped::ComplexIndex { n, k } = shipped::metal("copper").expect("a metal");
         let material = MaterialKind::Metal(Metal { n, k, finish }).into();
-        let optics = BsdfBuilder::new(&WavelengthSets::bands(), false).bsdf(&material, Interreflection::Followed);
-        optics.expect("a material").lobes().next().expect("a lobe").clone()
+        let bsdf = BsdfBuilder::new(&WavelengthSets::bands(), false).bsdf(&material, Interreflection::Followed);
+        bsdf.expect("a material").lobes().next().expect("a lobe").clone()
     };
-    let (one, other, sighting) = (metal(0.3), metal(0.33), context(50.0, 1.0, 1.5));
-    let drawn = |stream: &mut RandomStream| Some(one.sample(&sighting, stream.uniform(), stream.point())?.light);
-    let found = deviations(drawn, |light| other.pdf(&sighting, light));
+    let (one, other, context) = (metal(0.3), metal(0.33), context(50.0, 1.0, 1.5));
+    let drawn = |stream: &mut RandomStream| Some(one.sample(&context, stream.uniform(), stream.point())?.light);
+    let found = deviations(drawn, |light| other.pdf(&context, light));
     assert!(found.clone().is_ok_and(|d| d > DOUBT), "{found:?}");
 }
 
@@ -201,26 +201,26 @@ fn samples_of_a_tenth_more_roughness_are_told_apart() {
 fn light_goes_to_and_fro_alike() {
     let mut stream = RandomStream::new(3, 5);
     for lobe in lobes().iter().filter(|lobe| !NOT_PHYSICAL.contains(&lobe.kind())) {
-        for sighting in contexts() {
+        for context in contexts() {
             for _ in 0..40 {
                 let [x, y] = stream.point();
                 let light = direction(2.0 * x - 1.0, y);
-                let value = lobe.value(&sighting, light).0[0];
+                let value = lobe.value(&context, light).0[0];
                 // Through the surface, the other side is seen in a frame of its own, and radiance is per square of the index.
                 let flip = |way: DVec3| DVec3::new(way.x, way.y, way.z.abs() * if light.z > 0.0 { 1.0 } else { -1.0 });
-                let InterfaceIndices { before, behind, inside } = sighting.side;
+                let InterfaceIndices { before, behind, inside } = context.indices;
                 let (back, squares) = match light.z > 0.0 {
-                    true => (ShadingContext { view: light, ..sighting }, [1.0, 1.0]),
+                    true => (ShadingContext { view: light, ..context }, [1.0, 1.0]),
                     false => {
                         let side = InterfaceIndices { before: behind, behind: before, inside: !inside };
                         let view = DVec3::new(light.x, light.y, -light.z);
-                        (ShadingContext { view, side, ..sighting }, [behind.0[0].powi(2), before.0[0].powi(2)])
+                        (ShadingContext { view, indices: side, ..context }, [behind.0[0].powi(2), before.0[0].powi(2)])
                     }
                 };
-                let other = lobe.value(&back, flip(sighting.view)).0[0];
+                let other = lobe.value(&back, flip(context.view)).0[0];
                 let [value, other] = [value * squares[0], other * squares[1]];
                 let error = (value - other).abs() / value.max(other).max(1e-3);
-                assert!(error < 1e-6, "{}: {} {light}: {value} {other}", lobe.kind(), sighting.view);
+                assert!(error < 1e-6, "{}: {} {light}: {value} {other}", lobe.kind(), context.view);
             }
         }
     }
@@ -230,17 +230,17 @@ fn light_goes_to_and_fro_alike() {
 fn no_lobe_sends_more_light_than_comes_and_its_strength_is_about_that() {
     let all = lobes();
     all.par_iter().filter(|lobe| !NOT_PHYSICAL.contains(&lobe.kind())).for_each(|lobe| {
-        for sighting in contexts() {
-            let InterfaceIndices { before, behind, .. } = sighting.side;
+        for context in contexts() {
+            let InterfaceIndices { before, behind, .. } = context.indices;
             let gained = (behind.0[0] / before.0[0]).powi(2);
             let spread =
-                |cosines| over(cosines, [0.0, 1.0], 4_000, |light| lobe.value(&sighting, light).0[0] * light.z.abs());
-            let mirrored = lobe.specular_samples(&sighting).into_iter().flatten();
+                |cosines| over(cosines, [0.0, 1.0], 4_000, |light| lobe.value(&context, light).0[0] * light.z.abs());
+            let mirrored = lobe.specular_samples(&context).into_iter().flatten();
             let mirrored =
                 mirrored.map(|o| o.weight.0[0] * if o.light.z < 0.0 && !o.is_straight { gained } else { 1.0 });
             let sent = spread([0.0, 1.0]) + spread([-1.0, 0.0]) * gained + mirrored.sum::<f64>();
-            assert!(sent < 1.003, "{} at {}: {sent}", lobe.kind(), sighting.view);
-            assert!(sent < 1e-6 || lobe.strength(&sighting) > 0.0, "{} at {}: {sent}", lobe.kind(), sighting.view);
+            assert!(sent < 1.003, "{} at {}: {sent}", lobe.kind(), context.view);
+            assert!(sent < 1e-6 || lobe.strength(&context) > 0.0, "{} at {}: {sent}", lobe.kind(), context.view);
         }
     });
 }
@@ -252,23 +252,23 @@ fn flags_tell_what_lobes_do() {
         let (flags, kind) = (lobe.flags(), lobe.kind());
         assert!(!flags.has(Flags::BLACK), "{kind}");
         assert!(!flags.has(Flags::DELTA | Flags::BROAD), "{kind}: single directions are no broad ones");
-        for sighting in contexts() {
+        for context in contexts() {
             let lights = [0; 20].map(|_| stream.point()).map(|[x, y]| direction(2.0 * x - 1.0, y));
-            let onward = lobe.sample(&sighting, stream.uniform(), stream.point());
+            let sample = lobe.sample(&context, stream.uniform(), stream.point());
             if flags.has(Flags::DELTA) {
                 let is_nothing =
-                    |l: &DVec3| lobe.value(&sighting, *l).max() == 0.0 && lobe.pdf(&sighting, *l) == 0.0;
+                    |l: &DVec3| lobe.value(&context, *l).max() == 0.0 && lobe.pdf(&context, *l) == 0.0;
                 assert!(lights.iter().all(is_nothing), "{kind}");
-                assert!(onward.is_none_or(|onward| onward.density.is_none()), "{kind}");
+                assert!(sample.is_none_or(|onward| onward.pdf.is_none()), "{kind}");
             } else {
-                assert!(lobe.specular_samples(&sighting).iter().all(Option::is_none), "{kind}");
-                assert!(onward.is_none_or(|onward| onward.density.is_some()), "{kind}");
+                assert!(lobe.specular_samples(&context).iter().all(Option::is_none), "{kind}");
+                assert!(sample.is_none_or(|onward| onward.pdf.is_some()), "{kind}");
             }
             let above = lights.map(|light| DVec3::new(light.x, light.y, light.z.abs()));
-            let values = above.map(|light| lobe.value(&sighting, light).0[0]);
+            let values = above.map(|light| lobe.value(&context, light).0[0]);
             assert!(!flags.has(Flags::EVEN) || values.iter().all(|value| *value == values[0]), "{kind}");
-            assert!(!flags.has(Flags::DIFFUSE) || lobe.diffuse_albedo(&sighting).max() > 0.0, "{kind}");
-            assert!(!flags.has(Flags::STRAIGHT) || onward.is_some_and(|onward| onward.is_straight), "{kind}");
+            assert!(!flags.has(Flags::DIFFUSE) || lobe.diffuse_albedo(&context).max() > 0.0, "{kind}");
+            assert!(!flags.has(Flags::STRAIGHT) || sample.is_some_and(|onward| onward.is_straight), "{kind}");
         }
     }
 }

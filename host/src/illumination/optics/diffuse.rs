@@ -19,8 +19,8 @@ pub(super) fn cosine_sample(point: [f64; 2]) -> Option<BsdfSample> {
 
 /// The density of [`cosine_sample`], 1/sr.
 #[inline]
-pub(super) fn cosine_pdf(sighting: &ShadingContext, light: DVec3) -> f64 {
-    if sighting.is_behind(light) { 0.0 } else { light.z * FRAC_1_PI }
+pub(super) fn cosine_pdf(context: &ShadingContext, light: DVec3) -> f64 {
+    if context.is_behind(light) { 0.0 } else { light.z * FRAC_1_PI }
 }
 
 impl Lobe for DiffuseLobe {
@@ -29,13 +29,13 @@ impl Lobe for DiffuseLobe {
     }
 
     #[inline]
-    fn value(&self, sighting: &ShadingContext, light: DVec3) -> Channels {
-        if sighting.is_behind(light) { Channels::ZERO } else { self.0.of(sighting) * FRAC_1_PI }
+    fn value(&self, context: &ShadingContext, light: DVec3) -> Channels {
+        if context.is_behind(light) { Channels::ZERO } else { self.0.of(context) * FRAC_1_PI }
     }
 
     #[inline]
-    fn pdf(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
-        cosine_pdf(sighting, light)
+    fn pdf(&self, context: &ShadingContext, light: DVec3) -> f64 {
+        cosine_pdf(context, light)
     }
 
     fn sample(&self, _: &ShadingContext, _: f64, point: [f64; 2]) -> Option<BsdfSample> {
@@ -43,11 +43,11 @@ impl Lobe for DiffuseLobe {
     }
 
     #[inline]
-    fn strength(&self, sighting: &ShadingContext) -> f64 {
-        self.0.of(sighting).max()
+    fn strength(&self, context: &ShadingContext) -> f64 {
+        self.0.of(context).max()
     }
 
-    fn diffuse_albedo(&self, sighting: &ShadingContext) -> Channels {
-        self.0.of(sighting)
+    fn diffuse_albedo(&self, context: &ShadingContext) -> Channels {
+        self.0.of(context)
     }
 }

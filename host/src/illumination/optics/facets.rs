@@ -40,7 +40,7 @@ impl FacetDistribution {
 /// Cook and Torrance 1982; Kulla and Conty 2017 for the further reflections, summed as a geometric series.
 #[derive(Clone, Debug)]
 pub(super) struct RoughConductor {
-    shape: FacetDistribution,
+    facets: FacetDistribution,
     conductors: Arc<Vec<[Conductor; LANES]>>,
     /// K of further reflections, for each comb.
     further: Vec<Channels>,
@@ -60,42 +60,42 @@ impl RoughConductor {
                     .collect()
             }
         };
-        RoughConductor { shape, conductors, further }
+        RoughConductor { facets: shape, conductors, further }
     }
 }
 
 impl Lobe for RoughConductor {
     fn flags(&self) -> Flags {
-        Flags::of_pdf(self.shape.as_distribution().pdf(DVec3::Z, DVec3::Z))
+        Flags::of_pdf(self.facets.as_distribution().pdf(DVec3::Z, DVec3::Z))
     }
 
     /// D K / (N·V), 1/sr, for light above the horizon.
-    fn value(&self, sighting: &ShadingContext, light: DVec3) -> Channels {
-        if sighting.is_behind(light) {
+    fn value(&self, context: &ShadingContext, light: DVec3) -> Channels {
+        if context.is_behind(light) {
             return Channels::ZERO;
         }
-        let ShadingContext { view, comb, .. } = *sighting;
-        let comb = comb.min(self.conductors.len() - 1);
+        let ShadingContext { view, wavelength_set, .. } = *context;
+        let wavelength_set = wavelength_set.min(self.conductors.len() - 1);
         let Some(half) = (light + view).try_normalize() else { return Channels::ZERO };
-        let first = reflectance(&self.conductors[comb], half.dot(view));
-        match &self.shape {
+        let first = reflectance(&self.conductors[wavelength_set], half.dot(view));
+        match &self.facets {
             FacetDistribution::SingleScattering(distribution) => first * (distribution.density(light, view) / view.z),
             FacetDistribution::MultipleScattering(compensated) => {
                 let [once, further] = compensated.parts(light, view);
-                first * (once / view.z) + self.further[comb] * (further / view.z)
+                first * (once / view.z) + self.further[wavelength_set] * (further / view.z)
             }
         }
     }
 
-    fn pdf(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
-        match sighting.is_behind(light) {
+    fn pdf(&self, context: &ShadingContext, light: DVec3) -> f64 {
+        match context.is_behind(light) {
             true => 0.0,
-            false => self.shape.as_distribution().pdf(sighting.view, light),
+            false => self.facets.as_distribution().pdf(context.view, light),
         }
     }
 
-    fn sample(&self, sighting: &ShadingContext, _: f64, point: [f64; 2]) -> Option<BsdfSample> {
-        self.shape.as_distribution().sample(sighting.view, point).map(BsdfSample::unweighted)
+    fn sample(&self, context: &ShadingContext, _: f64, point: [f64; 2]) -> Option<BsdfSample> {
+        self.facets.as_distribution().sample(context.view, point).map(BsdfSample::unweighted)
     }
 
     fn strength(&self, _: &ShadingContext) -> f64 {
@@ -103,8 +103,8 @@ impl Lobe for RoughConductor {
     }
 
     /// Fresnel's term of a facet that faces halfway.
-    fn glossy_albedo(&self, sighting: &ShadingContext) -> Channels {
-        reflectance(&self.conductors[sighting.comb.min(self.conductors.len() - 1)], sighting.view.z)
+    fn glossy_albedo(&self, context: &ShadingContext) -> Channels {
+        reflectance(&self.conductors[context.wavelength_set.min(self.conductors.len() - 1)], context.view.z)
     }
 }
 

@@ -37,13 +37,13 @@ fn chance_of(reflected: f64, through: f64) -> f64 {
 }
 
 /// The interface for one lane.
-pub(super) fn interface(sighting: &ShadingContext, lane: usize) -> Option<Dielectric> {
-    Dielectric::new(sighting.side.before.0[lane], sighting.side.behind.0[lane]).ok()
+pub(super) fn interface(context: &ShadingContext, lane: usize) -> Option<Dielectric> {
+    Dielectric::new(context.indices.before.0[lane], context.indices.behind.0[lane]).ok()
 }
 
 /// A value for each lane, found once where all have the same indices.
-fn by_lane(sighting: &ShadingContext, value: impl Fn(usize) -> f64) -> Channels {
-    let [before, behind] = [sighting.side.before.0, sighting.side.behind.0];
+fn by_lane(context: &ShadingContext, value: impl Fn(usize) -> f64) -> Channels {
+    let [before, behind] = [context.indices.before.0, context.indices.behind.0];
     match before == [before[0]; LANES] && behind == [behind[0]; LANES] {
         true => Channels::splat(value(0)),
         false => Channels(std::array::from_fn(value)),
@@ -51,14 +51,14 @@ fn by_lane(sighting: &ShadingContext, value: impl Fn(usize) -> f64) -> Channels 
 }
 
 /// What the lanes reflect at a facet.
-pub(super) fn reflected(sighting: &ShadingContext, cosine: f64) -> Channels {
-    by_lane(sighting, |lane| interface(sighting, lane).map_or(0.0, |s| s.reflectance(cosine).mean()))
+pub(super) fn reflected(context: &ShadingContext, cosine: f64) -> Channels {
+    by_lane(context, |lane| interface(context, lane).map_or(0.0, |s| s.reflectance(cosine).mean()))
 }
 
 /// By how much radiance falls as it leaves what is behind: it grows by the square of the index on its way in.
-fn radiance_scale(sighting: &ShadingContext) -> Channels {
-    let side = &sighting.side;
-    by_lane(sighting, |lane| (side.before.0[lane] / side.behind.0[lane]).powi(2))
+fn radiance_scale(context: &ShadingContext) -> Channels {
+    let side = &context.indices;
+    by_lane(context, |lane| (side.before.0[lane] / side.behind.0[lane]).powi(2))
 }
 
 impl Lobe for SmoothDielectric {
@@ -75,8 +75,8 @@ impl Lobe for SmoothDielectric {
     }
 
     /// One of the two, by its part.
-    fn sample(&self, sighting: &ShadingContext, choice: f64, _: [f64; 2]) -> Option<BsdfSample> {
-        let [reflection, refraction] = self.specular_samples(sighting);
+    fn sample(&self, context: &ShadingContext, choice: f64, _: [f64; 2]) -> Option<BsdfSample> {
+        let [reflection, refraction] = self.specular_samples(context);
         let (Some(reflection), Some(refraction)) = (reflection, refraction) else { return reflection.or(refraction) };
         let least = reflection.weight.0.into_iter().fold(1.0, f64::min);
         let chance = chance_of(reflection.weight.max(), 1.0 - least);
@@ -92,43 +92,43 @@ impl Lobe for SmoothDielectric {
     }
 
     /// What is reflected and what comes through.
-    fn specular_samples(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
-        let view = sighting.view;
-        let fraction = reflected(sighting, view.z);
+    fn specular_samples(&self, context: &ShadingContext) -> [Option<BsdfSample>; 2] {
+        let view = context.view;
+        let fraction = reflected(context, view.z);
         let reflection = BsdfSample::specular(DVec3::new(-view.x, -view.y, view.z), fraction);
-        let through = by_lane(sighting, |lane| {
-            interface(sighting, lane).map_or(0.0, |surface| surface.transmittance(view.z).mean())
+        let through = by_lane(context, |lane| {
+            interface(context, lane).map_or(0.0, |surface| surface.transmittance(view.z).mean())
         });
-        let refracted = interface(sighting, sighting.lane).and_then(|surface| surface.refracted(view, DVec3::Z));
+        let refracted = interface(context, context.lane).and_then(|surface| surface.refracted(view, DVec3::Z));
         let refraction =
-            refracted.filter(|light| light.z < 0.0).map(|light| BsdfSample::specular(light, through * radiance_scale(sighting)));
-        [Some(reflection).filter(|onward| onward.weight.max() > 0.0), refraction.filter(|o| o.weight.max() > 0.0)]
+            refracted.filter(|light| light.z < 0.0).map(|light| BsdfSample::specular(light, through * radiance_scale(context)));
+        [Some(reflection).filter(|sample| sample.weight.max() > 0.0), refraction.filter(|o| o.weight.max() > 0.0)]
     }
 
-    fn glossy_albedo(&self, sighting: &ShadingContext) -> Channels {
-        reflected(sighting, sighting.view.z)
+    fn glossy_albedo(&self, context: &ShadingContext) -> Channels {
+        reflected(context, context.view.z)
     }
 
-    fn clear_transmittance(&self, sighting: &ShadingContext) -> Channels {
-        Channels::ONE - reflected(sighting, sighting.view.z)
+    fn clear_transmittance(&self, context: &ShadingContext) -> Channels {
+        Channels::ONE - reflected(context, context.view.z)
     }
 }
 
 impl RoughDielectric {
     /// The chance that a facet is taken to reflect.
-    fn chance(&self, sighting: &ShadingContext, cosine: f64) -> f64 {
-        let fraction = interface(sighting, sighting.lane).map_or(1.0, |surface| surface.reflectance(cosine).mean());
+    fn chance(&self, context: &ShadingContext, cosine: f64) -> f64 {
+        let fraction = interface(context, context.lane).map_or(1.0, |surface| surface.reflectance(cosine).mean());
         chance_of(fraction, 1.0 - fraction)
     }
 
     /// The facet that would send light to the viewer, through or not, on the side of the viewer.
-    fn facet(&self, sighting: &ShadingContext, light: DVec3, lane: usize) -> Option<DVec3> {
-        let view = sighting.view;
+    fn facet(&self, context: &ShadingContext, light: DVec3, lane: usize) -> Option<DVec3> {
+        let view = context.view;
         let facet = if light.z > 0.0 {
             light + view
         } else {
             // Along −(n_before V + n_behind L); towards the viewer, whichever index is greater.
-            let (before, behind) = (sighting.side.before.0[lane], sighting.side.behind.0[lane]);
+            let (before, behind) = (context.indices.before.0[lane], context.indices.behind.0[lane]);
             let facet = -(view * before + light * behind);
             if facet.z < 0.0 { -facet } else { facet }
         };
@@ -138,12 +138,12 @@ impl RoughDielectric {
     }
 
     /// How much of the directions around a facet goes to one solid angle of light.
-    fn jacobian(&self, sighting: &ShadingContext, light: DVec3, facet: DVec3, lane: usize) -> f64 {
-        let (to_view, to_light) = (facet.dot(sighting.view), facet.dot(light));
+    fn jacobian(&self, context: &ShadingContext, light: DVec3, facet: DVec3, lane: usize) -> f64 {
+        let (to_view, to_light) = (facet.dot(context.view), facet.dot(light));
         if light.z > 0.0 {
             return 0.25 / to_light;
         }
-        let ratio = sighting.side.before.0[lane] / sighting.side.behind.0[lane];
+        let ratio = context.indices.before.0[lane] / context.indices.behind.0[lane];
         let sum = to_light + ratio * to_view;
         to_light.abs() / (sum * sum)
     }
@@ -155,26 +155,26 @@ impl Lobe for RoughDielectric {
         Flags::of_pdf(0.25 * self.facets.area(DVec3::Z, self.roughness))
     }
 
-    fn pdf(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
-        let view = sighting.view;
+    fn pdf(&self, context: &ShadingContext, light: DVec3) -> f64 {
+        let view = context.view;
         if view.z <= 0.0 || light.z == 0.0 {
             return 0.0;
         }
-        let Some(facet) = self.facet(sighting, light, sighting.lane) else { return 0.0 };
+        let Some(facet) = self.facet(context, light, context.lane) else { return 0.0 };
         let cosine = facet.dot(view);
-        let chance = self.chance(sighting, cosine);
+        let chance = self.chance(context, cosine);
         let chance = if light.z > 0.0 { chance } else { 1.0 - chance };
         let seen = cosine * self.facets.area(facet, self.roughness) / self.facets.projected(view, self.roughness);
-        let density = chance * seen * self.jacobian(sighting, light, facet, sighting.lane);
-        if density.is_finite() { density } else { 0.0 }
+        let pdf = chance * seen * self.jacobian(context, light, facet, context.lane);
+        if pdf.is_finite() { pdf } else { 0.0 }
     }
 
     /// Radiance towards the viewer for a unit of flux density, 1/sr.
     ///
     /// # Source
     /// Walter et al. 2007, equations 20 and 21; heights of light and viewer correlated.
-    fn value(&self, sighting: &ShadingContext, light: DVec3) -> Channels {
-        let view = sighting.view;
+    fn value(&self, context: &ShadingContext, light: DVec3) -> Channels {
+        let view = context.view;
         if view.z <= 0.0 || light.z == 0.0 {
             return Channels::ZERO;
         }
@@ -189,35 +189,35 @@ impl Lobe for RoughDielectric {
             beta(1.0 + lambda_v, 1.0 + lambda_l) / (view.z * above.z)
         };
         let of_lane = |lane: usize| {
-            let Some((facet, surface)) = self.facet(sighting, light, lane).zip(interface(sighting, lane)) else {
+            let Some((facet, surface)) = self.facet(context, light, lane).zip(interface(context, lane)) else {
                 return 0.0;
             };
             let cosine = facet.dot(view);
             let area = self.facets.area(facet, self.roughness);
-            let jacobian = self.jacobian(sighting, light, facet, lane);
+            let jacobian = self.jacobian(context, light, facet, lane);
             let value = if light.z > 0.0 {
                 surface.reflectance(cosine).mean() * area * cosine * jacobian * masking
             } else {
-                let ratio = sighting.side.before.0[lane] / sighting.side.behind.0[lane];
+                let ratio = context.indices.before.0[lane] / context.indices.behind.0[lane];
                 surface.transmittance(cosine).mean() * area * cosine * jacobian * masking * ratio * ratio
             };
             if value.is_finite() { value } else { 0.0 }
         };
-        by_lane(sighting, of_lane)
+        by_lane(context, of_lane)
     }
 
     /// Draws a facet as the viewer sees it, and reflects or refracts there.
-    fn sample(&self, sighting: &ShadingContext, choice: f64, point: [f64; 2]) -> Option<BsdfSample> {
-        let view = sighting.view;
+    fn sample(&self, context: &ShadingContext, choice: f64, point: [f64; 2]) -> Option<BsdfSample> {
+        let view = context.view;
         let facet = self.facets.visible(view, self.roughness, point)?;
         let cosine = facet.dot(view);
         if cosine <= 0.0 {
             return None;
         }
-        let light = if choice < self.chance(sighting, cosine) {
+        let light = if choice < self.chance(context, cosine) {
             (facet * (2.0 * cosine) - view).try_normalize().filter(|light| light.z > 0.0)
         } else {
-            interface(sighting, sighting.lane)?.refracted(view, facet).filter(|light| light.z < 0.0)
+            interface(context, context.lane)?.refracted(view, facet).filter(|light| light.z < 0.0)
         };
         light.map(BsdfSample::unweighted)
     }
@@ -226,8 +226,8 @@ impl Lobe for RoughDielectric {
         1.0
     }
 
-    fn glossy_albedo(&self, sighting: &ShadingContext) -> Channels {
-        reflected(sighting, sighting.view.z)
+    fn glossy_albedo(&self, context: &ShadingContext) -> Channels {
+        reflected(context, context.view.z)
     }
 }
 

@@ -52,68 +52,68 @@ impl<'a> BsdfBuilder<'a> {
         material.check()?;
         let emission = (!material.emission.is_black()).then(|| self.wavelengths.light(&material.emission));
         let black = PreparedPaint::Plain(self.wavelengths.constant(0.0));
-        let mut optics = Bsdf::new(black, material.relief.clone(), emission);
+        let mut bsdf = Bsdf::new(black, material.relief.clone(), emission);
         match &material.body {
-            MaterialKind::Classic(classic) => self.classic(classic, diffuse, &mut optics)?,
+            MaterialKind::Classic(classic) => self.classic(classic, diffuse, &mut bsdf)?,
             MaterialKind::Shaped(Distributed { reflectance, form }) => {
-                let fraction = self.prepared_paint(reflectance, &mut optics);
-                optics.ambient = Some(fraction.clone());
+                let fraction = self.prepared_paint(reflectance, &mut bsdf);
+                bsdf.ambient = Some(fraction.clone());
                 let lobe = match form {
-                    DistributionForm::Member { name, roughness } => self.rough(roughness, &mut optics, |library, m| {
+                    DistributionForm::Member { name, roughness } => self.rough(roughness, &mut bsdf, |library, m| {
                         let distribution: Arc<dyn Distribution> = match library.facet_distribution(name, m)? {
                             FacetDistribution::SingleScattering(distribution) => distribution,
                             FacetDistribution::MultipleScattering(compensated) => compensated,
                         };
-                        Ok(AnyLobe::Shaped(ShapedLobe { fraction: fraction.clone(), form: distribution }))
+                        Ok(AnyLobe::Shaped(ShapedLobe { fraction: fraction.clone(), distribution }))
                     })?,
-                    DistributionForm::Table(table) => AnyLobe::Shaped(ShapedLobe { fraction, form: Arc::new(table.clone()) }),
-                    DistributionForm::Facets(table) => AnyLobe::Shaped(ShapedLobe { fraction, form: Arc::new(table.clone()) }),
+                    DistributionForm::Table(table) => AnyLobe::Shaped(ShapedLobe { fraction, distribution: Arc::new(table.clone()) }),
+                    DistributionForm::Facets(table) => AnyLobe::Shaped(ShapedLobe { fraction, distribution: Arc::new(table.clone()) }),
                 };
-                optics.add(lobe, Interreflection::Followed);
+                bsdf.add(lobe, Interreflection::Followed);
             }
-            MaterialKind::Metal(metal) => self.metal(metal, &mut optics)?,
-            MaterialKind::Transparent(transparent) => self.transparent(transparent, &mut optics)?,
-            MaterialKind::Coated(coated) => self.coated(coated, diffuse, &mut optics)?,
-            MaterialKind::Principled(principled) => self.principled(principled, diffuse, &mut optics)?,
+            MaterialKind::Metal(metal) => self.metal(metal, &mut bsdf)?,
+            MaterialKind::Transparent(transparent) => self.transparent(transparent, &mut bsdf)?,
+            MaterialKind::Coated(coated) => self.coated(coated, diffuse, &mut bsdf)?,
+            MaterialKind::Principled(principled) => self.principled(principled, diffuse, &mut bsdf)?,
         }
-        Ok(optics)
+        Ok(bsdf)
     }
 
     fn classic(
         &mut self,
         classic: &Classic,
-        carried: Interreflection,
-        optics: &mut Bsdf,
+        interreflection: Interreflection,
+        bsdf: &mut Bsdf,
     ) -> Result<(), MaterialError> {
-        if let Some(shade) = self.needed_paint(&classic.diffuse, optics) {
-            optics.ambient = Some(shade.clone());
-            optics.add(AnyLobe::Diffuse(DiffuseLobe(shade)), carried);
+        if let Some(shade) = self.needed_paint(&classic.diffuse, bsdf) {
+            bsdf.ambient = Some(shade.clone());
+            bsdf.add(AnyLobe::Diffuse(DiffuseLobe(shade)), interreflection);
         }
-        if let Some(shade) = self.needed_paint(&classic.specular, optics) {
+        if let Some(shade) = self.needed_paint(&classic.specular, bsdf) {
             let made = |_: &mut BsdfBuilder<'a>, n| {
-                Ok(AnyLobe::Phong(ShapedLobe { fraction: shade.clone(), form: Phong::new(n)? }))
+                Ok(AnyLobe::Phong(ShapedLobe { fraction: shade.clone(), distribution: Phong::new(n)? }))
             };
-            let lobe = self.varied(&classic.exponent, 1.0, optics, made)?;
-            optics.add(lobe, carried);
+            let lobe = self.varied(&classic.exponent, 1.0, bsdf, made)?;
+            bsdf.add(lobe, interreflection);
         }
-        if let Some(shade) = self.needed_paint(&classic.mirror, optics) {
-            optics.add(AnyLobe::Mirror(MirrorLobe(shade)), Interreflection::Followed);
+        if let Some(shade) = self.needed_paint(&classic.mirror, bsdf) {
+            bsdf.add(AnyLobe::Mirror(MirrorLobe(shade)), Interreflection::Followed);
         }
-        if let Some(shade) = self.needed_paint(&classic.transparency, optics) {
-            optics.passing = Some(StraightTransmission::Paint(shade.clone()));
-            optics.add(AnyLobe::Straight(StraightLobe(shade)), Interreflection::Followed);
+        if let Some(shade) = self.needed_paint(&classic.transparency, bsdf) {
+            bsdf.straight_transmission = Some(StraightTransmission::Paint(shade.clone()));
+            bsdf.add(AnyLobe::Straight(StraightLobe(shade)), Interreflection::Followed);
         }
         Ok(())
     }
 
-    fn metal(&mut self, Metal { n, k, finish }: &Metal, optics: &mut Bsdf) -> Result<(), MaterialError> {
+    fn metal(&mut self, Metal { n, k, finish }: &Metal, bsdf: &mut Bsdf) -> Result<(), MaterialError> {
         let conductor = |wavelength: f64| {
             let wavelength = if wavelength > 0.0 { wavelength } else { 550.0 };
             Conductor::new(1.0, n.at(wavelength), k.at(wavelength))
         };
-        let lanes = |comb: usize| -> Result<[Conductor; LANES], IndexError> {
+        let lanes = |wavelength_set: usize| -> Result<[Conductor; LANES], IndexError> {
             let mut lanes = [conductor(550.0)?; LANES];
-            for (lane, wavelength) in lanes.iter_mut().zip(self.wavelengths.at(comb)) {
+            for (lane, wavelength) in lanes.iter_mut().zip(self.wavelengths.at(wavelength_set)) {
                 *lane = conductor(wavelength)?;
             }
             Ok(lanes)
@@ -121,15 +121,15 @@ impl<'a> BsdfBuilder<'a> {
         let conductors = Arc::new((0..self.wavelengths.count()).map(lanes).collect::<Result<Vec<_>, _>>()?);
         let lobe = match finish {
             Finish::Polished => AnyLobe::Polished(SmoothConductor { conductors }),
-            Finish::Rough { name, roughness } => self.rough(roughness, optics, |library, m| {
+            Finish::Rough { name, roughness } => self.rough(roughness, bsdf, |library, m| {
                 Ok(AnyLobe::Metallic(RoughConductor::new(library.facet_distribution(name, m)?, conductors.clone())))
             })?,
             Finish::Brushed { roughness: [along, across], along: direction } => {
-                optics.along = Some(*direction);
+                bsdf.brushed_along = Some(*direction);
                 // Where both vary, each node of the one is a lobe that varies by the other.
-                let across_at = across.is_varying().then(|| optics.varying(across));
+                let across_at = across.is_varying().then(|| bsdf.varying(across));
                 let across_nodes = nodes(across, LEAST_VARYING_ROUGHNESS);
-                self.rough(along, optics, |_, along| {
+                self.rough(along, bsdf, |_, along| {
                     let brushed = |across: f64| -> Result<AnyLobe, MaterialError> {
                         let form = Arc::new(Microfacet::new(SlopeDistribution::Beckmann, DVec2::new(along, across))?);
                         Ok(AnyLobe::Metallic(RoughConductor::new(FacetDistribution::SingleScattering(form), conductors.clone())))
@@ -144,37 +144,37 @@ impl<'a> BsdfBuilder<'a> {
                 })?
             }
         };
-        optics.add(lobe, Interreflection::Followed);
+        bsdf.add(lobe, Interreflection::Followed);
         Ok(())
     }
 
-    fn transparent(&mut self, transparent: &Transparent, optics: &mut Bsdf) -> Result<(), MaterialError> {
+    fn transparent(&mut self, transparent: &Transparent, bsdf: &mut Bsdf) -> Result<(), MaterialError> {
         let Transparent { index, roughness, absorption, priority } = transparent;
-        optics.interior = Some(InteriorMedium {
+        bsdf.interior = Some(InteriorMedium {
             index: self.wavelengths.quantity(|wavelength| index.at(wavelength)),
             absorption: self.wavelengths.filter(absorption),
             disperses: matches!(index, RefractiveIndex::Dispersive(_)),
             priority: *priority,
         });
-        let lobe = self.rough(roughness, optics, |_, m| match m {
+        let lobe = self.rough(roughness, bsdf, |_, m| match m {
             0.0 => Ok(AnyLobe::Smooth(SmoothDielectric)),
             m => Ok(AnyLobe::Rough(RoughDielectric { facets: SlopeDistribution::Ggx, roughness: DVec2::splat(m) })),
         })?;
-        optics.add(lobe, Interreflection::Followed);
+        bsdf.add(lobe, Interreflection::Followed);
         Ok(())
     }
 
-    fn coated(&mut self, coated: &Coated, carried: Interreflection, optics: &mut Bsdf) -> Result<(), MaterialError> {
+    fn coated(&mut self, coated: &Coated, interreflection: Interreflection, bsdf: &mut Bsdf) -> Result<(), MaterialError> {
         let Coated { diffuse, index, roughness } = coated;
-        let coat = self.rough(roughness, optics, |library, m| Ok(AnyLobe::Coat(library.coat(*index, m)?)))?;
-        optics.add(coat, Interreflection::Followed);
-        if let Some(shade) = self.needed_paint(diffuse, optics) {
-            let combs = self.wavelengths.count();
-            let ground = self.rough(roughness, optics, |library, m| {
-                Ok(AnyLobe::Ground(CoatedDiffuse::new(library.coat(*index, m)?, *index, &shade, combs)))
+        let coat = self.rough(roughness, bsdf, |library, m| Ok(AnyLobe::Coat(library.coat(*index, m)?)))?;
+        bsdf.add(coat, Interreflection::Followed);
+        if let Some(shade) = self.needed_paint(diffuse, bsdf) {
+            let sets = self.wavelengths.count();
+            let ground = self.rough(roughness, bsdf, |library, m| {
+                Ok(AnyLobe::Ground(CoatedDiffuse::new(library.coat(*index, m)?, *index, &shade, sets)))
             })?;
-            optics.add(ground, carried);
-            optics.ambient = Some(shade);
+            bsdf.add(ground, interreflection);
+            bsdf.ambient = Some(shade);
         }
         Ok(())
     }
@@ -182,23 +182,23 @@ impl<'a> BsdfBuilder<'a> {
     fn principled(
         &mut self,
         principled: &Principled,
-        carried: Interreflection,
-        optics: &mut Bsdf,
+        interreflection: Interreflection,
+        bsdf: &mut Bsdf,
     ) -> Result<(), MaterialError> {
         let Principled { index, coat_index, thin, .. } = *principled;
         let none = NumberTexture::Constant(0.0);
         let (has_coat, transmits) = (principled.coat != none, principled.transmission != none);
         if transmits && !thin {
-            optics.interior = Some(InteriorMedium {
+            bsdf.interior = Some(InteriorMedium {
                 index: self.wavelengths.constant(index),
                 absorption: self.wavelengths.filter(&principled.absorption),
                 disperses: false,
                 priority: principled.priority,
             });
         }
-        let colors = [&principled.base_color, &principled.sheen].map(|paint| self.prepared_paint(paint, optics));
+        let colors = [&principled.base_color, &principled.sheen].map(|paint| self.prepared_paint(paint, bsdf));
         let Principled { metallic, specular, transmission, coat, sheen_roughness, .. } = principled;
-        let numbers = [metallic, specular, transmission, coat, sheen_roughness].map(|number| optics.quantity(number));
+        let numbers = [metallic, specular, transmission, coat, sheen_roughness].map(|number| bsdf.quantity(number));
         // Facets of the slope m, the square of the roughness; what varies has a row of them.
         let slopes = |roughness: &NumberTexture| match roughness {
             NumberTexture::Constant(0.0) => vec![(0.0, None)],
@@ -206,8 +206,8 @@ impl<'a> BsdfBuilder<'a> {
             varying => nodes(varying, LEAST_VARYING_ROUGHNESS.sqrt()).into_iter().map(|r| (r, Some(r * r))).collect(),
         };
         let coats = if has_coat { slopes(&principled.coat_roughness) } else { vec![(0.0, None)] };
-        let along = optics.quantity(&principled.roughness);
-        let across = if has_coat { optics.quantity(&principled.coat_roughness) } else { PreparedNumber::Constant(0.0) };
+        let along = bsdf.quantity(&principled.roughness);
+        let across = if has_coat { bsdf.quantity(&principled.coat_roughness) } else { PreparedNumber::Constant(0.0) };
         let surface = |roughness: Option<f64>, coat_roughness: Option<f64>| {
             let make = PrincipledParameters { index, coat_index, roughness, coat_roughness, thin, has_coat, transmits };
             PrincipledSurface::new(&make, colors.clone(), numbers).map(Arc::new)
@@ -227,19 +227,19 @@ impl<'a> BsdfBuilder<'a> {
             AnyLobe::varied(along, rows.iter().map(of_row).collect())
         };
         if thin && let Some(surface) = rows.first().and_then(|(_, row)| row.first()).filter(|(_, s)| s.is_pane()) {
-            optics.passing = Some(StraightTransmission::Pane(surface.1.clone()));
+            bsdf.straight_transmission = Some(StraightTransmission::Pane(surface.1.clone()));
         }
         if !principled.sheen.is_black() {
-            optics.add(lobe(PrincipledPart::Sheen), Interreflection::Followed);
+            bsdf.add(lobe(PrincipledPart::Sheen), Interreflection::Followed);
         }
         if has_coat {
-            optics.add(lobe(PrincipledPart::Coat), Interreflection::Followed);
+            bsdf.add(lobe(PrincipledPart::Coat), Interreflection::Followed);
         }
         if *metallic != none || *specular != none || transmits {
-            optics.add(lobe(PrincipledPart::Facets), Interreflection::Followed);
+            bsdf.add(lobe(PrincipledPart::Facets), Interreflection::Followed);
         }
-        optics.add(lobe(PrincipledPart::Spread), if transmits { Interreflection::Followed } else { carried });
-        optics.ambient = None;
+        bsdf.add(lobe(PrincipledPart::Spread), if transmits { Interreflection::Followed } else { interreflection });
+        bsdf.ambient = None;
         Ok(())
     }
 
@@ -247,10 +247,10 @@ impl<'a> BsdfBuilder<'a> {
     fn rough(
         &mut self,
         roughness: &NumberTexture,
-        optics: &mut Bsdf,
+        bsdf: &mut Bsdf,
         made: impl FnMut(&mut BsdfBuilder<'a>, f64) -> Result<AnyLobe, MaterialError>,
     ) -> Result<AnyLobe, MaterialError> {
-        self.varied(roughness, LEAST_VARYING_ROUGHNESS, optics, made)
+        self.varied(roughness, LEAST_VARYING_ROUGHNESS, bsdf, made)
     }
 
     /// A lobe of a number, which may change from place to place.
@@ -260,7 +260,7 @@ impl<'a> BsdfBuilder<'a> {
         &mut self,
         number: &NumberTexture,
         least: f64,
-        optics: &mut Bsdf,
+        bsdf: &mut Bsdf,
         mut made: impl FnMut(&mut BsdfBuilder<'a>, f64) -> Result<AnyLobe, MaterialError>,
     ) -> Result<AnyLobe, MaterialError> {
         if let NumberTexture::Constant(value) = number {
@@ -268,7 +268,7 @@ impl<'a> BsdfBuilder<'a> {
         }
         let lobes = nodes(number, least).into_iter().map(|value| Ok((value, made(self, value)?)));
         let lobes = lobes.collect::<Result<_, MaterialError>>()?;
-        Ok(AnyLobe::varied(optics.varying(number), lobes))
+        Ok(AnyLobe::varied(bsdf.varying(number), lobes))
     }
 
     /// A coat of a refractive index and a roughness.
@@ -287,22 +287,22 @@ impl<'a> BsdfBuilder<'a> {
     }
 
     /// A fraction of light; its pattern goes to the others of the material.
-    fn prepared_paint(&self, paint: &Paint, optics: &mut Bsdf) -> PreparedPaint {
+    fn prepared_paint(&self, paint: &Paint, bsdf: &mut Bsdf) -> PreparedPaint {
         match paint {
             Paint::Plain(color) => PreparedPaint::Plain(self.wavelengths.reflectance(color)),
             Paint::Pattern(pattern) => {
-                optics.patterns.push(PreparedTexture::Paint(PreparedPattern::new(pattern, self.wavelengths)));
-                PreparedPaint::Textured(optics.patterns.len() - 1)
+                bsdf.patterns.push(PreparedTexture::Paint(PreparedPattern::new(pattern, self.wavelengths)));
+                PreparedPaint::Textured(bsdf.patterns.len() - 1)
             }
         }
     }
 
     /// A fraction of light; none if it is 0 and may be left out.
-    fn needed_paint(&self, paint: &Paint, optics: &mut Bsdf) -> Option<PreparedPaint> {
+    fn needed_paint(&self, paint: &Paint, bsdf: &mut Bsdf) -> Option<PreparedPaint> {
         match paint {
             Paint::Plain(color) if !self.everything && self.wavelengths.reflectance(color).max() <= 0.0 => None,
             Paint::Pattern(_) if !self.everything && paint.is_black() => None,
-            _ => Some(self.prepared_paint(paint, optics)),
+            _ => Some(self.prepared_paint(paint, bsdf)),
         }
     }
 

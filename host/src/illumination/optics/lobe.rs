@@ -44,8 +44,8 @@ impl Flags {
     }
 
     /// Of a lobe that is drawn with a density from straight above, 1/sr, whether it is broad.
-    pub(super) fn of_pdf(density: f64) -> Flags {
-        Flags::BROAD.when(density < NARROW)
+    pub(super) fn of_pdf(pdf: f64) -> Flags {
+        Flags::BROAD.when(pdf < NARROW)
     }
 }
 
@@ -63,18 +63,18 @@ pub(super) trait Lobe {
     fn flags(&self) -> Flags;
 
     /// Radiance towards the viewer for a unit of flux density, 1/sr: D K / (N·V); 0 for what only knows single directions.
-    fn value(&self, sighting: &ShadingContext, light: DVec3) -> Channels;
+    fn value(&self, context: &ShadingContext, light: DVec3) -> Channels;
 
     /// The density of its samples, 1/sr.
-    fn pdf(&self, sighting: &ShadingContext, light: DVec3) -> f64;
+    fn pdf(&self, context: &ShadingContext, light: DVec3) -> f64;
 
     /// Draws a direction to light; its weight is right for single directions only, the others have a density.
     ///
     /// - `choice`: uniform in 0..1. `point`: uniform in the unit square.
-    fn sample(&self, sighting: &ShadingContext, choice: f64, point: [f64; 2]) -> Option<BsdfSample>;
+    fn sample(&self, context: &ShadingContext, choice: f64, point: [f64; 2]) -> Option<BsdfSample>;
 
     /// About what it reflects to the viewer of all the light; more than 0 where it reflects anything.
-    fn strength(&self, sighting: &ShadingContext) -> f64;
+    fn strength(&self, context: &ShadingContext) -> f64;
 
     /// Its single directions.
     fn specular_samples(&self, _: &ShadingContext) -> [Option<BsdfSample>; 2] {

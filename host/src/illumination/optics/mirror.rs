@@ -23,20 +23,20 @@ impl Lobe for MirrorLobe {
         0.0
     }
 
-    fn sample(&self, sighting: &ShadingContext, _: f64, _: [f64; 2]) -> Option<BsdfSample> {
-        self.specular_samples(sighting)[0]
+    fn sample(&self, context: &ShadingContext, _: f64, _: [f64; 2]) -> Option<BsdfSample> {
+        self.specular_samples(context)[0]
     }
 
     #[inline]
-    fn strength(&self, sighting: &ShadingContext) -> f64 {
-        self.0.of(sighting).max()
+    fn strength(&self, context: &ShadingContext) -> f64 {
+        self.0.of(context).max()
     }
 
-    fn specular_samples(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
-        [Some(BsdfSample::specular(sighting.mirror_direction(), self.0.of(sighting))), None]
+    fn specular_samples(&self, context: &ShadingContext) -> [Option<BsdfSample>; 2] {
+        [Some(BsdfSample::specular(context.mirror_direction(), self.0.of(context))), None]
     }
 
-    fn glossy_albedo(&self, sighting: &ShadingContext) -> Channels {
-        self.0.of(sighting)
+    fn glossy_albedo(&self, context: &ShadingContext) -> Channels {
+        self.0.of(context)
     }
 }

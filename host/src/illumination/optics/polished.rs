@@ -32,19 +32,19 @@ impl Lobe for SmoothConductor {
         0.0
     }
 
-    fn sample(&self, sighting: &ShadingContext, _: f64, _: [f64; 2]) -> Option<BsdfSample> {
-        self.specular_samples(sighting)[0]
+    fn sample(&self, context: &ShadingContext, _: f64, _: [f64; 2]) -> Option<BsdfSample> {
+        self.specular_samples(context)[0]
     }
 
     fn strength(&self, _: &ShadingContext) -> f64 {
         1.0
     }
 
-    fn specular_samples(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
-        [Some(BsdfSample::specular(sighting.mirror_direction(), self.glossy_albedo(sighting))), None]
+    fn specular_samples(&self, context: &ShadingContext) -> [Option<BsdfSample>; 2] {
+        [Some(BsdfSample::specular(context.mirror_direction(), self.glossy_albedo(context))), None]
     }
 
-    fn glossy_albedo(&self, sighting: &ShadingContext) -> Channels {
-        reflectance(&self.conductors[sighting.comb.min(self.conductors.len() - 1)], sighting.view.z)
+    fn glossy_albedo(&self, context: &ShadingContext) -> Channels {
+        reflectance(&self.conductors[context.wavelength_set.min(self.conductors.len() - 1)], context.view.z)
     }
 }

@@ -59,19 +59,19 @@ impl PreparedPattern {
     }
 
     /// The mean over a place.
-    pub(super) fn at(&self, place: &TextureFootprint, comb: usize) -> Channels {
+    pub(super) fn at(&self, footprint: &TextureFootprint, wavelength_set: usize) -> Channels {
         let mut sum = Channels::ZERO;
-        self.each(place, 1.0, &mut |curve, amount| sum += curve.of(comb) * amount);
+        self.each(footprint, 1.0, &mut |curve, amount| sum += curve.of(wavelength_set) * amount);
         sum
     }
 
     /// Gives what it is mixed of in the mean over a place, and how much of each.
-    pub(super) fn each<'a>(&'a self, place: &TextureFootprint, amount: f64, give: &mut dyn FnMut(&'a SpectralTable, f64)) {
-        let amounts = self.pattern.parts(place).map(|part| part * amount);
+    pub(super) fn each<'a>(&'a self, footprint: &TextureFootprint, amount: f64, give: &mut dyn FnMut(&'a SpectralTable, f64)) {
+        let amounts = self.pattern.parts(footprint).map(|part| part * amount);
         for (part, amount) in self.parts.iter().zip(amounts).filter(|(_, amount)| *amount != 0.0) {
             match part {
                 Part::Plain(curve) => give(curve, amount),
-                Part::Painted(painted) => painted.each(place, amount, give),
+                Part::Painted(pattern) => pattern.each(footprint, amount, give),
             }
         }
     }
@@ -79,10 +79,10 @@ impl PreparedPattern {
 
 impl PreparedTexture {
     /// The mean over a place; a number is in all lanes.
-    pub(super) fn at(&self, place: &TextureFootprint, comb: usize) -> Channels {
+    pub(super) fn at(&self, footprint: &TextureFootprint, wavelength_set: usize) -> Channels {
         match self {
-            PreparedTexture::Paint(painted) => painted.at(place, comb),
-            PreparedTexture::Number(number) => Channels::splat(number.at(place)),
+            PreparedTexture::Paint(pattern) => pattern.at(footprint, wavelength_set),
+            PreparedTexture::Number(number) => Channels::splat(number.at(footprint)),
         }
     }
 }
@@ -90,10 +90,10 @@ impl PreparedTexture {
 impl PreparedNumber {
     /// The number at the place that is looked at.
     #[inline]
-    pub(super) fn of(self, sighting: &ShadingContext<'_>) -> f64 {
+    pub(super) fn of(self, context: &ShadingContext<'_>) -> f64 {
         match self {
             PreparedNumber::Constant(value) => value,
-            PreparedNumber::Varying(number) => sighting.painted.get(number).map_or(0.0, |channels| channels.0[0]),
+            PreparedNumber::Varying(number) => context.texture_values.get(number).map_or(0.0, |channels| channels.0[0]),
         }
     }
 }
@@ -106,10 +106,10 @@ impl PreparedPaint {
 
     /// The fraction at the place and the wavelengths that are looked at.
     #[inline]
-    pub(super) fn of(&self, sighting: &ShadingContext<'_>) -> Channels {
+    pub(super) fn of(&self, context: &ShadingContext<'_>) -> Channels {
         match self {
-            PreparedPaint::Plain(curve) => curve.of(sighting.comb),
-            PreparedPaint::Textured(number) => sighting.painted.get(*number).copied().unwrap_or_default(),
+            PreparedPaint::Plain(curve) => curve.of(context.wavelength_set),
+            PreparedPaint::Textured(number) => context.texture_values.get(*number).copied().unwrap_or_default(),
         }
     }
 }

@@ -12,7 +12,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub(super) struct DistributedLobe<D> {
     pub(super) fraction: PreparedPaint,
-    pub(super) form: D,
+    pub(super) distribution: D,
 }
 
 /// What a lobe holds a distribution by.
@@ -37,30 +37,30 @@ impl HasDistribution for Arc<dyn Distribution> {
 
 impl<D: HasDistribution> Lobe for DistributedLobe<D> {
     fn flags(&self) -> Flags {
-        let density = self.form.distribution().pdf(DVec3::Z, DVec3::Z);
-        Flags::of_pdf(density) | Flags::BLACK.when(self.fraction.is_black())
+        let pdf = self.distribution.distribution().pdf(DVec3::Z, DVec3::Z);
+        Flags::of_pdf(pdf) | Flags::BLACK.when(self.fraction.is_black())
     }
 
     #[inline]
-    fn value(&self, sighting: &ShadingContext, light: DVec3) -> Channels {
-        if sighting.is_behind(light) {
+    fn value(&self, context: &ShadingContext, light: DVec3) -> Channels {
+        if context.is_behind(light) {
             return Channels::ZERO;
         }
-        let view = sighting.view;
-        self.fraction.of(sighting) * (self.form.distribution().density(light, view) / view.z)
+        let view = context.view;
+        self.fraction.of(context) * (self.distribution.distribution().density(light, view) / view.z)
     }
 
     #[inline]
-    fn pdf(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
-        if sighting.is_behind(light) { 0.0 } else { self.form.distribution().pdf(sighting.view, light) }
+    fn pdf(&self, context: &ShadingContext, light: DVec3) -> f64 {
+        if context.is_behind(light) { 0.0 } else { self.distribution.distribution().pdf(context.view, light) }
     }
 
-    fn sample(&self, sighting: &ShadingContext, _: f64, point: [f64; 2]) -> Option<BsdfSample> {
-        self.form.distribution().sample(sighting.view, point).map(BsdfSample::unweighted)
+    fn sample(&self, context: &ShadingContext, _: f64, point: [f64; 2]) -> Option<BsdfSample> {
+        self.distribution.distribution().sample(context.view, point).map(BsdfSample::unweighted)
     }
 
     #[inline]
-    fn strength(&self, sighting: &ShadingContext) -> f64 {
-        self.fraction.of(sighting).max()
+    fn strength(&self, context: &ShadingContext) -> f64 {
+        self.fraction.of(context).max()
     }
 }

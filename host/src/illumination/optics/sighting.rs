@@ -25,13 +25,13 @@ pub struct ShadingContext<'a> {
     /// Towards the viewer.
     pub view: DVec3,
     /// The number of the set of wavelengths that are carried.
-    pub comb: usize,
+    pub wavelength_set: usize,
     /// The refractive index on the side of the viewer and behind.
-    pub side: InterfaceIndices,
+    pub indices: InterfaceIndices,
     /// For which lane refracted directions are drawn.
     pub lane: usize,
     /// What the patterns give at the place, as [`Optics::paint`](super::Optics::paint) tells; nothing for a material that has none.
-    pub painted: &'a [Channels],
+    pub texture_values: &'a [Channels],
 }
 
 impl ShadingContext<'_> {
@@ -55,7 +55,7 @@ pub struct BsdfSample {
     /// What of the radiance from there comes to the viewer, over the density with which the direction was drawn.
     pub weight: Channels,
     /// That density, 1/sr; none for the one direction of a mirror or a smooth interface.
-    pub density: Option<f64>,
+    pub pdf: Option<f64>,
     /// Whether it goes straight on, as if nothing was there.
     pub is_straight: bool,
     /// Whether a broad lobe carries it on, and not a narrow one.
@@ -65,11 +65,11 @@ pub struct BsdfSample {
 impl BsdfSample {
     /// The one direction of a mirror or a smooth interface.
     pub(super) fn specular(light: DVec3, weight: Channels) -> BsdfSample {
-        BsdfSample { light, weight, density: None, is_straight: false, is_broad: false }
+        BsdfSample { light, weight, pdf: None, is_straight: false, is_broad: false }
     }
 
     /// A direction of many: its weight is found when all lobes that could have drawn it were asked.
     pub(super) fn unweighted(light: DVec3) -> BsdfSample {
-        BsdfSample { light, weight: Channels::ZERO, density: Some(0.0), is_straight: false, is_broad: true }
+        BsdfSample { light, weight: Channels::ZERO, pdf: Some(0.0), is_straight: false, is_broad: true }
     }
 }

@@ -23,16 +23,16 @@ impl Lobe for StraightLobe {
         0.0
     }
 
-    fn sample(&self, sighting: &ShadingContext, _: f64, _: [f64; 2]) -> Option<BsdfSample> {
-        self.specular_samples(sighting)[0]
+    fn sample(&self, context: &ShadingContext, _: f64, _: [f64; 2]) -> Option<BsdfSample> {
+        self.specular_samples(context)[0]
     }
 
     #[inline]
-    fn strength(&self, sighting: &ShadingContext) -> f64 {
-        self.0.of(sighting).max()
+    fn strength(&self, context: &ShadingContext) -> f64 {
+        self.0.of(context).max()
     }
 
-    fn specular_samples(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
-        [Some(BsdfSample { is_straight: true, ..BsdfSample::specular(-sighting.view, self.0.of(sighting)) }), None]
+    fn specular_samples(&self, context: &ShadingContext) -> [Option<BsdfSample>; 2] {
+        [Some(BsdfSample { is_straight: true, ..BsdfSample::specular(-context.view, self.0.of(context)) }), None]
     }
 }

@@ -19,7 +19,7 @@ fn ready(material: &Material, wavelengths: &WavelengthSets) -> Bsdf {
 fn context(degrees: f64, before: f64, behind: f64) -> ShadingContext<'static> {
     let (sin, cos) = degrees.to_radians().sin_cos();
     let side = InterfaceIndices { before: Channels::splat(before), behind: Channels::splat(behind), inside: before > behind };
-    ShadingContext { view: DVec3::new(sin, 0.0, cos), comb: 0, side, lane: 0, painted: &[] }
+    ShadingContext { view: DVec3::new(sin, 0.0, cos), wavelength_set: 0, indices: side, lane: 0, texture_values: &[] }
 }
 
 fn copper(finish: Finish) -> Material {
@@ -32,11 +32,11 @@ fn rough(name: &str, roughness: f64) -> Finish {
 }
 
 /// Light that comes to the viewer of a radiance of 1 from everywhere, by samples that are spread evenly.
-fn furnace(optics: &Bsdf, sighting: &ShadingContext) -> f64 {
-    let mirrored: f64 = optics.specular_samples(sighting).map(|onward| onward.weight.0[0]).sum();
+fn furnace(bsdf: &Bsdf, context: &ShadingContext) -> f64 {
+    let mirrored: f64 = bsdf.specular_samples(context).map(|sample| sample.weight.0[0]).sum();
     let spread = |choice: f64| {
         let drawn =
-            |point| optics.sample(sighting, choice, point, LobeSelection::NonDelta).map_or(0.0, |onward| onward.weight.0[0]);
+            |point| bsdf.sample(context, choice, point, LobeSelection::NonDelta).map_or(0.0, |sample| sample.weight.0[0]);
         unit_square(drawn, 1e-4, 20_000).value
     };
     // Lobes are chosen by the first number; it is averaged over evenly.
@@ -45,7 +45,7 @@ fn furnace(optics: &Bsdf, sighting: &ShadingContext) -> f64 {
 }
 
 /// The integral of value times cosine over all directions, by cubature.
-fn integral(optics: &Bsdf, sighting: &ShadingContext) -> f64 {
+fn integral(bsdf: &Bsdf, context: &ShadingContext) -> f64 {
     let half = |below: f64| {
         let term = |[x, y]: [f64; 2]| {
             let cosine = x.sqrt();
@@ -53,7 +53,7 @@ fn integral(optics: &Bsdf, sighting: &ShadingContext) -> f64 {
             let sine = (1.0 - x).max(0.0).sqrt();
             let light = DVec3::new(sine * cos, sine * sin, cosine * below);
             PI * [LobeClass::Broad, LobeClass::Narrow, LobeClass::LightsOnly]
-                .map(|which| optics.value(which, sighting, light).0[0])
+                .map(|which| bsdf.value(which, context, light).0[0])
                 .iter()
                 .sum::<f64>()
         };
@@ -68,11 +68,11 @@ fn a_white_coated_ground_returns_what_it_gets() {
     for (index, roughness) in [(1.5, 0.0), (1.33, 0.0), (2.4, 0.0), (1.0, 0.0), (1.5, 0.1), (1.5, 0.7)] {
         let material =
             MaterialKind::Coated(Coated { diffuse: Paint::grey(1.0), index, roughness: f64::into(roughness) }).into();
-        let optics = ready(&material, &wavelengths);
+        let bsdf = ready(&material, &wavelengths);
         for degrees in [0.0, 40.0, 75.0, 88.0] {
-            let sighting = context(degrees, 1.0, 1.0);
-            let mirrored: f64 = optics.specular_samples(&sighting).map(|onward| onward.weight.0[0]).sum();
-            let all = mirrored + integral(&optics, &sighting);
+            let context = context(degrees, 1.0, 1.0);
+            let mirrored: f64 = bsdf.specular_samples(&context).map(|sample| sample.weight.0[0]).sum();
+            let all = mirrored + integral(&bsdf, &context);
             assert!((all - 1.0).abs() < 3e-4, "{index} {roughness} at {degrees}: {all}");
         }
     }
@@ -101,11 +101,11 @@ fn samples_and_values_tell_the_same_of_every_material() {
         (glass(0.15), 1.5),
     ];
     for (material, behind) in materials {
-        let optics = ready(&material, &wavelengths);
+        let bsdf = ready(&material, &wavelengths);
         for degrees in [5.0, 60.0] {
             for (before, behind) in [(1.0, behind), (behind, 1.0)] {
-                let sighting = context(degrees, before, behind);
-                let (drawn, sum) = (furnace(&optics, &sighting), integral(&optics, &sighting));
+                let context = context(degrees, before, behind);
+                let (drawn, sum) = (furnace(&bsdf, &context), integral(&bsdf, &context));
                 let error = (drawn - sum).abs() / sum.max(0.1);
                 assert!(error < 0.02, "{} at {degrees} from {before}: {drawn} {sum}", material.word());
             }
@@ -133,9 +133,9 @@ fn a_lobe_that_varies_is_that_of_the_value_at_the_place() {
         let varied = ready(&made(varying(0.1, 0.5)), &wavelengths);
         assert!(varied.is_textured());
         for roughness in [0.1, 0.17, 0.3, 0.5] {
-            let painted = [Channels::splat(roughness); 2];
+            let texture_values = [Channels::splat(roughness); 2];
             let of = context(40.0, 1.0, 1.5);
-            let at = ShadingContext { painted: &painted, ..of };
+            let at = ShadingContext { texture_values: &texture_values, ..of };
             let same = ready(&made(roughness.into()), &wavelengths);
             let (drawn, sum) = (furnace(&varied, &at), integral(&varied, &at));
             assert!((drawn - sum).abs() < 0.01, "{roughness}: {drawn} {sum}");
@@ -152,8 +152,8 @@ fn a_lobe_that_varies_is_that_of_the_value_at_the_place() {
     let of = context(40.0, 1.0, 1.5);
     let light = DVec3::new(-0.4, 0.1, 0.8).normalize();
     for beyond in [0.5, 0.9] {
-        let painted = [Channels::splat(beyond)];
-        let [a, b] = [varied.total_value(&ShadingContext { painted: &painted, ..of }, light), same.total_value(&of, light)];
+        let texture_values = [Channels::splat(beyond)];
+        let [a, b] = [varied.total_value(&ShadingContext { texture_values: &texture_values, ..of }, light), same.total_value(&of, light)];
         assert_eq!(a, b);
     }
 }
@@ -166,8 +166,8 @@ fn a_metal_may_be_brushed_as_patterns_tell() {
     let same = ready(&brushed([0.1.into(), 0.4.into()]), &wavelengths);
     let of = context(30.0, 1.0, 1.0);
     // The pattern of the roughness across is the first.
-    let painted = [Channels::splat(0.4), Channels::splat(0.1)];
-    let at = ShadingContext { painted: &painted, ..of };
+    let texture_values = [Channels::splat(0.4), Channels::splat(0.1)];
+    let at = ShadingContext { texture_values: &texture_values, ..of };
     for light in [DVec3::new(-0.5, 0.0, 0.86), DVec3::new(-0.45, 0.3, 0.8)] {
         let [a, b] = [varied.total_value(&at, light.normalize()), same.total_value(&of, light.normalize())];
         assert!((a.0[0] / b.0[0] - 1.0).abs() < 0.04, "{a:?} {b:?}");
@@ -184,9 +184,9 @@ fn densities_are_those_with_which_directions_are_drawn() {
         MaterialKind::Transparent(rough_glass).into(),
     ];
     for material in materials {
-        let optics = ready(&material, &wavelengths);
+        let bsdf = ready(&material, &wavelengths);
         for (before, behind) in [(1.0, 1.5), (1.5, 1.0)] {
-            let sighting = context(35.0, before, behind);
+            let context = context(35.0, before, behind);
             // Share of samples in a cap, counted and integrated.
             let mut stream = RandomStream::new(5, 1);
             let axis = DVec3::new(-0.4, 0.3, if matches!(material.body, MaterialKind::Transparent(_)) { -0.6 } else { 0.6 });
@@ -194,8 +194,8 @@ fn densities_are_those_with_which_directions_are_drawn() {
             let count = 40_000;
             let mut inside = 0.0;
             for _ in 0..count {
-                let onward = optics.sample(&sighting, stream.uniform(), stream.point(), LobeSelection::All);
-                inside += f64::from(u8::from(onward.is_some_and(|onward| onward.light.dot(axis) > cosine)));
+                let sample = bsdf.sample(&context, stream.uniform(), stream.point(), LobeSelection::All);
+                inside += f64::from(u8::from(sample.is_some_and(|onward| onward.light.dot(axis) > cosine)));
             }
             let frame = crate::illumination::distribution::ShadingFrame::from_normal(axis);
             let term = |[x, y]: [f64; 2]| {
@@ -203,7 +203,7 @@ fn densities_are_those_with_which_directions_are_drawn() {
                 let (sin, cos) = (TAU * y).sin_cos();
                 let sine = (1.0 - z * z).sqrt();
                 let light = frame.world(DVec3::new(sine * cos, sine * sin, z));
-                LobeClass::CONTINUING.iter().map(|which| optics.pdf(*which, &sighting, light, LobeSelection::All)).sum::<f64>()
+                LobeClass::CONTINUING.iter().map(|which| bsdf.pdf(*which, &context, light, LobeSelection::All)).sum::<f64>()
             };
             let expected = TAU * (1.0 - cosine) * unit_square(term, 1e-5, 100_000).value;
             let found = inside / f64::from(count);
@@ -217,16 +217,16 @@ fn densities_are_those_with_which_directions_are_drawn() {
 fn smooth_glass_splits_light_without_loss_and_bends_it_by_snells_law() {
     let wavelengths = WavelengthSets::bands();
     let glass = Transparent::clear(RefractiveIndex::Constant(1.5));
-    let optics = ready(&MaterialKind::Transparent(glass).into(), &wavelengths);
+    let bsdf = ready(&MaterialKind::Transparent(glass).into(), &wavelengths);
     for degrees in [0.0, 30.0, 80.0, 89.9] {
-        let sighting = context(degrees, 1.0, 1.5);
-        let both: Vec<BsdfSample> = optics.specular_samples(&sighting).collect();
+        let context = context(degrees, 1.0, 1.5);
+        let both: Vec<BsdfSample> = bsdf.specular_samples(&context).collect();
         let [reflected, refracted] = both.try_into().expect("two directions");
         let all = reflected.weight.0[0] + refracted.weight.0[0] * 2.25;
         assert!((all - 1.0).abs() < 1e-12, "{degrees}: {all}");
         assert!((refracted.light.x + degrees.to_radians().sin() / 1.5).abs() < 1e-12);
     }
-    let total: Vec<BsdfSample> = optics.specular_samples(&context(60.0, 1.5, 1.0)).collect();
+    let total: Vec<BsdfSample> = bsdf.specular_samples(&context(60.0, 1.5, 1.0)).collect();
     assert_eq!((total.len(), total[0].weight.0[0]), (1, 1.0), "total reflection");
 }
 
@@ -239,9 +239,9 @@ fn a_rough_metal_with_all_reflections_loses_only_what_it_absorbs() {
     let wavelengths = WavelengthSets::bands();
     for roughness in [0.1, 0.5, 1.0] {
         let metal = Metal { n: flat(0.0), k: flat(3.0), finish: rough("GGX, all", roughness) };
-        let optics = ready(&MaterialKind::Metal(metal).into(), &wavelengths);
+        let bsdf = ready(&MaterialKind::Metal(metal).into(), &wavelengths);
         for degrees in [0.0, 45.0, 80.0] {
-            let all = integral(&optics, &context(degrees, 1.0, 1.0));
+            let all = integral(&bsdf, &context(degrees, 1.0, 1.0));
             assert!((all - 1.0).abs() < 3e-4, "{roughness} at {degrees}: {all}");
         }
     }
@@ -250,17 +250,17 @@ fn a_rough_metal_with_all_reflections_loses_only_what_it_absorbs() {
 #[test]
 fn copper_under_white_light_has_the_color_of_its_reflectance() {
     let wavelengths = WavelengthSets::spectral();
-    let optics = ready(&copper(Finish::Polished), &wavelengths);
+    let bsdf = ready(&copper(Finish::Polished), &wavelengths);
     let white = wavelengths.light(&Color::grey(1.0));
-    let combs = wavelengths.count();
-    let seen: DVec3 = (0..combs)
-        .map(|comb| {
-            let sighting = ShadingContext { comb, ..context(0.0, 1.0, 1.0) };
-            let mirrored = optics.specular_samples(&sighting).next().expect("a mirror");
-            wavelengths.to_srgb(comb, mirrored.weight * white.of(comb))
+    let sets = wavelengths.count();
+    let seen: DVec3 = (0..sets)
+        .map(|wavelength_set| {
+            let context = ShadingContext { wavelength_set, ..context(0.0, 1.0, 1.0) };
+            let mirrored = bsdf.specular_samples(&context).next().expect("a mirror");
+            wavelengths.to_srgb(wavelength_set, mirrored.weight * white.of(wavelength_set))
         })
         .sum::<DVec3>()
-        / combs as f64;
+        / sets as f64;
     // Chromaticity and Y from colour-science 0.4.7, from the same indices.
     let xyz = crate::color::srgb::to_xyz(seen);
     let xy = crate::color::observer::chromaticity(xyz).expect("not black");
@@ -274,9 +274,9 @@ fn copper_under_white_light_has_the_color_of_its_reflectance() {
 fn straight_light_goes_on_and_impossible_materials_are_errors() {
     let wavelengths = WavelengthSets::bands();
     let curtain = Classic { transparency: Paint::grey(0.25), ..Classic::default() };
-    let optics = ready(&curtain.into(), &wavelengths);
-    let straight: Vec<BsdfSample> = optics.specular_samples(&context(30.0, 1.0, 1.0)).collect();
-    assert!(straight[0].is_straight && straight[0].weight.0[0] == 0.25 && optics.passing.is_some());
+    let bsdf = ready(&curtain.into(), &wavelengths);
+    let straight: Vec<BsdfSample> = bsdf.specular_samples(&context(30.0, 1.0, 1.0)).collect();
+    assert!(straight[0].is_straight && straight[0].weight.0[0] == 0.25 && bsdf.straight_transmission.is_some());
     let mut library = BsdfBuilder::new(&wavelengths, false);
     let mut refused =
         |material: Material| library.bsdf(&material, Interreflection::Followed).unwrap_err().to_string();
@@ -306,22 +306,22 @@ fn nothing_is_infinite_at_the_extremes() {
     }
     let mut stream = RandomStream::new(3, 3);
     for material in materials {
-        let optics = ready(&material, &wavelengths);
-        let index = optics.interior.as_ref().map_or(1.0, |interior| interior.index.of(0).0[0]);
+        let bsdf = ready(&material, &wavelengths);
+        let index = bsdf.interior.as_ref().map_or(1.0, |interior| interior.index.of(0).0[0]);
         for (before, behind) in [(1.0, index), (index, 1.0)] {
             for degrees in [0.0, 60.0, 89.9999] {
-                let sighting = context(degrees, before, behind);
+                let context = context(degrees, before, behind);
                 for _ in 0..200 {
                     let light = sphere(stream.point());
-                    let value = optics.total_value(&sighting, light);
+                    let value = bsdf.total_value(&context, light);
                     assert!(value.is_finite() && value.0.iter().all(|v| *v >= 0.0));
                     assert!(
                         LobeClass::CONTINUING
                             .iter()
-                            .all(|which| optics.pdf(*which, &sighting, light, LobeSelection::All) >= 0.0)
+                            .all(|which| bsdf.pdf(*which, &context, light, LobeSelection::All) >= 0.0)
                     );
-                    let onward = optics.sample(&sighting, stream.uniform(), stream.point(), LobeSelection::All);
-                    assert!(onward.is_none_or(|o| o.weight.is_finite() && (o.light.length() - 1.0).abs() < 1e-6));
+                    let sample = bsdf.sample(&context, stream.uniform(), stream.point(), LobeSelection::All);
+                    assert!(sample.is_none_or(|o| o.weight.is_finite() && (o.light.length() - 1.0).abs() < 1e-6));
                 }
             }
         }
@@ -332,14 +332,14 @@ fn nothing_is_infinite_at_the_extremes() {
 fn absorption_over_the_wavelength_has_its_colour_however_strong_it_is() {
     let wavelengths = WavelengthSets::spectral();
     let white = wavelengths.light(&Color::grey(1.0));
-    let combs = wavelengths.count();
+    let sets = wavelengths.count();
     for scale in [0.1, 1.0, 100.0] {
         let bands = glam::DVec3::new(0.2, 9.0, 7.0) * scale;
         let glass = Transparent { absorption: Color::Bands(bands), ..Transparent::clear(RefractiveIndex::Constant(1.5)) };
         let absorption = ready(&MaterialKind::Transparent(glass).into(), &wavelengths).interior.expect("glass").absorption;
         let seen: DVec3 =
-            (0..combs).map(|comb| wavelengths.to_srgb(comb, absorption.of(comb) * white.of(comb))).sum::<DVec3>()
-                / combs as f64;
+            (0..sets).map(|wavelength_set| wavelengths.to_srgb(wavelength_set, absorption.of(wavelength_set) * white.of(wavelength_set))).sum::<DVec3>()
+                / sets as f64;
         assert!((seen - bands).length() < 2e-2 * bands.max_element(), "{seen} {bands}");
     }
 }

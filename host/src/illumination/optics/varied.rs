@@ -42,8 +42,8 @@ impl<L: Lobe> VaryingLobe<L> {
     }
 
     /// The two lobes about the value at a place, and how much there is of each; they are the same at the ends.
-    fn parts(&self, sighting: &ShadingContext<'_>) -> [(&L, f64); 2] {
-        let value = self.quantity.of(sighting);
+    fn parts(&self, context: &ShadingContext<'_>) -> [(&L, f64); 2] {
+        let value = self.quantity.of(context);
         let above = self.nodes.partition_point(|(node, _)| *node <= value).min(self.nodes.len() - 1);
         let below = above.saturating_sub(1);
         let [from, to] = [below, above].map(|node| self.nodes[node].0);
@@ -57,14 +57,14 @@ impl<L: Lobe> VaryingLobe<L> {
     }
 
     /// The mixture of what lobes tell.
-    fn mixed(&self, sighting: &ShadingContext<'_>, of: impl Fn(&L) -> Channels) -> Channels {
-        let [(a, less), (b, more)] = self.parts(sighting);
+    fn mixed(&self, context: &ShadingContext<'_>, of: impl Fn(&L) -> Channels) -> Channels {
+        let [(a, less), (b, more)] = self.parts(context);
         if less == 0.0 { of(b) } else { of(a) * less + of(b) * more }
     }
 
     /// The mixture of a number that lobes tell.
-    fn mixed_number(&self, sighting: &ShadingContext<'_>, of: impl Fn(&L) -> f64) -> f64 {
-        let [(a, less), (b, more)] = self.parts(sighting);
+    fn mixed_number(&self, context: &ShadingContext<'_>, of: impl Fn(&L) -> f64) -> f64 {
+        let [(a, less), (b, more)] = self.parts(context);
         if less == 0.0 { of(b) } else { of(a) * less + of(b) * more }
     }
 }
@@ -74,33 +74,33 @@ impl<L: Lobe> Lobe for VaryingLobe<L> {
         self.typical().flags()
     }
 
-    fn value(&self, sighting: &ShadingContext, light: DVec3) -> Channels {
-        self.mixed(sighting, |lobe| lobe.value(sighting, light))
+    fn value(&self, context: &ShadingContext, light: DVec3) -> Channels {
+        self.mixed(context, |lobe| lobe.value(context, light))
     }
 
-    fn pdf(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
-        self.mixed_number(sighting, |lobe| lobe.pdf(sighting, light))
+    fn pdf(&self, context: &ShadingContext, light: DVec3) -> f64 {
+        self.mixed_number(context, |lobe| lobe.pdf(context, light))
     }
 
     /// Draws a direction from one of the two lobes.
-    fn sample(&self, sighting: &ShadingContext<'_>, choice: f64, point: [f64; 2]) -> Option<BsdfSample> {
-        let [(a, less), (b, more)] = self.parts(sighting);
+    fn sample(&self, context: &ShadingContext<'_>, choice: f64, point: [f64; 2]) -> Option<BsdfSample> {
+        let [(a, less), (b, more)] = self.parts(context);
         let rest = |below: f64, part: f64| ((choice - below) / part).clamp(0.0, 1.0_f64.next_down());
         if choice < less {
-            a.sample(sighting, rest(0.0, less), point)
+            a.sample(context, rest(0.0, less), point)
         } else {
-            b.sample(sighting, rest(less, more), point)
+            b.sample(context, rest(less, more), point)
         }
     }
 
-    fn strength(&self, sighting: &ShadingContext) -> f64 {
-        self.mixed_number(sighting, |lobe| lobe.strength(sighting))
+    fn strength(&self, context: &ShadingContext) -> f64 {
+        self.mixed_number(context, |lobe| lobe.strength(context))
     }
 
     /// The single directions of lobes that are polished alike, and differ in what lies on them.
-    fn specular_samples(&self, sighting: &ShadingContext<'_>) -> [Option<BsdfSample>; 2] {
-        let [(a, less), (b, more)] = self.parts(sighting);
-        let [one, other] = [a, b].map(|lobe| lobe.specular_samples(sighting));
+    fn specular_samples(&self, context: &ShadingContext<'_>) -> [Option<BsdfSample>; 2] {
+        let [(a, less), (b, more)] = self.parts(context);
+        let [one, other] = [a, b].map(|lobe| lobe.specular_samples(context));
         let mixed = |(a, b): (Option<BsdfSample>, Option<BsdfSample>)| match (a, b) {
             (Some(a), Some(b)) => Some(BsdfSample { weight: a.weight * less + b.weight * more, ..b }),
             (a, b) => a
@@ -111,15 +111,15 @@ impl<L: Lobe> Lobe for VaryingLobe<L> {
         [mixed((a, b)), mixed((c, d))]
     }
 
-    fn diffuse_albedo(&self, sighting: &ShadingContext) -> Channels {
-        self.mixed(sighting, |lobe| lobe.diffuse_albedo(sighting))
+    fn diffuse_albedo(&self, context: &ShadingContext) -> Channels {
+        self.mixed(context, |lobe| lobe.diffuse_albedo(context))
     }
 
-    fn glossy_albedo(&self, sighting: &ShadingContext) -> Channels {
-        self.mixed(sighting, |lobe| lobe.glossy_albedo(sighting))
+    fn glossy_albedo(&self, context: &ShadingContext) -> Channels {
+        self.mixed(context, |lobe| lobe.glossy_albedo(context))
     }
 
-    fn clear_transmittance(&self, sighting: &ShadingContext) -> Channels {
-        self.mixed(sighting, |lobe| lobe.clear_transmittance(sighting))
+    fn clear_transmittance(&self, context: &ShadingContext) -> Channels {
+        self.mixed(context, |lobe| lobe.clear_transmittance(context))
     }
 }

@@ -181,22 +181,22 @@ impl Image {
     ///
     /// # Source
     /// Williams 1983, pyramidal parametrics; McCormack and others 1999, Feline: several looks along the longer axis.
-    pub fn at(&self, place: &TextureFootprint) -> DVec3 {
+    pub fn at(&self, footprint: &TextureFootprint) -> DVec3 {
         let [width, height] = self.size().map(|n| n as f64);
         let texels = DVec2::new(width, height);
-        let sides = place.sides.map(|side| side.uv * texels);
+        let sides = footprint.sides.map(|side| side.uv * texels);
         let (long, short) = match sides.map(DVec2::length) {
-            [a, b] if a >= b => ((a, place.sides[0].uv), b),
-            [a, b] => ((b, place.sides[1].uv), a),
+            [a, b] if a >= b => ((a, footprint.sides[0].uv), b),
+            [a, b] => ((b, footprint.sides[1].uv), a),
         };
-        if !place.uv.is_finite() || !long.0.is_finite() {
+        if !footprint.uv.is_finite() || !long.0.is_finite() {
             return self.mean();
         }
         let looks = if long.0 <= 1.0 { 1.0 } else { (long.0 / short.max(1.0)).ceil().clamp(1.0, MOST_PROBES) };
         let level = short.max(long.0 / looks).max(1.0).log2().min((self.levels.len() - 1) as f64);
         let mut sum = DVec3::ZERO;
         for look in 0..looks as u32 {
-            sum += self.between(place.uv + long.1 * ((f64::from(look) + 0.5) / looks - 0.5), level);
+            sum += self.between(footprint.uv + long.1 * ((f64::from(look) + 0.5) / looks - 0.5), level);
         }
         sum / looks
     }

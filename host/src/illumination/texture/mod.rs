@@ -148,20 +148,20 @@ impl Default for TextureMapping {
 
 impl TextureMapping {
     /// A place of the surface as the pattern counts it.
-    fn mapped(&self, place: &TextureFootprint) -> TextureFootprint {
+    fn mapped(&self, footprint: &TextureFootprint) -> TextureFootprint {
         let turn = self.turned();
         let lay = |uv: DVec2, own: DVec3| {
             let solid = if self.solid { turn * own } else { turn * uv.extend(0.0) };
             solid / self.size
         };
-        let begin = if self.solid { place.own - self.at } else { place.own };
-        let uv = if self.solid { place.uv } else { place.uv - self.at.truncate() };
+        let begin = if self.solid { footprint.own - self.at } else { footprint.own };
+        let uv = if self.solid { footprint.uv } else { footprint.uv - self.at.truncate() };
         let own = lay(uv, begin);
         let side = |side: FootprintSide| {
             let own = lay(side.uv, side.own);
             FootprintSide { scene: side.scene, uv: own.truncate(), own }
         };
-        TextureFootprint { uv: own.truncate(), own, sides: place.sides.map(side), along: place.along }
+        TextureFootprint { uv: own.truncate(), own, sides: footprint.sides.map(side), along: footprint.along }
     }
 
     /// From the coordinates of the object to those of the pattern; on a surface it turns about the normal.
@@ -266,8 +266,8 @@ impl Paint {
 
 impl Pattern {
     /// How much there is of each paint, in the mean over a place: fractions; of the bands of an image, three.
-    pub fn parts(&self, place: &TextureFootprint) -> [f64; MOST_PAINTS] {
-        self.motif.parts(&self.laying.mapped(place), self.laying.solid)
+    pub fn parts(&self, footprint: &TextureFootprint) -> [f64; MOST_PAINTS] {
+        self.motif.parts(&self.laying.mapped(footprint), self.laying.solid)
     }
 
     /// Whether it has its own colors.
@@ -276,8 +276,8 @@ impl Pattern {
     }
 
     /// How high a place is, 0..=1.
-    fn height(&self, place: &TextureFootprint) -> f64 {
-        let [a, b, c] = self.parts(place);
+    fn height(&self, footprint: &TextureFootprint) -> f64 {
+        let [a, b, c] = self.parts(footprint);
         if self.is_image() { (a + b + c) / 3.0 } else { b }
     }
 
@@ -322,27 +322,27 @@ impl Relief {
     ///
     /// # Source
     /// Blinn 1978, simulation of wrinkled surfaces: N − h_s s − h_t t for heights along two tangents at right angles.
-    pub fn normal(&self, place: &TextureFootprint, normal: DVec3) -> DVec3 {
+    pub fn normal(&self, footprint: &TextureFootprint, normal: DVec3) -> DVec3 {
         let tilted = match self {
             Relief::Bumps { pattern, height } => {
                 let slope = |side: &FootprintSide| {
                     let length = side.scene.length();
-                    let laid = pattern.laying.mapped(&TextureFootprint { sides: [*side; 2], ..*place }).sides[0];
+                    let laid = pattern.laying.mapped(&TextureFootprint { sides: [*side; 2], ..*footprint }).sides[0];
                     let extent = if pattern.laying.solid { laid.own.length() } else { laid.uv.length() };
                     if length == 0.0 || extent == 0.0 {
                         return DVec3::ZERO;
                     }
                     let step = (LEAST_STEP / extent).max(1.0);
                     let [before, behind] =
-                        [-0.5, 0.5].map(|part| pattern.height(&place.moved(&side.scaled(part * step))));
+                        [-0.5, 0.5].map(|part| pattern.height(&footprint.moved(&side.scaled(part * step))));
                     side.scene * ((behind - before) * height / (step * length * length))
                 };
-                normal - slope(&place.sides[0]) - slope(&place.sides[1])
+                normal - slope(&footprint.sides[0]) - slope(&footprint.sides[1])
             }
             Relief::Normals { image, laying } => {
-                let [x, y, z] = (image.at(&laying.mapped(place)) * 2.0 - 1.0).to_array();
+                let [x, y, z] = (image.at(&laying.mapped(footprint)) * 2.0 - 1.0).to_array();
                 let upright = |along: DVec3| (along - normal * along.dot(normal)).normalize_or_zero();
-                upright(place.along[0]) * x + upright(place.along[1]) * y + normal * z.max(0.0)
+                upright(footprint.along[0]) * x + upright(footprint.along[1]) * y + normal * z.max(0.0)
             }
         };
         tilted.try_normalize().unwrap_or(normal)

@@ -83,15 +83,15 @@ impl Motif {
     }
 
     /// How much there is of each paint in the mean over a place, in the coordinates of the pattern.
-    pub(super) fn parts(&self, place: &TextureFootprint, solid: bool) -> [f64; MOST_PAINTS] {
-        let [a, b] = place.sides.map(|side| side.own);
+    pub(super) fn parts(&self, footprint: &TextureFootprint, solid: bool) -> [f64; MOST_PAINTS] {
+        let [a, b] = footprint.sides.map(|side| side.own);
         let width = a.length().max(b.length());
-        let at = place.own;
+        let at = footprint.own;
         if !at.is_finite() || !width.is_finite() {
             return self.mean();
         }
         let second = match *self {
-            Motif::Image { ref image } => return image.at(place).to_array(),
+            Motif::Image { ref image } => return image.at(footprint).to_array(),
             Motif::Checker => {
                 let extent = a.abs() + b.abs();
                 let axes = if solid { 3 } else { 2 };

@@ -67,10 +67,10 @@ impl From<f64> for NumberTexture {
 
 impl NumberTexture {
     /// The mean of the number over a place.
-    pub fn at(&self, place: &TextureFootprint) -> f64 {
+    pub fn at(&self, footprint: &TextureFootprint) -> f64 {
         match self {
             NumberTexture::Constant(value) => *value,
-            NumberTexture::Varying(varying) => varying.between(varying.band.of(bands(&varying.pattern, place))),
+            NumberTexture::Varying(varying) => varying.between(varying.band.of(bands(&varying.pattern, footprint))),
         }
     }
 
@@ -135,14 +135,14 @@ impl Varying {
 }
 
 /// The mean bands of a pattern over a place.
-fn bands(pattern: &Pattern, place: &TextureFootprint) -> DVec3 {
-    let parts = pattern.parts(place);
+fn bands(pattern: &Pattern, footprint: &TextureFootprint) -> DVec3 {
+    let parts = pattern.parts(footprint);
     if pattern.is_image() {
         return DVec3::from_array(parts);
     }
     let of = |paint: &Paint| match paint {
         Paint::Plain(color) => color_bands(color),
-        Paint::Pattern(pattern) => bands(pattern, place),
+        Paint::Pattern(pattern) => bands(pattern, footprint),
     };
     pattern.paints.iter().zip(parts).map(|(paint, part)| of(paint) * part).sum()
 }

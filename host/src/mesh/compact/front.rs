@@ -19,7 +19,7 @@ pub(super) enum Step {
 struct Node {
     vertex: u32,
     /// The third vertex of the triangle on its left.
-    behind: u32,
+    apex: u32,
     next: u32,
     previous: u32,
     is_alive: bool,
@@ -38,7 +38,7 @@ impl Front {
         let first = self.nodes.len() as u32;
         for (vertex, behind, offset) in [(a, c, 0), (b, a, 1), (c, b, 2)] {
             let (next, previous) = (first + (offset + 1) % 3, first + (offset + 2) % 3);
-            self.nodes.push(Node { vertex, behind, next, previous, is_alive: true });
+            self.nodes.push(Node { vertex, apex: behind, next, previous, is_alive: true });
             self.waiting.push(first + offset);
         }
     }
@@ -72,7 +72,7 @@ impl Front {
 
     /// The third vertex of the triangle on the left of an edge.
     pub fn apex(&self, node: u32) -> u32 {
-        self.nodes[node as usize].behind
+        self.nodes[node as usize].apex
     }
 
     /// The vertex after the end of `gate`.
@@ -174,7 +174,7 @@ impl Front {
     /// Adds an edge after `previous`, as a gate.
     fn insert(&mut self, vertex: u32, behind: u32, previous: u32) -> u32 {
         let node = self.nodes.len() as u32;
-        self.nodes.push(Node { vertex, behind, next: node, previous, is_alive: true });
+        self.nodes.push(Node { vertex, apex: behind, next: node, previous, is_alive: true });
         self.nodes[previous as usize].next = node;
         self.waiting.push(node);
         node

@@ -45,11 +45,11 @@ fn both_forms_keep_triangles_normals_parameters_and_groups() {
     mesh.surfaces = (0..mesh.triangles.len() as u32).map(|k| k % 3).collect();
     let names = vec!["front".to_owned(), "back side".to_owned()];
     let looks = vec![None, Some(MetallicRoughness { base: DVec3::new(0.5, 0.25, 1.0), metallic: 0.125, roughness: 0.75 })];
-    let grouped = Grouped { mesh: mesh.clone(), names, looks };
+    let grouped = Grouped { mesh: mesh.clone(), names, materials: looks };
     for format in [Format::Gltf, Format::Glb] {
         let back = parse_grouped(&print_grouped(&grouped, format).unwrap(), format).unwrap();
         assert_eq!(back.names, ["front", "back side", "surface 2"]);
-        assert_eq!(back.looks, [None, grouped.looks[1], None]);
+        assert_eq!(back.materials, [None, grouped.materials[1], None]);
         assert!(back.mesh.is_closed());
         let mut order: Vec<usize> = (0..mesh.triangles.len()).collect();
         order.sort_by_key(|k| mesh.surfaces[*k]);

@@ -59,7 +59,7 @@ type Corner = ([u32; 3], [u32; 3], [u32; 2]);
 
 /// The document without its buffer, and the buffer.
 fn document(grouped: &Grouped) -> Result<(Value, Vec<u8>), Fault> {
-    let Grouped { mesh, names, looks } = grouped;
+    let Grouped { mesh, names, materials: looks } = grouped;
     for (vertex, position) in mesh.vertices.iter().enumerate() {
         if let Some(&value) = position.to_array().iter().find(|value| !(**value as f32).is_finite()) {
             return Err(FaultLocation::Vertex(vertex).fault(MeshProblem::Range { value }));

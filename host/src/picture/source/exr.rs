@@ -104,7 +104,7 @@ fn emit_block(
     channels: &[ChannelDescription],
     meanings: &[Vec<usize>],
     row: &mut Vec<[f32; 5]>,
-    tell: &mut impl FnMut(u32, u32, Texel),
+    emit: &mut impl FnMut(u32, u32, Texel),
 ) {
     let (Vec2(left, top), Vec2(width, height)) = (block.index.pixel_position, block.index.pixel_size);
     let mut rest = &block.data[..];
@@ -123,7 +123,7 @@ fn emit_block(
             }
         }
         for (x, pixel) in row.iter().enumerate() {
-            tell((left + x) as u32, y as u32, Texel::Float(*pixel));
+            emit((left + x) as u32, y as u32, Texel::Float(*pixel));
         }
     }
 }

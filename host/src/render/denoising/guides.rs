@@ -13,7 +13,7 @@ const LEAST_RIDGE: f32 = 1e-5;
 /// What guides the regression.
 pub(super) fn feature_planes(film: &Film) -> FeaturePlanes {
     let size = [film.width() as usize, film.height() as usize];
-    let (tallies, guides) = (film.tallies(), film.features());
+    let (tallies, features) = (film.tallies(), film.features());
     let count = |pixel: usize| tallies[pixel].count.max(1) as f32;
     let distance = |pixel: usize| {
         let Tally { elements, distances, .. } = &tallies[pixel];
@@ -23,10 +23,10 @@ pub(super) fn feature_planes(film: &Film) -> FeaturePlanes {
         .filter_map(distance)
         .fold((0.0, 0.0f64), |(sum, seen), distance| (sum + distance.ln(), seen + 1.0));
     let typical = sum / seen.max(1.0);
-    let values: [PixelPlane; FEATURES] = from_fn(|guide| {
-        PixelPlane::new(size, MARGIN, |pixel| match guide {
-            0..3 => guides[pixel].albedo[guide] / count(pixel),
-            3..6 => guides[pixel].normal[guide - 3] / count(pixel),
+    let values: [PixelPlane; FEATURES] = from_fn(|feature| {
+        PixelPlane::new(size, MARGIN, |pixel| match feature {
+            0..3 => features[pixel].albedo[feature] / count(pixel),
+            3..6 => features[pixel].normal[feature - 3] / count(pixel),
             _ => distance(pixel).map_or(0.0, |distance| (distance.ln() - typical) as f32),
         })
     });
@@ -41,16 +41,16 @@ pub(super) fn feature_planes(film: &Film) -> FeaturePlanes {
     };
     let ridges = [
         PixelPlane::new(size, MARGIN, |pixel| {
-            let PixelFeatures { albedo, albedo_squares, .. } = guides[pixel];
+            let PixelFeatures { albedo, albedo_squares, .. } = features[pixel];
             ridge(of_vector(pixel, albedo, albedo_squares))
         }),
         PixelPlane::new(size, MARGIN, |pixel| {
-            let PixelFeatures { normal, normal_squares, .. } = guides[pixel];
+            let PixelFeatures { normal, normal_squares, .. } = features[pixel];
             ridge(of_vector(pixel, normal, normal_squares))
         }),
         PixelPlane::new(size, MARGIN, |pixel| {
             let mean = distance(pixel).unwrap_or(1.0) as f32;
-            let squares = guides[pixel].distance_squares;
+            let squares = features[pixel].distance_squares;
             ridge(variance(mean * mean, squares, tallies[pixel].elements.max(1) as f32) / (mean * mean))
         }),
     ];

@@ -54,16 +54,16 @@ impl Halves {
     /// None of a film without light or guides, and of one whose mean leaves [`UNITS`].
     pub(super) fn of(film: &Film) -> Option<Halves> {
         let size = [film.width() as usize, film.height() as usize];
-        let (tallies, guides) = (film.tallies(), film.features());
+        let (tallies, features) = (film.tallies(), film.features());
         let unit = tallies.iter().map(|tally| tally.mean().dot(LUMINANCE)).sum::<f64>() / tallies.len() as f64;
         let unit = unit as f32;
-        if !UNITS.contains(&unit) || guides.len() != tallies.len() {
+        if !UNITS.contains(&unit) || features.len() != tallies.len() {
             return None;
         }
         let pixels = tallies.len();
         let counts = |pixel: usize| halves(tallies[pixel].count);
         let mean = |pixel: usize| {
-            let (Tally { sum, .. }, PixelFeatures { early, .. }) = (&tallies[pixel], &guides[pixel]);
+            let (Tally { sum, .. }, PixelFeatures { early, .. }) = (&tallies[pixel], &features[pixel]);
             let [first, rest] = counts(pixel);
             from_fn(|band| {
                 let late = (sum[band] as f32 - early[band]) / rest.max(1.0);
@@ -84,7 +84,7 @@ impl Halves {
                     return means[pixel][band].map(|half| half * half).iter().sum();
                 }
                 let (count, mean) = (tallies[pixel].count as f32, tallies[pixel].mean()[band] as f32);
-                let squares = guides[pixel].squares[band] / count.max(1.0) - mean * mean;
+                let squares = features[pixel].squares[band] / count.max(1.0) - mean * mean;
                 squares.max(0.0) / (count - 1.0).max(1.0) / (unit * unit)
             })
         });

@@ -44,16 +44,16 @@ pub(super) const BYTES: u64 = 220;
 pub(super) fn denoised(film: &Film, is_cancelled: &(dyn Fn() -> bool + Sync)) -> Result<Option<Picture>, PictureError> {
     let mut picture = film.picture()?;
     let Some(halves) = Halves::of(film) else { return Ok(Some(picture)) };
-    let guides = feature_planes(film);
+    let features = feature_planes(film);
     let both = |quiet: &[bool]| {
         let [early, late] = [&halves.early, &halves.late];
-        [filtered(early, late, &guides, quiet, is_cancelled), filtered(late, early, &guides, quiet, is_cancelled)]
+        [filtered(early, late, &features, quiet, is_cancelled), filtered(late, early, &features, quiet, is_cancelled)]
     };
     let quiet: Vec<bool> = (0..film.tallies().len()).into_par_iter().map(|pixel| halves.is_quiet(pixel)).collect();
     let pilot = Pilot::new(&quiet, film);
     let is_worth = pilot.is_worth(&halves, &both(&pilot.quiet));
     let filtered = is_worth.then(|| both(&quiet));
-    drop(guides);
+    drop(features);
     let part = filtered.as_ref().map(|both| halves.part_of_filtered(both));
     if is_cancelled() {
         return Ok(None);

@@ -90,7 +90,7 @@ pub(super) struct FeaturePlanes {
 pub(super) fn filtered(
     picture: &NoisyPicture,
     other: &NoisyPicture,
-    guides: &FeaturePlanes,
+    features: &FeaturePlanes,
     quiet: &[bool],
     is_cancelled: &(dyn Fn() -> bool + Sync),
 ) -> RgbPlanes {
@@ -111,7 +111,7 @@ pub(super) fn filtered(
                 let (quiet, pixels) = (&quiet[from..], &mut pixels[from..]);
                 let at = [columns.start, row * TILE_HEIGHT + rows.start];
                 let size = [columns.len(), rows.len()];
-                widest::run(Filtering { picture, other, guides, quiet, at, size, weights, pixels });
+                widest::run(Filtering { picture, other, features, quiet, at, size, weights, pixels });
             }
         }
     });
@@ -190,7 +190,7 @@ impl Lanes {
 struct Filtering<'a> {
     picture: &'a NoisyPicture,
     other: &'a NoisyPicture,
-    guides: &'a FeaturePlanes,
+    features: &'a FeaturePlanes,
     /// Which pixels of the rows are quiet.
     quiet: &'a [bool],
     /// Its first column and row.
@@ -206,7 +206,7 @@ struct Filtering<'a> {
 impl Work for Filtering<'_> {
     #[inline(always)]
     fn run(self) {
-        let Filtering { picture, other, guides, quiet, at, size: [columns, rows], weights, pixels } = self;
+        let Filtering { picture, other, features, quiet, at, size: [columns, rows], weights, pixels } = self;
         let groups = columns.div_ceil(LANES);
         let width = picture.bands[0].width;
         let each = groups * rows;
@@ -222,7 +222,7 @@ impl Work for Filtering<'_> {
                 }
                 let place = [(at[0] + group * LANES) as isize, (at[1] + row) as isize];
                 let own = &weights[row * groups + group..];
-                let found = fit(picture, guides, place, own, each);
+                let found = fit(picture, features, place, own, each);
                 for (lane, pixel) in pixels[lanes].iter_mut().enumerate() {
                     *pixel = found.map(|band| band.0[lane]);
                 }
@@ -354,10 +354,10 @@ macro_rules! normal_equations {
 /// # Source
 /// Bitterli and others 2016, nonlinearly weighted first-order regression.
 #[inline(always)]
-fn fit(picture: &NoisyPicture, guides: &FeaturePlanes, place: [isize; 2], weights: &[[f32; LANES]], step: usize) -> [Lanes; 3] {
+fn fit(picture: &NoisyPicture, features: &FeaturePlanes, place: [isize; 2], weights: &[[f32; LANES]], step: usize) -> [Lanes; 3] {
     let plane = &picture.bands[0];
     let place = plane.place(place[0], place[1]);
-    let values = guides.values.each_ref().map(PixelPlane::values);
+    let values = features.values.each_ref().map(PixelPlane::values);
     let middle = values.map(|values| Lanes::read(values, place));
     let regression = Regression { bands: picture.bands.each_ref().map(PixelPlane::values), values, middle };
     let mut matrix = [[Lanes::splat(0.0); UNKNOWNS]; UNKNOWNS];
@@ -368,7 +368,7 @@ fn fit(picture: &NoisyPicture, guides: &FeaturePlanes, place: [isize; 2], weight
     let count = matrix[UNKNOWNS - 1][UNKNOWNS - 1];
     for (unknown, row) in matrix.iter_mut().enumerate().take(UNKNOWNS - 1) {
         let ridge = match RIDGE_OF.get(unknown) {
-            Some(ridge) => Lanes::read(guides.ridges[*ridge].values(), place),
+            Some(ridge) => Lanes::read(features.ridges[*ridge].values(), place),
             None => Lanes::splat(PLACE_RIDGE),
         };
         row[unknown] = ridge.times_plus(count, row[unknown]);
@@ -454,8 +454,8 @@ mod tests {
             NoisyPicture::new([plane(0, 0.5), plane(1, 0.5), plane(2, 0.5)], variances)
         };
         let (picture, other) = (noisy(0), noisy(3));
-        let guides = FeaturePlanes {
-            values: from_fn(|guide| plane(6 + guide, 0.0)),
+        let features = FeaturePlanes {
+            values: from_fn(|features| plane(6 + features, 0.0)),
             ridges: [0; 3].map(|_| PixelPlane::new(size, MARGIN, |_| 1e-3)),
         };
         let by = |way: &dyn Fn(Filtering<'_>)| {
@@ -464,7 +464,7 @@ mod tests {
             way(Filtering {
                 picture: &picture,
                 other: &other,
-                guides: &guides,
+                features: &features,
                 quiet: &vec![false; size[0] * TILE_HEIGHT],
                 at: [64, 0],
                 size: [6, TILE_HEIGHT],

@@ -38,11 +38,11 @@ impl Contacts {
     ///
     /// - `finest`: a length. `takes_part`: whether a triangle is asked for.
     pub(super) fn new(
-        sight: &VisibilityTester<'_>,
+        visibility: &VisibilityTester<'_>,
         (diagonal, finest): (f64, f64),
         takes_part: impl Fn(u32) -> bool + Sync,
     ) -> Contacts {
-        let prepared = sight.world.appearance.prepared;
+        let prepared = visibility.world.appearance.prepared;
         let tolerance = TOUCHING * diagonal;
         let is_rod: Vec<bool> = prepared.objects.iter().map(|object| is_rod(&object.bounds, finest)).collect();
         let is_of_rod = |triangle: u32| is_rod[prepared.object_of[triangle as usize] as usize];
@@ -53,7 +53,7 @@ impl Contacts {
             if takes_part(triangle) {
                 let own = prepared.corners(triangle);
                 let Bounds { min, max } = Bounds::of(own);
-                sight.world.each_near(Bounds { min: min - near, max: max + near }, |other| {
+                visibility.world.each_near(Bounds { min: min - near, max: max + near }, |other| {
                     if other != triangle && !is_of_rod(other) {
                         let other = prepared.corners(other);
                         meeting(own, other, tolerance, |line| lines.push(line));

@@ -150,7 +150,7 @@ impl VisibilityTester<'_> {
         ([of_light, of_sky], turn): ([u32; 2], u32),
     ) -> Channels {
         let appearance = &self.world.appearance;
-        let combs = appearance.wavelengths.count();
+        let sets = appearance.wavelengths.count();
         let least = appearance.prepared.settings.light.samples;
         let mut sum = Channels::ZERO;
         for (index, (number, source)) in appearance.sources.iter().enumerate() {
@@ -172,38 +172,38 @@ impl VisibilityTester<'_> {
                 if sample == samples && seen > 0 && seen < asked {
                     samples = most;
                 }
-                let Some(beam) = source.sample_incident(point, Some(normal), uniform, 0) else { continue };
-                let cosine = beam.towards.dot(normal);
+                let Some(light_sample) = source.sample_incident(point, Some(normal), uniform, 0) else { continue };
+                let cosine = light_sample.towards.dot(normal);
                 if cosine <= 0.0 {
                     continue;
                 }
                 let origin = point + normal * self.clearance;
-                let (ray, t_max) = match beam.distance.is_finite() {
-                    false => (Ray { origin, direction: beam.towards }, f64::INFINITY),
+                let (ray, t_max) = match light_sample.distance.is_finite() {
+                    false => (Ray { origin, direction: light_sample.towards }, f64::INFINITY),
                     true => {
                         let end = if source.is_delta() || source.is_surface() { 1.0 } else { SHORT };
-                        (Ray { origin, direction: point + beam.towards * beam.distance - origin }, end)
+                        (Ray { origin, direction: point + light_sample.towards * light_sample.distance - origin }, end)
                     }
                 };
                 asked += 1;
-                for comb in 0..combs {
-                    let passed = match (shadows, comb) {
+                for wavelength_set in 0..sets {
+                    let transmittance = match (shadows, wavelength_set) {
                         (false, _) => Channels::ONE,
                         (true, 0) => self.world.transmittance(&ray, t_max, (index, None), (0, 0.0)).0,
-                        (true, _) if !appearance.passing => Channels::ONE,
-                        (true, comb) => self.world.transmittance(&ray, t_max, (index, None), (comb, 0.0)).0,
+                        (true, _) if !appearance.has_passable => Channels::ONE,
+                        (true, wavelength_set) => self.world.transmittance(&ray, t_max, (index, None), (wavelength_set, 0.0)).0,
                     };
-                    if passed == Channels::ZERO {
+                    if transmittance == Channels::ZERO {
                         break;
                     }
-                    seen += u32::from(comb == 0);
-                    let beam = if comb == 0 { Some(beam) } else { source.sample_incident(point, Some(normal), uniform, comb) };
-                    let arriving = beam.map_or(Channels::ZERO, |beam| beam.irradiance * passed * cosine);
+                    seen += u32::from(wavelength_set == 0);
+                    let light_sample = if wavelength_set == 0 { Some(light_sample) } else { source.sample_incident(point, Some(normal), uniform, wavelength_set) };
+                    let arriving = light_sample.map_or(Channels::ZERO, |beam| beam.irradiance * transmittance * cosine);
                     part += if arriving.is_finite() { arriving } else { Channels::ZERO };
                 }
             }
             sum += part * f64::from(samples).recip();
         }
-        sum * (combs as f64).recip()
+        sum * (sets as f64).recip()
     }
 }

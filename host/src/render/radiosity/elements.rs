@@ -22,7 +22,7 @@ pub(super) struct Elements<'a> {
     pub(super) extra: Vec<Channels>,
     pub(super) sent: Vec<Channels>,
     /// Light of lights and radiosity from elsewhere at places of each node.
-    pub(super) around: Vec<CornerLight>,
+    pub(super) corner_light: Vec<CornerLight>,
     /// Elements are divided that are twice as long or longer.
     finest: f64,
     exitance: Option<Exitance<'a>>,
@@ -34,7 +34,7 @@ pub(super) struct Elements<'a> {
 struct Known {
     reflectance: Channels,
     mean: ExternalLight,
-    around: CornerLight,
+    corner_light: CornerLight,
 }
 
 impl<'a> Elements<'a> {
@@ -43,7 +43,7 @@ impl<'a> Elements<'a> {
     /// - `finest`: a length; elements are divided that are twice as long or longer.
     pub(super) fn new(
         hierarchy: Hierarchy,
-        sight: &VisibilityTester<'_>,
+        visibility: &VisibilityTester<'_>,
         (exitance, shadows): (Option<Exitance<'a>>, bool),
         finest: f64,
     ) -> Elements<'a> {
@@ -54,30 +54,30 @@ impl<'a> Elements<'a> {
             indirect: Vec::new(),
             extra: Vec::new(),
             sent: Vec::new(),
-            around: Vec::new(),
+            corner_light: Vec::new(),
             finest,
             exitance,
             shadows,
         };
-        elements.evaluate(sight, 0, &[]);
+        elements.evaluate(visibility, 0, &[]);
         elements.pull();
         elements
     }
 
     /// Divides leaves, each once, and finds the light of what comes of them.
-    pub(super) fn divide(&mut self, sight: &VisibilityTester<'_>, nodes: impl IntoIterator<Item = u32>) {
+    pub(super) fn divide(&mut self, visibility: &VisibilityTester<'_>, nodes: impl IntoIterator<Item = u32>) {
         let first = self.hierarchy.nodes.len();
         let mut known: Vec<Option<[ExternalLight; 3]>> = Vec::new();
         for node in nodes {
             if self.hierarchy.nodes[node as usize].is_leaf() {
                 self.hierarchy.divide(node);
                 let sliver = self.hierarchy.nodes[node as usize].sliver();
-                known.extend(of_parts(&self.around[node as usize], sliver));
+                known.extend(of_parts(&self.corner_light[node as usize], sliver));
                 let indirect = self.indirect[node as usize];
                 self.indirect.resize(self.hierarchy.nodes.len(), indirect);
             }
         }
-        self.evaluate(sight, first, &known);
+        self.evaluate(visibility, first, &known);
     }
 
     /// Whether an element is long enough to be divided.
@@ -87,20 +87,20 @@ impl<'a> Elements<'a> {
 
     /// Divides leaves over which light from elsewhere is farther from linear than a bound, and those that are larger than a
     /// length.
-    pub(super) fn divide_where_light_varies(&mut self, sight: &VisibilityTester<'_>, bound: f64, coarsest: f64) {
+    pub(super) fn divide_where_light_varies(&mut self, visibility: &VisibilityTester<'_>, bound: f64, coarsest: f64) {
         let mut from = 0;
         loop {
             let nodes = &self.hierarchy.nodes;
             let varies = |node: &usize| {
                 let is_divisible = nodes[*node].is_leaf() && !nodes[*node].is_dark && self.may_divide(&nodes[*node]);
-                is_divisible && (nodes[*node].longest_edge() > coarsest || bend(&self.around[*node]) > bound)
+                is_divisible && (nodes[*node].longest_edge() > coarsest || bend(&self.corner_light[*node]) > bound)
             };
             let divided: Vec<u32> = (from..nodes.len()).filter(varies).map(|node| node as u32).collect();
             from = nodes.len();
             if divided.is_empty() || from > MOST_ELEMENTS {
                 break;
             }
-            self.divide(sight, divided);
+            self.divide(visibility, divided);
         }
         self.pull();
     }
@@ -108,40 +108,40 @@ impl<'a> Elements<'a> {
     /// Finds what is not known of the nodes from one on.
     ///
     /// - `corners`: what is known at their corners; of none at first.
-    fn evaluate(&mut self, sight: &VisibilityTester<'_>, first: usize, corners: &[Option<[ExternalLight; 3]>]) {
+    fn evaluate(&mut self, visibility: &VisibilityTester<'_>, first: usize, corners: &[Option<[ExternalLight; 3]>]) {
         let nodes = &self.hierarchy.nodes[first..];
         let of = |i: usize, node: &HierarchyNode| match node.is_face_cluster() {
-            true => self.known_of_faces(sight, (first + i) as u32),
-            false => self.known(sight, node, corners.get(i).copied().flatten()),
+            true => self.known_of_faces(visibility, (first + i) as u32),
+            false => self.known(visibility, node, corners.get(i).copied().flatten()),
         };
-        let known: Vec<Known> = sight.map(nodes, of);
+        let known: Vec<Known> = visibility.map(nodes, of);
         self.indirect.resize(self.hierarchy.nodes.len(), Channels::ZERO);
-        for (Known { reflectance, mean: ExternalLight { direct, extra }, around }, place) in known.into_iter().zip(first..) {
+        for (Known { reflectance, mean: ExternalLight { direct, extra }, corner_light: around }, place) in known.into_iter().zip(first..) {
             self.reflectance.push(reflectance);
             self.direct.push(direct);
             self.extra.push(extra);
-            self.around.push(around);
+            self.corner_light.push(around);
             self.sent.push(extra + reflectance * (direct + self.indirect[place]));
         }
     }
 
-    fn known(&self, sight: &VisibilityTester<'_>, node: &HierarchyNode, corners: Option<[ExternalLight; 3]>) -> Known {
+    fn known(&self, visibility: &VisibilityTester<'_>, node: &HierarchyNode, corners: Option<[ExternalLight; 3]>) -> Known {
         if !node.is_leaf() || node.is_cluster() {
-            return Known { reflectance: Channels::ZERO, mean: ExternalLight::default(), around: CornerLight::default() };
+            return Known { reflectance: Channels::ZERO, mean: ExternalLight::default(), corner_light: CornerLight::default() };
         }
         let patch = &self.hierarchy.patches[node.patch as usize];
         let divisible = self.may_divide(node);
-        let (around, mean) = sight.external_light((patch, node), corners, (self.exitance, self.shadows), divisible);
-        Known { reflectance: reflectance(sight, patch, (node.corners, node.middle)), mean, around }
+        let (around, mean) = visibility.external_light((patch, node), corners, (self.exitance, self.shadows), divisible);
+        Known { reflectance: reflectance(visibility, patch, (node.corners, node.middle)), mean, corner_light: around }
     }
 
     /// What is known of a face cluster: light of lights at its points, all else by its triangles.
-    fn known_of_faces(&self, sight: &VisibilityTester<'_>, cluster: u32) -> Known {
+    fn known_of_faces(&self, visibility: &VisibilityTester<'_>, cluster: u32) -> Known {
         let hierarchy = &self.hierarchy;
         if hierarchy.nodes[cluster as usize].is_dark {
-            return Known { reflectance: Channels::ZERO, mean: ExternalLight::default(), around: CornerLight::default() };
+            return Known { reflectance: Channels::ZERO, mean: ExternalLight::default(), corner_light: CornerLight::default() };
         }
-        let at = |(turn, place): (u32, [DVec3; 2])| sight.light_roughly(place, self.shadows, turn);
+        let at = |(turn, place): (u32, [DVec3; 2])| visibility.light_roughly(place, self.shadows, turn);
         let points = hierarchy.points(cluster);
         let direct = (0..).zip(points).map(at).fold(Channels::ZERO, |a, b| a + b) * (points.len() as f64).recip();
         let (mut reflected, mut extra, mut all) = (Channels::ZERO, Channels::ZERO, 0.0);
@@ -149,12 +149,12 @@ impl<'a> Elements<'a> {
             let patch = &hierarchy.patches[*member as usize];
             let area = normal_and_area(patch.corners).1;
             let middle = patch.middle();
-            reflected += reflectance(sight, patch, (patch.corners, middle)) * area;
-            extra += sight.exitance((patch, middle), self.exitance) * area;
+            reflected += reflectance(visibility, patch, (patch.corners, middle)) * area;
+            extra += visibility.exitance((patch, middle), self.exitance) * area;
             all += area;
         }
         let mean = ExternalLight { direct, extra: extra * f64::recip(all) };
-        Known { reflectance: reflected * f64::recip(all), mean, around: CornerLight::default() }
+        Known { reflectance: reflected * f64::recip(all), mean, corner_light: CornerLight::default() }
     }
 
     /// Brings what is known of leaves up to the root.
@@ -170,14 +170,14 @@ impl<'a> Elements<'a> {
 }
 
 /// The part of light that an element reflects diffusely, in the mean.
-fn reflectance(sight: &VisibilityTester<'_>, patch: &RadiosityPatch, ([a, b, c], middle): ([DVec3; 3], DVec3)) -> Channels {
-    let appearance = &sight.world.appearance;
+fn reflectance(visibility: &VisibilityTester<'_>, patch: &RadiosityPatch, ([a, b, c], middle): ([DVec3; 3], DVec3)) -> Channels {
+    let appearance = &visibility.world.appearance;
     let prepared = appearance.prepared;
     let triangle = patch.triangle;
-    let optics = appearance.bsdf(prepared.object_of[triangle as usize], prepared.material_number(triangle));
+    let bsdf = appearance.bsdf(prepared.object_of[triangle as usize], prepared.material_number(triangle));
     let weights = crate::numeric::triangle::weights(prepared.corners(triangle), middle);
     // About the parallelogram of the area of the element.
     let sides = [(b - a) * 0.5f64.sqrt(), (c - a) * 0.5f64.sqrt()];
-    let place = optics.is_textured().then(|| prepared.texture_place(triangle, weights, sides));
-    mean_diffuse_albedo(optics, place.as_ref(), appearance.wavelengths.count()).map(|part| part.clamp(0.0, 1.0))
+    let place = bsdf.is_textured().then(|| prepared.texture_place(triangle, weights, sides));
+    mean_diffuse_albedo(bsdf, place.as_ref(), appearance.wavelengths.count()).map(|part| part.clamp(0.0, 1.0))
 }

@@ -32,7 +32,7 @@ pub(super) struct LeafVisibility {
     /// In how many directions each looks.
     pub(super) directions: u32,
     /// For each leaf, in which part of them it sees something that exchanges light.
-    pub(super) part: Vec<f64>,
+    pub(super) seen_part: Vec<f64>,
     /// For each leaf, the part of all that it sees from its middle that exchanges light.
     pub(super) row: Vec<f64>,
     /// Whether no light can come to it.
@@ -142,25 +142,25 @@ impl<'a> Exchange<'a> {
     ///
     /// # Source
     /// Sinkhorn and Knopp 1967, symmetric; ours as to what remains.
-    pub(super) fn balance(&mut self, looks: Option<&LeafVisibility>) -> Vec<f64> {
+    pub(super) fn balance(&mut self, leaf_visibility: Option<&LeafVisibility>) -> Vec<f64> {
         let areas = self.areas();
         let ones = vec![1.0; areas.len()];
         let sums = |exchange: &Self| exchange.apply(&ones);
-        if let Some(looks) = looks {
+        if let Some(leaf_visibility) = leaf_visibility {
             let factor = |is_dark: &bool| if *is_dark { 0.0 } else { 1.0 };
-            self.factor = looks.is_dark.iter().map(factor).collect();
+            self.factor = leaf_visibility.is_dark.iter().map(factor).collect();
         }
-        let goal: Vec<f64> = match looks {
-            Some(looks) => {
+        let goal: Vec<f64> = match leaf_visibility {
+            Some(leaf_visibility) => {
                 let rows = sums(self);
-                let goals = self.goals(looks).into_iter().zip(&areas).zip(rows);
+                let goals = self.goals(leaf_visibility).into_iter().zip(&areas).zip(rows);
                 goals
                     .map(|((goal, area), row)| if goal < 1.0 { within(goal * area, row, *area) } else { goal * area })
                     .collect()
             }
             None => sums(self).iter().zip(&areas).map(|(sum, area)| sum.min(*area)).collect(),
         };
-        for _ in 0..if looks.is_some() { MOST_ROUNDS } else { FEW_ROUNDS } {
+        for _ in 0..if leaf_visibility.is_some() { MOST_ROUNDS } else { FEW_ROUNDS } {
             let mut worst = 0.0f64;
             for (i, sum) in sums(self).into_iter().enumerate().filter(|(_, sum)| *sum > 0.0) {
                 let ratio = goal[i] / sum;
@@ -180,12 +180,12 @@ impl<'a> Exchange<'a> {
     }
 
     /// What the rows should add up to: 1 where no ray of many in the neighbourhood is lost, else what leaves see.
-    fn goals(&mut self, looks: &LeafVisibility) -> Vec<f64> {
+    fn goals(&mut self, leaf_visibility: &LeafVisibility) -> Vec<f64> {
         let nodes = &self.hierarchy.nodes;
         // Of each node: rays, and whether one is lost.
         let mut sums = vec![(0u64, false); nodes.len()];
-        for (i, leaf) in self.leaves.iter().enumerate().filter(|(i, _)| !looks.is_dark[*i]) {
-            sums[*leaf as usize] = (u64::from(looks.directions), looks.part[i] < 1.0);
+        for (i, leaf) in self.leaves.iter().enumerate().filter(|(i, _)| !leaf_visibility.is_dark[*i]) {
+            sums[*leaf as usize] = (u64::from(leaf_visibility.directions), leaf_visibility.seen_part[i] < 1.0);
         }
         for place in (0..nodes.len()).rev() {
             for child in nodes[place].children() {
@@ -200,10 +200,10 @@ impl<'a> Exchange<'a> {
             }
         }
         self.is_closed = self.leaves.iter().map(|leaf| !sums[around[*leaf as usize]].1).collect();
-        let goal = |i: usize| match (looks.is_dark[i], self.is_closed[i]) {
+        let goal = |i: usize| match (leaf_visibility.is_dark[i], self.is_closed[i]) {
             (true, _) => 0.0,
             (_, true) => 1.0,
-            _ => looks.row[i].min(1.0),
+            _ => leaf_visibility.row[i].min(1.0),
         };
         (0..self.leaves.len()).map(goal).collect()
     }

@@ -22,7 +22,7 @@ const UNEVEN: f64 = 0.1;
 
 /// Gathers light.
 pub(super) struct Gatherer<'g, 'a> {
-    pub(super) sight: &'g VisibilityTester<'a>,
+    pub(super) visibility: &'g VisibilityTester<'a>,
     pub(super) hierarchy: &'g Hierarchy,
     /// The error of the light of a link, W/m².
     pub(super) error: f64,
@@ -136,7 +136,7 @@ impl<'g> Gatherer<'g, '_> {
             found.shrink_to_fit();
             found
         };
-        let of = self.sight.map(&corners.all, of);
+        let of = self.visibility.map(&corners.all, of);
         CornerViews { hierarchy: self.hierarchy, corners, of }
     }
 
@@ -176,7 +176,7 @@ impl<'g> Gatherer<'g, '_> {
             let to = points[(i + shift) % POINTS];
             let weight = kernel(from, to);
             if weight > 0.0 && weight.is_finite() {
-                seen += weight * self.sight.transmittance(from, to);
+                seen += weight * self.visibility.transmittance(from, to);
                 all += weight;
                 if is_little {
                     break;

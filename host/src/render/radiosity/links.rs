@@ -27,7 +27,7 @@ const MOST_NODES: usize = 3_000_000;
 pub(super) struct AssessedLink {
     pub(super) link: ExchangeLink,
     /// The error of its exchange, square units.
-    doubt: f64,
+    error_bound: f64,
     /// Whether it is sure that nothing is between them.
     pub(super) is_clear: bool,
 }
@@ -58,7 +58,7 @@ pub(super) struct RefinementBound {
 
 /// Goes through all links again and divides those that bring too uncertain light; at first, the root with itself.
 pub(super) fn refine(
-    sight: &VisibilityTester<'_>,
+    visibility: &VisibilityTester<'_>,
     elements: &mut Elements<'_>,
     links: &mut Vec<AssessedLink>,
     bound: RefinementBound,
@@ -68,31 +68,31 @@ pub(super) fn refine(
     if links.is_empty() {
         pending.push(([0, 0], false));
     }
-    links.retain(|judged| {
-        let ExchangeLink { a, b, .. } = judged.link;
-        let is_sure = uncertainty(elements, a, b, judged.doubt) <= bound.irradiance;
+    links.retain(|assessed| {
+        let ExchangeLink { a, b, .. } = assessed.link;
+        let is_sure = uncertainty(elements, a, b, assessed.error_bound) <= bound.irradiance;
         if !is_sure {
-            pending.push(([a, b], judged.is_clear));
+            pending.push(([a, b], assessed.is_clear));
         }
         is_sure
     });
     while !pending.is_empty() {
         let may_divide = elements.hierarchy.nodes.len() < MOST_NODES && !stopped();
         let bound = if may_divide { bound } else { RefinementBound { finest: f64::INFINITY, irradiance: f64::INFINITY } };
-        let judge = |_, (pair, is_clear): &([u32; 2], bool)| RefinementOracle { sight, elements, bound }.decide(*pair, *is_clear);
-        let verdicts: Vec<RefinementStep> = sight.map(&pending, judge);
-        let divided: Vec<u32> = verdicts
+        let decide = |_, (pair, is_clear): &([u32; 2], bool)| RefinementOracle { visibility, elements, bound }.decide(*pair, *is_clear);
+        let steps: Vec<RefinementStep> = visibility.map(&pending, decide);
+        let divided: Vec<u32> = steps
             .iter()
-            .filter_map(|verdict| match verdict {
+            .filter_map(|step| match step {
                 RefinementStep::Divide { divided, .. } => Some(*divided),
                 _ => None,
             })
             .collect();
-        elements.divide(sight, divided);
+        elements.divide(visibility, divided);
         pending.clear();
-        for verdict in verdicts {
-            match verdict {
-                RefinementStep::Keep(judged) => links.push(judged),
+        for step in steps {
+            match step {
+                RefinementStep::Keep(assessed) => links.push(assessed),
                 RefinementStep::Drop => {}
                 RefinementStep::Divide { divided, other, is_clear } => {
                     let children = elements.hierarchy.nodes[divided as usize].children();
@@ -117,7 +117,7 @@ fn uncertainty(elements: &Elements<'_>, a: u32, b: u32, exchange: f64) -> f64 {
 }
 
 struct RefinementOracle<'j, 'a> {
-    sight: &'j VisibilityTester<'a>,
+    visibility: &'j VisibilityTester<'a>,
     elements: &'j Elements<'a>,
     bound: RefinementBound,
 }
@@ -153,24 +153,24 @@ impl RefinementOracle<'_, '_> {
             let unoccluded = self.sampled(a, b).min(most);
             let seen = if unoccluded > 0.0 { self.visibility(a, b, is_clear, true) } else { 0.0 };
             let link = ExchangeLink { a, b, exchange: unoccluded * seen };
-            return RefinementStep::Keep(AssessedLink { link, doubt: most, is_clear });
+            return RefinementStep::Keep(AssessedLink { link, error_bound: most, is_clear });
         }
         if !are_elements
             && distance < sizes
-            && let Some(verdict) = self.divide(a, b, is_clear)
+            && let Some(step) = self.divide(a, b, is_clear)
         {
-            return verdict;
+            return step;
         }
-        let is_clear = is_clear || are_elements && self.sight.is_clear(first, second);
+        let is_clear = is_clear || are_elements && self.visibility.is_clear(first, second);
         let rough = self.sampled(a, b).min(most);
         let variation = (0.5 * sizes / distance + first.spread + second.spread).min(1.0);
         // Whatever rays tell, it is too uncertain.
         let least = if is_clear { variation + ALL_VISIBLE } else { NOT_VISIBLE };
         if rough > 0.0
             && !self.is_fine(a, b, least * rough)
-            && let Some(verdict) = self.divide(a, b, is_clear)
+            && let Some(step) = self.divide(a, b, is_clear)
         {
-            return verdict;
+            return step;
         }
         let unoccluded = match are_elements {
             true => form_factor::exchange(&first.polygon(), &second.polygon(), FORM_FACTOR_ERROR).min(most),
@@ -186,14 +186,14 @@ impl RefinementOracle<'_, '_> {
             seen if seen < 1.0 => PARTLY_VISIBLE,
             _ => ALL_VISIBLE,
         };
-        let doubt = unoccluded * (variation * seen + unsure);
+        let error_bound = unoccluded * (variation * seen + unsure);
         let link = ExchangeLink { a, b, exchange: unoccluded * seen };
-        if self.is_fine(a, b, doubt) {
-            return RefinementStep::Keep(AssessedLink { link, doubt, is_clear });
+        if self.is_fine(a, b, error_bound) {
+            return RefinementStep::Keep(AssessedLink { link, error_bound, is_clear });
         }
         self.divide(a, b, is_clear).unwrap_or(match seen {
             0.0 => RefinementStep::Drop,
-            _ => RefinementStep::Keep(AssessedLink { link, doubt: 0.0, is_clear }),
+            _ => RefinementStep::Keep(AssessedLink { link, error_bound: 0.0, is_clear }),
         })
     }
 
@@ -246,7 +246,7 @@ impl RefinementOracle<'_, '_> {
                 let to = to[(i + shift + round) % POINTS];
                 let weight = kernel(*from, to);
                 if weight > 0.0 && weight.is_finite() {
-                    seen += weight * self.sight.transmittance(*from, to);
+                    seen += weight * self.visibility.transmittance(*from, to);
                     all += weight;
                 }
             }

@@ -93,44 +93,44 @@ impl Radiosity {
         let start = Instant::now();
         let stopped = || watch.is_cancelled();
         let prepared = world.prepared();
-        let sight = VisibilityTester::new(world, watch.memo);
+        let visibility = VisibilityTester::new(world, watch.memo);
         let shadows = plan.needs(Stage::Shadows);
         let diagonal = prepared.bounds.diagonal();
         let finest = (settings.finest * diagonal).max(f64::MIN_POSITIVE);
         let lengths = [finest, COARSEST * finest];
         let contacts =
-            Contacts::new(&sight, (diagonal, finest), |t| plan.includes_object(prepared.object_of[t as usize] as usize));
-        let patches = patches(prepared, plan, &sight);
-        let hierarchy = visible::lit_hierarchy(&sight, patches, &contacts, (exitance, shadows), lengths);
+            Contacts::new(&visibility, (diagonal, finest), |t| plan.includes_object(prepared.object_of[t as usize] as usize));
+        let patches = patches(prepared, plan, &visibility);
+        let hierarchy = visible::lit_hierarchy(&visibility, patches, &contacts, (exitance, shadows), lengths);
         if hierarchy.nodes.is_empty() {
             return Ok(Radiosity { light: SurfaceLight::dark(prepared), report: RadiosityReport::default() });
         }
-        let mut elements = Elements::new(hierarchy, &sight, (exitance, shadows), finest);
+        let mut elements = Elements::new(hierarchy, &visibility, (exitance, shadows), finest);
         let mean = elements.mean_irradiance();
-        elements.divide_where_light_varies(&sight, BENT * settings.error * mean, lengths[1]);
+        elements.divide_where_light_varies(&visibility, BENT * settings.error * mean, lengths[1]);
         let mut links: Vec<AssessedLink> = Vec::new();
         let mut report = RadiosityReport { patches: elements.hierarchy.patches.len(), ..RadiosityReport::default() };
         let mut leaves = Vec::new();
         let mut at_corners = None;
         for round in 0..ROUNDS {
             let bound = RefinementBound { irradiance: settings.error * elements.mean_irradiance(), finest };
-            refine(&sight, &mut elements, &mut links, bound, &stopped);
+            refine(&visibility, &mut elements, &mut links, bound, &stopped);
             (watch.progress)(Progress::of(2 * round + 1, 2 * ROUNDS, "rounds"));
             let is_last = round + 1 == ROUNDS || stopped();
             leaves = elements.hierarchy.leaves();
-            let gatherer = Gatherer { sight: &sight, hierarchy: &elements.hierarchy, error: bound.irradiance };
+            let gatherer = Gatherer { visibility: &visibility, hierarchy: &elements.hierarchy, error: bound.irradiance };
             let corners = is_last.then(|| ElementCorners::new(prepared, &elements.hierarchy, &leaves));
             let views = corners.as_ref().map(|corners| gatherer.views(&links, corners, &elements.sent));
-            let looks = views
+            let leaf_visibility = views
                 .as_ref()
-                .map(|views| visible::leaf_visibility(&sight, &elements, (&leaves, views.rows()), settings.directions));
+                .map(|views| visible::leaf_visibility(&visibility, &elements, (&leaves, views.rows()), settings.directions));
             let tolerance = if is_last { settings.tolerance } else { 1e-2 };
-            let last = looks.as_ref().zip(views.as_ref());
+            let last = leaf_visibility.as_ref().zip(views.as_ref());
             let (irradiance, light) = light(&elements, &links, last, (tolerance, &stopped), &mut report)?;
             elements.take(&leaves, &irradiance);
             (watch.progress)(Progress::of(2 * round + 2, 2 * ROUNDS, "rounds"));
-            if let (Some(corners), Some(looks)) = (corners, looks) {
-                at_corners = Some((corners, light, looks.is_dark));
+            if let (Some(corners), Some(leaf_visibility)) = (corners, leaf_visibility) {
+                at_corners = Some((corners, light, leaf_visibility.is_dark));
                 break;
             }
         }
@@ -161,8 +161,8 @@ impl IndirectLight for Radiosity {
 }
 
 /// All sides of triangles that reflect diffusely or send light from elsewhere.
-fn patches(prepared: &Prepared, plan: &Plan, sight: &VisibilityTester<'_>) -> Vec<RadiosityPatch> {
-    let appearance = &sight.world.appearance;
+fn patches(prepared: &Prepared, plan: &Plan, visibility: &VisibilityTester<'_>) -> Vec<RadiosityPatch> {
+    let appearance = &visibility.world.appearance;
     let sides = |triangle: u32| {
         let object = prepared.object_of[triangle as usize];
         let is_diffuse = || appearance.bsdf(object, prepared.material_number(triangle)).is_diffuse();
@@ -179,17 +179,17 @@ fn patches(prepared: &Prepared, plan: &Plan, sight: &VisibilityTester<'_>) -> Ve
 /// and the last time that at their corners.
 fn light(
     elements: &Elements<'_>,
-    judged: &[AssessedLink],
+    assessed: &[AssessedLink],
     last: Option<(&LeafVisibility, &CornerViews<'_>)>,
     (tolerance, stopped): (f64, &dyn Fn() -> bool),
     report: &mut RadiosityReport,
 ) -> Result<(Vec<Channels>, Vec<Channels>), RenderError> {
-    let links: Vec<ExchangeLink> = judged.iter().map(|judged| judged.link).filter(|link| link.exchange > 0.0).collect();
+    let links: Vec<ExchangeLink> = assessed.iter().map(|judged| judged.link).filter(|link| link.exchange > 0.0).collect();
     let mut exchange = Exchange::new(&elements.hierarchy, &links);
     let leaves = exchange.leaves.clone();
     let of = |values: &[Channels]| -> Vec<Channels> { leaves.iter().map(|leaf| values[*leaf as usize]).collect() };
     let (reflectance, direct, extra) = (of(&elements.reflectance), of(&elements.direct), of(&elements.extra));
-    let own = exchange.balance(last.map(|(looks, _)| looks));
+    let own = exchange.balance(last.map(|(leaf_visibility, _)| leaf_visibility));
     let first: Vec<Channels> = (0..leaves.len()).map(|i| extra[i] + reflectance[i] * direct[i]).collect();
     let solved = solve(&exchange, &reflectance, &first, tolerance, stopped)?;
     report.steps = solved.steps;
@@ -208,7 +208,7 @@ fn light(
     report.escaped = total(&|i| sent(i) * (1.0 - rows[i] / areas[i]));
     report.left = report.arrived - report.absorbed - report.escaped;
     let (mut irradiance, mut at_corners) = (solved.irradiance, Vec::new());
-    if let Some((looks, views)) = last {
+    if let Some((leaf_visibility, views)) = last {
         for _ in 0..PASSES {
             let sent = |(i, light): (usize, &Channels)| extra[i] + reflectance[i] * (direct[i] + *light);
             let sent: Vec<Channels> = irradiance.iter().enumerate().map(sent).collect();
@@ -216,7 +216,7 @@ fn light(
             irradiance = views.means(&at_corners);
             irradiance
                 .iter_mut()
-                .zip(&looks.is_dark)
+                .zip(&leaf_visibility.is_dark)
                 .filter(|(_, dark)| **dark)
                 .for_each(|(light, _)| *light = Channels::ZERO);
         }

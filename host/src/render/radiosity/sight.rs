@@ -59,9 +59,9 @@ impl<'a> VisibilityTester<'a> {
     pub(super) fn transmittance(&self, [from, from_normal]: [DVec3; 2], [to, to_normal]: [DVec3; 2]) -> f64 {
         let origin = from + from_normal * self.clearance;
         let direction = to + to_normal * self.clearance - origin;
-        let passed = self.world.transmittance(&Ray { origin, direction }, 1.0, (usize::MAX, None), (0, 0.0)).0;
+        let transmittance = self.world.transmittance(&Ray { origin, direction }, 1.0, (usize::MAX, None), (0, 0.0)).0;
         let lanes = self.world.appearance.wavelengths.lanes();
-        passed.0[..lanes].iter().sum::<f64>() / lanes as f64
+        transmittance.0[..lanes].iter().sum::<f64>() / lanes as f64
     }
 
     /// Whether it is sure that nothing is between two elements.
@@ -103,9 +103,9 @@ impl<'a> VisibilityTester<'a> {
                 return RayTarget::Lamp;
             }
             let Some((hit, triangle)) = struck else { return RayTarget::Nothing };
-            let optics =
+            let bsdf =
                 world.appearance.bsdf(prepared.object_of[triangle as usize], prepared.material_number(triangle));
-            if !optics.is_passable() {
+            if !bsdf.is_passable() {
                 let [a, b, c] = prepared.corners(triangle);
                 let outside = (b - a).cross(c - a).dot(ray.direction) < 0.0;
                 return RayTarget::Side { triangle, outside, weights: [1.0 - hit.u - hit.v, hit.u, hit.v] };

@@ -60,7 +60,7 @@ impl SurfaceLight {
         (leaves, is_dark): (&[u32], &[bool]),
         (shared, indirect): (&ElementCorners, &[Channels]),
     ) -> SurfaceLight {
-        let Elements { hierarchy, around, direct: lit, .. } = elements;
+        let Elements { hierarchy, corner_light: around, direct: lit, .. } = elements;
         let mut patch_of = vec![[NONE; 2]; prepared.triangles.len()];
         for (number, patch) in (0..).zip(&hierarchy.patches) {
             patch_of[patch.triangle as usize][usize::from(!patch.outside)] = number;

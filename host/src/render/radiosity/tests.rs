@@ -178,20 +178,20 @@ fn the_hierarchy_gives_what_a_full_matrix_gives() {
     let room = prepared(vec![cube("room", 2.0, 0.6)], vec![lamp(DVec3::new(0.3, 0.5, -0.2))]);
     let plan = Plan::new(&room, &room.view());
     let world = World::new(&room, &plan).expect("a world");
-    let sight = VisibilityTester::new(&world, None);
-    let inside: Vec<RadiosityPatch> = patches(&room, &plan, &sight).into_iter().filter(|patch| !patch.outside).collect();
-    let mut elements = Elements::new(Hierarchy::new(inside, 0.1), &sight, (None, true), 0.1);
-    elements.divide_where_light_varies(&sight, f64::INFINITY, 0.6);
+    let visibility = VisibilityTester::new(&world, None);
+    let inside: Vec<RadiosityPatch> = patches(&room, &plan, &visibility).into_iter().filter(|patch| !patch.outside).collect();
+    let mut elements = Elements::new(Hierarchy::new(inside, 0.1), &visibility, (None, true), 0.1);
+    elements.divide_where_light_varies(&visibility, f64::INFINITY, 0.6);
     let mut links = Vec::new();
     let mut found = Vec::new();
     for error in [0.05, 0.002] {
         let bound = RefinementBound { irradiance: error * elements.mean_irradiance(), finest: 0.6 };
-        refine(&sight, &mut elements, &mut links, bound, &|| false);
+        refine(&visibility, &mut elements, &mut links, bound, &|| false);
         let leaves = elements.hierarchy.leaves();
         let ones = vec![1.0; leaves.len()];
-        let ones = LeafVisibility { directions: 1, part: ones.clone(), row: ones, is_dark: vec![false; leaves.len()] };
+        let ones = LeafVisibility { directions: 1, seen_part: ones.clone(), row: ones, is_dark: vec![false; leaves.len()] };
         let mut report = RadiosityReport::default();
-        let gatherer = Gatherer { sight: &sight, hierarchy: &elements.hierarchy, error: bound.irradiance };
+        let gatherer = Gatherer { visibility: &visibility, hierarchy: &elements.hierarchy, error: bound.irradiance };
         let corners = ElementCorners::new(&room, &elements.hierarchy, &leaves);
         let views = gatherer.views(&links, &corners, &elements.sent);
         let last = Some((&ones, &views));
@@ -282,14 +282,14 @@ fn a_patch_of_light_on_a_floor_lights_the_ceiling_as_the_closed_form_tells() {
     };
     let room = prepared(vec![plate("floor", -0.1), plate("ceiling", 1.1)], vec![]);
     let half = 0.37;
-    let caught = |_: u32, outside: bool, at: DVec3| {
+    let sent = |_: u32, outside: bool, at: DVec3| {
         let is_in = outside && at.y.abs() < 1e-3 && at.x.abs() < half && at.z.abs() < half;
         Channels::splat(if is_in { 3.0 } else { 0.0 })
     };
     let radiosity = solved(
         &room,
         &RadiositySettings { error: 0.002, finest: 1.0 / 400.0, ..RadiositySettings::default() },
-        Some(&caught),
+        Some(&sent),
     );
     // From a point at a distance of 1 above the corner of a rectangle of x by y.
     let corner = |x: f64, y: f64| {

@@ -17,7 +17,7 @@ const MOST_DIRECTIONS: u32 = 1024;
 ///
 /// - `finest`, `coarsest`: lengths; patches are looked at in parts of the second.
 pub(super) fn lit_hierarchy(
-    sight: &VisibilityTester<'_>,
+    visibility: &VisibilityTester<'_>,
     patches: Vec<RadiosityPatch>,
     contacts: &Contacts,
     (exitance, shadows): (Option<Exitance<'_>>, bool),
@@ -25,7 +25,7 @@ pub(super) fn lit_hierarchy(
 ) -> Hierarchy {
     let mut all = Hierarchy::new(patches, finest);
     all.cut(contacts, finest);
-    let is_dark = dark(sight, &all, (exitance, shadows), coarsest);
+    let is_dark = dark(visibility, &all, (exitance, shadows), coarsest);
     all.darken(&is_dark);
     let is_lit = |patch: usize| !all.nodes[all.node_of[patch] as usize].is_dark;
     if (0..all.patches.len()).all(is_lit) {
@@ -49,7 +49,7 @@ pub(super) fn lit_hierarchy(
 
 /// Of each node that is a leaf, whether no light comes to it.
 fn dark(
-    sight: &VisibilityTester<'_>,
+    visibility: &VisibilityTester<'_>,
     hierarchy: &Hierarchy,
     (exitance, shadows): (Option<Exitance<'_>>, bool),
     coarsest: f64,
@@ -61,7 +61,7 @@ fn dark(
             let patch = &hierarchy.patches[patch as usize];
             exitance.is_some_and(|of| of(patch.triangle, patch.outside, point).max() > 0.0)
         };
-        let takes = |place: [DVec3; 2]| sight.light_at(place, shadows).max() > 0.0;
+        let takes = |place: [DVec3; 2]| visibility.light_at(place, shadows).max() > 0.0;
         if !node.is_leaf() {
             false
         } else if node.is_cluster() {
@@ -72,7 +72,7 @@ fn dark(
             is_any_lit(node.corners, coarsest, &|point| sends(node.patch, point) || takes([point, node.normal]))
         }
     };
-    let patch_of = numbers(sight, &hierarchy.patches);
+    let patch_of = numbers(visibility, &hierarchy.patches);
     let looked = |number: usize, node: &HierarchyNode| {
         let number = number as u32;
         if !node.is_leaf() {
@@ -81,18 +81,18 @@ fn dark(
         let parts = (node.area / (coarsest * coarsest)).ceil().max(1.0);
         let count = (f64::from(DIRECTIONS) * parts).min(f64::from(MOST_DIRECTIONS)) as u32;
         let of = |seen: RayTarget| element(hierarchy, &patch_of, seen);
-        let seen = sight.trace_hemisphere(|index, uniform| hierarchy.place(number, index, uniform), u64::from(number), count);
+        let seen = visibility.trace_hemisphere(|index, uniform| hierarchy.place(number, index, uniform), u64::from(number), count);
         let mut seen: Vec<u32> = seen.into_iter().map(of).filter(|node| *node != NONE).collect();
         seen.sort_unstable();
         seen.dedup();
         seen
     };
-    let seen: Vec<Vec<u32>> = sight.map(nodes, looked);
+    let seen: Vec<Vec<u32>> = visibility.map(nodes, looked);
     let mut joined = DisjointSets::new(nodes.len());
     for (number, seen) in (0..).zip(&seen) {
         seen.iter().for_each(|other| joined.join(number, *other));
     }
-    joined.joined_to_lit(|some| sight.map(some, |_, node| is_lit(*node))).iter().map(|alight| !alight).collect()
+    joined.joined_to_lit(|some| visibility.map(some, |_, node| is_lit(*node))).iter().map(|alight| !alight).collect()
 }
 
 fn is_any_lit(corners: [DVec3; 3], coarsest: f64, at: &impl Fn(DVec3) -> bool) -> bool {
@@ -108,8 +108,8 @@ fn is_any_lit(corners: [DVec3; 3], coarsest: f64, at: &impl Fn(DVec3) -> bool) -
 }
 
 /// The patch of each side of each triangle, outer and inner.
-fn numbers(sight: &VisibilityTester<'_>, patches: &[RadiosityPatch]) -> Vec<[u32; 2]> {
-    let mut numbers = vec![[NONE; 2]; sight.world.appearance.prepared.triangles.len()];
+fn numbers(visibility: &VisibilityTester<'_>, patches: &[RadiosityPatch]) -> Vec<[u32; 2]> {
+    let mut numbers = vec![[NONE; 2]; visibility.world.appearance.prepared.triangles.len()];
     for (number, patch) in (0..).zip(patches) {
         numbers[patch.triangle as usize][usize::from(!patch.outside)] = number;
     }
@@ -129,14 +129,14 @@ fn element(hierarchy: &Hierarchy, patch_of: &[[u32; 2]], seen: RayTarget) -> u32
 ///
 /// - `row`: for each leaf, the part of all that it sees that exchanges light.
 pub(super) fn leaf_visibility(
-    sight: &VisibilityTester<'_>,
+    visibility: &VisibilityTester<'_>,
     elements: &Elements<'_>,
     (leaves, row): (&[u32], Vec<f64>),
     directions: u32,
 ) -> LeafVisibility {
     let directions = directions.max(1);
     let hierarchy: &Hierarchy = &elements.hierarchy;
-    let patch_of = numbers(sight, &hierarchy.patches);
+    let patch_of = numbers(visibility, &hierarchy.patches);
     let mut place = vec![NONE; hierarchy.nodes.len()];
     (0..).zip(leaves).for_each(|(number, leaf)| place[*leaf as usize] = number);
     let looked = |number: usize, leaf: &u32| {
@@ -146,13 +146,13 @@ pub(super) fn leaf_visibility(
             NONE => NONE,
             leaf => place[leaf as usize],
         };
-        sight
+        visibility
             .trace_hemisphere(|index, uniform| hierarchy.place(*leaf, index, uniform), own, directions)
             .into_iter()
             .map(of)
             .collect::<Vec<u32>>()
     };
-    let seen: Vec<Vec<u32>> = sight.map(leaves, looked);
+    let seen: Vec<Vec<u32>> = visibility.map(leaves, looked);
     let mut joined = DisjointSets::new(leaves.len());
     for (number, seen) in (0..).zip(&seen) {
         seen.iter().filter(|other| **other != NONE).for_each(|other| joined.join(number, *other));
@@ -161,5 +161,5 @@ pub(super) fn leaf_visibility(
     let alight = joined.joined_to_lit(|some| some.iter().map(|number| sends(leaves[*number as usize])).collect());
     let part = |seen: &Vec<u32>| seen.iter().filter(|other| **other != NONE).count() as f64 / f64::from(directions);
     let (part, is_dark) = (seen.iter().map(part).collect(), alight.iter().map(|alight| !alight).collect());
-    LeafVisibility { directions, part, row, is_dark }
+    LeafVisibility { directions, seen_part: part, row, is_dark }
 }

@@ -37,7 +37,7 @@ pub struct Accumulated {
     /// How many rays were traced.
     pub rays: RayCounts,
     /// What became of the light of lamps that was followed first, if any was.
-    pub balance: Option<FluxBalance>,
+    pub flux_balance: Option<FluxBalance>,
     /// Whether it was not stopped from outside.
     pub complete: bool,
     /// Wall-clock time, seconds.
@@ -75,11 +75,11 @@ impl RayTracer<'_> {
         let mut balance = None;
         let mut is_finished = true;
         'passes: for (number, samples) in passes.iter().enumerate() {
-            if adaptive.as_ref().is_some_and(|adaptive| *samples <= adaptive.passed) {
+            if adaptive.as_ref().is_some_and(|adaptive| *samples <= adaptive.finished) {
                 continue;
             }
             if let Some(adaptive) = &mut adaptive {
-                adaptive.begin_pass(film, *samples, if self.two_way.is_some() { SHARING } else { u32::MAX });
+                adaptive.begin_pass(film, *samples, if self.photon_mapper.is_some() { SHARING } else { u32::MAX });
             }
             let before = number.checked_sub(1).map_or(0, |last| passes[last]);
             let goal = |pixel: usize| match &adaptive {
@@ -92,38 +92,38 @@ impl RayTracer<'_> {
                 let all = film.tallies().len() as u64;
                 (watch.progress)(Progress::of(all - wanting as u64, all, "pixels"));
             }
-            let caught = match &self.two_way {
+            let photons = match &self.photon_mapper {
                 Some(two_way) if is_needed => {
                     (watch.stage)("while following light from lamps");
                     let pass = (samples - 1) / SHARING;
-                    let caught = pool.install(|| two_way.trace_pass(&self.world, pass, watch));
-                    if caught.is_none() {
+                    let photons = pool.install(|| two_way.trace_pass(&self.world, pass, watch));
+                    if photons.is_none() {
                         is_finished = false;
                         break;
                     }
                     (watch.stage)("while rendering");
-                    caught
+                    photons
                 }
                 _ => None,
             };
-            balance = balance.or(caught.as_ref().map(PhotonEstimator::balance));
-            let tracer = self.tracer(caught.as_ref(), &eye, !film.features().is_empty());
+            balance = balance.or(photons.as_ref().map(PhotonEstimator::balance));
+            let tracer = self.tracer(photons.as_ref(), &eye, !film.features().is_empty());
             loop {
                 let rows = f64::from(order.height);
                 let rows_done = AtomicU64::new(0);
                 let is_due = || due.is_some_and(|due| Instant::now() >= due);
                 let pauses = || watch.is_cancelled() || is_due() || is_late();
                 let row = |(y, mut row): (usize, FilmRow<'_>)| {
-                    let mut work = PathScratch::default();
+                    let mut scratch = PathScratch::default();
                     for x in 0..row.tallies.len() {
                         let goal = goal(y * order.width as usize + x);
                         while row.tallies[x].count < goal {
                             if pauses() {
-                                return (work.counts, false);
+                                return (scratch.counts, false);
                             }
                             let (pixel, index) = ([x as u32, y as u32], row.tallies[x].count);
                             let (sample, classes, _) =
-                                self.sample((&tracer, &eye, order), pixel, index, &mut work, PathLog::SILENT);
+                                self.sample((&tracer, &eye, order), pixel, index, &mut scratch, PathLog::SILENT);
                             row.add(x, &sample, &classes);
                         }
                     }
@@ -140,7 +140,7 @@ impl RayTracer<'_> {
                             (watch.progress)(Progress { done, all: f64::from(order.samples), unit: "samples" });
                         }
                     }
-                    (work.counts, true)
+                    (scratch.counts, true)
                 };
                 let rows: Vec<(RayCounts, bool)> =
                     pool.install(|| film.rows_mut().into_par_iter().enumerate().map(row).collect());
@@ -172,7 +172,7 @@ impl RayTracer<'_> {
         film.set_adaptive(adaptive);
         Ok(Accumulated {
             rays,
-            balance,
+            flux_balance: balance,
             // Time that ran out as it was asked for is no interruption.
             complete: is_finished || (order.seconds.is_some() && !watch.is_cancelled()),
             seconds: start.elapsed().as_secs_f64(),
@@ -202,7 +202,7 @@ impl RayTracer<'_> {
             }
         }
         (watch.stage)("while rendering");
-        let Accumulated { rays, balance, mut complete, mut seconds, threads } =
+        let Accumulated { rays, flux_balance: balance, mut complete, mut seconds, threads } =
             self.accumulate(&mut film, view, order, watch, checkpoints)?;
         let spans = SpanCounts::default();
         let picture = match order.denoise && complete {
@@ -217,7 +217,7 @@ impl RayTracer<'_> {
             }
             false => film.picture()?,
         };
-        Ok(Rendering { picture, film, complete, rays, spans, balance, seconds, threads })
+        Ok(Rendering { picture, film, complete, rays, spans, flux_balance: balance, seconds, threads })
     }
 
     /// How many samples pixels have after each pass: one first, so that there is a whole picture soon, and then twice as many
@@ -226,7 +226,7 @@ impl RayTracer<'_> {
         let doubled = std::iter::successors(Some(FIRST_DOUBLED), |samples| samples.checked_mul(2));
         let mut passes = vec![1, order.samples];
         passes.extend(doubled.take_while(|samples| *samples < order.samples));
-        if self.two_way.is_some() {
+        if self.photon_mapper.is_some() {
             passes.extend((SHARING..order.samples).step_by(SHARING as usize));
         }
         passes.sort_unstable();

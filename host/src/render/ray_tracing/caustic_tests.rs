@@ -188,10 +188,10 @@ fn parts(thing: Object, direction: DVec3) -> FluxBalance {
     let light = Light::Directional { direction, irradiance: Color::grey(1.0) };
     let mut scene = scene(vec![thing, floor], vec![light], 4);
     (scene.settings.image.samples, scene.settings.photons.count) = (1, 200_000);
-    let balance = two_way(&scene, Some(from_above(1.0)), 2).balance.expect("light is followed");
+    let balance = two_way(&scene, Some(from_above(1.0)), 2).flux_balance.expect("light is followed");
     let met = balance.sent - balance.straight;
     FluxBalance {
-        caught: balance.caught / met,
+        stored: balance.stored / met,
         absorbed: balance.absorbed / met,
         escaped: balance.escaped / met,
         ..balance
@@ -207,7 +207,7 @@ fn a_slab_lets_through_what_fresnel_tells() {
         // With all reflections between the faces.
         let reflected = fresnel(index, cos);
         let expected = (1.0 - reflected) / (1.0 + reflected);
-        assert!((found.caught - expected).abs() < 5e-3, "{index} {degrees}: {} {expected}", found.caught);
+        assert!((found.stored - expected).abs() < 5e-3, "{index} {degrees}: {} {expected}", found.stored);
         assert!((found.escaped - (1.0 - expected)).abs() < 5e-3 && found.absorbed.abs() < 1e-9);
     }
 }

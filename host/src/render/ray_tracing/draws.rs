@@ -63,15 +63,15 @@ impl PathSampler {
     /// A point of the unit square for a leg of the sample's way.
     ///
     /// - `leg`: its number, above 0, unlike that of all other legs. `more`: which of several for the same purpose.
-    pub(super) fn for_segment(&self, leg: u32, purpose: SampleDimension, more: u32) -> [f64; 2] {
-        self.for_one_of_several(leg, purpose, more, [0, 1])
+    pub(super) fn for_segment(&self, segment: u32, purpose: SampleDimension, more: u32) -> [f64; 2] {
+        self.for_one_of_several(segment, purpose, more, [0, 1])
     }
 
     /// One of several points for the same: they are as far from each other, and from those of other samples, as those of
     /// as many samples are.
-    pub(super) fn for_one_of_several(&self, leg: u32, purpose: SampleDimension, more: u32, [which, of]: [u32; 2]) -> [f64; 2] {
+    pub(super) fn for_one_of_several(&self, segment: u32, purpose: SampleDimension, more: u32, [which, of]: [u32; 2]) -> [f64; 2] {
         let index = self.index.wrapping_mul(of).wrapping_add(which);
-        self.sequence.point(index, u64::from(leg) << 32 | (purpose as u64 + u64::from(more)))
+        self.sequence.point(index, u64::from(segment) << 32 | (purpose as u64 + u64::from(more)))
     }
 }
 

@@ -39,8 +39,8 @@ fn met(objects: Vec<Object>, mut tell: impl FnMut(&Ray, &SurfaceInteraction<'_>)
             let at = DVec2::new(f64::from(k % 50) - 24.3, f64::from(k / 50) - 24.8) * (reach / 100.0);
             let origin = center + right * at.x + up * at.y + axis * reach;
             let ray = Ray { origin, direction: axis * -0.7 };
-            let sight = BoundedRay { ray, t_min: 0.0, t_max: f64::INFINITY, cone: RayCone::default() };
-            if let RayHit::Surface(found) = tracer.world.intersect(&sight, 0, 0.0) {
+            let bounded = BoundedRay { ray, t_min: 0.0, t_max: f64::INFINITY, cone: RayCone::default() };
+            if let RayHit::Surface(found) = tracer.world.intersect(&bounded, 0, 0.0) {
                 let on = found.depth;
                 assert!((ray.origin - axis * on - found.element.position).length() < 1e-9, "on its ray");
                 tell(&ray, &found);

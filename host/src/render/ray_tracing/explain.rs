@@ -56,15 +56,15 @@ impl PathNote {
         PathNote::new(depth, format!("lit by light {}", number + 1), Some(adds))
     }
 
-    pub(super) fn element(depth: u32, prepared: &Prepared, found: &SurfaceInteraction<'_>) -> PathNote {
-        let object = &prepared.objects[found.object as usize];
-        let side = if found.element.outside { "" } else { " from inside" };
-        let material = prepared.material(found.triangle).word();
-        let normal = found.element.normal;
+    pub(super) fn element(depth: u32, prepared: &Prepared, interaction: &SurfaceInteraction<'_>) -> PathNote {
+        let object = &prepared.objects[interaction.object as usize];
+        let side = if interaction.element.outside { "" } else { " from inside" };
+        let material = prepared.material(interaction.triangle).word();
+        let normal = interaction.element.normal;
         let what = format!(
             "meets {}{side}, {material} material, after {:.6}; normal {:.4} {:.4} {:.4}",
-            object.name, found.distance, normal.x, normal.y, normal.z
+            object.name, interaction.distance, normal.x, normal.y, normal.z
         );
-        PathNote { at: Some(found.element.position), ..PathNote::new(depth, what, None) }
+        PathNote { at: Some(interaction.element.position), ..PathNote::new(depth, what, None) }
     }
 }

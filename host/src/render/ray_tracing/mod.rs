@@ -61,7 +61,7 @@ use tracer::{FirstHit, PathTracer, PathScratch};
 pub struct RayTracer<'a> {
     plan: &'a Plan,
     world: World<'a>,
-    two_way: Option<PhotonMapper<'a>>,
+    photon_mapper: Option<PhotonMapper<'a>>,
     indirect: Option<Box<dyn IndirectLight>>,
 }
 
@@ -83,10 +83,10 @@ impl<'a> RayTracer<'a> {
     ///
     /// - `plan`: of the world. Where it needs radiosity, the light of a solution is to be given by [`RayTracer::with_indirect`].
     /// - `shelf`: where caught light is kept beyond this tracer; nowhere without one.
-    pub fn new(world: World<'a>, plan: &'a Plan, shelf: Option<&'a PhotonStore>) -> RayTracer<'a> {
+    pub fn new(world: World<'a>, plan: &'a Plan, photon_store: Option<&'a PhotonStore>) -> RayTracer<'a> {
         let keeps = |object| plan.includes_object(object);
-        let two_way = plan.needs(Stage::PhotonMap).then(|| PhotonMapper::new(&world, keeps, shelf)).flatten();
-        RayTracer { plan, world, two_way, indirect: None }
+        let two_way = plan.needs(Stage::PhotonMap).then(|| PhotonMapper::new(&world, keeps, photon_store)).flatten();
+        RayTracer { plan, world, photon_mapper: two_way, indirect: None }
     }
 
     /// Reads light that diffuse surfaces send each other from there.
@@ -101,7 +101,7 @@ impl<'a> RayTracer<'a> {
 
     /// The light of lamps that was followed, as the first pass caught it; none if none is followed, or if it was stopped.
     pub(super) fn photon_estimator(&self, watch: &Watch<'_>) -> Option<PhotonEstimator<'_>> {
-        self.two_way.as_ref().and_then(|two_way| two_way.trace_pass(&self.world, 0, watch))
+        self.photon_mapper.as_ref().and_then(|two_way| two_way.trace_pass(&self.world, 0, watch))
     }
 
     /// The scene.
@@ -109,7 +109,7 @@ impl<'a> RayTracer<'a> {
         self.world.appearance.prepared
     }
 
-    fn tracer<'b>(&'b self, caught: Option<&'b PhotonEstimator<'b>>, eye: &CameraRays, guides: bool) -> PathTracer<'b> {
+    fn tracer<'b>(&'b self, photons: Option<&'b PhotonEstimator<'b>>, eye: &CameraRays, records_features: bool) -> PathTracer<'b> {
         let depth = self.world.appearance.prepared.settings.light.reflection_depth;
         let depth = if self.plan.needs(Stage::Reflection) { depth } else { 0 };
         let around = eye.place().map(|place| Media::around(&self.world, place)).unwrap_or_default();
@@ -117,10 +117,10 @@ impl<'a> RayTracer<'a> {
             &self.world,
             depth,
             self.plan.needs(Stage::Shadows),
-            (self.two_way.is_some(), caught),
+            (self.photon_mapper.is_some(), photons),
             self.indirect.as_deref(),
             around,
-            guides,
+            records_features,
         )
     }
 
@@ -141,39 +141,39 @@ impl<'a> RayTracer<'a> {
         (tracer, eye, order): (&PathTracer<'_>, &CameraRays, &RenderOrder),
         [x, y]: [u32; 2],
         index: u32,
-        work: &mut PathScratch,
+        scratch: &mut PathScratch,
         log: PathLog<'_>,
     ) -> (PixelSample, RadianceByClass, usize) {
         let pixel = u64::from(y) * u64::from(order.width) + u64::from(x);
-        let draws = PathSampler::new(order.seed, pixel, index, order.samples);
-        let draws = if self.world.moves() { draws.at_random_time(self.prepared().settings.geometry.shutter) } else { draws };
-        let ([dx, dy], weight) = draws.position(order.filter);
+        let sampler = PathSampler::new(order.seed, pixel, index, order.samples);
+        let sampler = if self.world.moves() { sampler.at_random_time(self.prepared().settings.geometry.shutter) } else { sampler };
+        let ([dx, dy], weight) = sampler.position(order.filter);
         let wavelengths = &self.world.appearance.wavelengths;
-        let comb = wavelengths.set_at(draws.point(SampleDimension::Wavelengths)[0]);
+        let wavelength_set = wavelengths.set_at(sampler.point(SampleDimension::Wavelengths)[0]);
         let at = [f64::from(x) + dx, f64::from(y) + dy];
-        let Some(sight) = eye.ray(at, draws.point(SampleDimension::Lens)) else {
-            let background = self.world.appearance.escaped_radiance(&AHEAD, None, comb, |_, _| 1.0);
-            let radiance = if order.matte { DVec3::ZERO } else { weight * wavelengths.to_srgb(comb, background) };
+        let Some(bounded) = eye.ray(at, sampler.point(SampleDimension::Lens)) else {
+            let background = self.world.appearance.escaped_radiance(&AHEAD, None, wavelength_set, |_, _| 1.0);
+            let radiance = if order.matte { DVec3::ZERO } else { weight * wavelengths.to_srgb(wavelength_set, background) };
             let classes = [radiance, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO];
-            return (PixelSample { radiance, weight, albedo: DVec3::splat(weight), ..PixelSample::default() }, classes, comb);
+            return (PixelSample { radiance, weight, albedo: DVec3::splat(weight), ..PixelSample::default() }, classes, wavelength_set);
         };
-        let seen = tracer.radiance(&sight, comb, &draws, work, log);
+        let result = tracer.radiance(&bounded, wavelength_set, &sampler, scratch, log);
         let first =
-            seen.first.map(|FirstHit { distance, normal, object, material }| (distance, normal, [object, material]));
-        let left_out = order.matte && !seen.covered;
-        let light = |class: usize| weight * (wavelengths.to_srgb(comb, seen.radiance[class]) + seen.other[class]);
+            result.first.map(|FirstHit { distance, normal, object, material }| (distance, normal, [object, material]));
+        let left_out = order.matte && !result.covered;
+        let light = |class: usize| weight * (wavelengths.to_srgb(wavelength_set, result.radiance[class]) + result.other_wavelengths[class]);
         let classes = if left_out { RadianceByClass::default() } else { [0, 1, 2, 3].map(light) };
-        let shared = if left_out { 0.0 } else { weight.abs() * seen.shared.sqrt() };
+        let shared = if left_out { 0.0 } else { weight.abs() * result.shared_variance.sqrt() };
         let sample = PixelSample {
             radiance: classes.into_iter().sum(),
             weight,
-            covered: seen.covered,
+            covered: result.covered,
             first,
-            albedo: weight * wavelengths.broad_bands(seen.albedo),
-            normal: weight * seen.normal,
+            albedo: weight * wavelengths.broad_bands(result.albedo),
+            normal: weight * result.normal,
             shared,
         };
-        (sample, classes, comb)
+        (sample, classes, wavelength_set)
     }
 
     /// Tells how the samples of a pixel come to their radiance.
@@ -192,13 +192,13 @@ impl<'a> RayTracer<'a> {
         let eye = self.eye(view, order)?;
         let told = |index: u32| {
             let pass = index / SHARING;
-            let two_way = self.two_way.as_ref();
-            let caught = two_way.and_then(|two_way| two_way.trace_pass(&self.world, pass, &Watch::NOBODY));
-            let tracer = self.tracer(caught.as_ref(), &eye, false);
-            let (mut notes, mut work) = (Vec::new(), PathScratch::default());
-            let (sample, _, comb) = self.sample((&tracer, &eye, order), pixel, index, &mut work, PathLog::to(&mut notes));
+            let two_way = self.photon_mapper.as_ref();
+            let photons = two_way.and_then(|two_way| two_way.trace_pass(&self.world, pass, &Watch::NOBODY));
+            let tracer = self.tracer(photons.as_ref(), &eye, false);
+            let (mut notes, mut scratch) = (Vec::new(), PathScratch::default());
+            let (sample, _, wavelength_set) = self.sample((&tracer, &eye, order), pixel, index, &mut scratch, PathLog::to(&mut notes));
             let wavelengths = &self.world.appearance.wavelengths;
-            let wavelengths = wavelengths.is_spectral().then(|| wavelengths.at(comb).to_vec());
+            let wavelengths = wavelengths.is_spectral().then(|| wavelengths.at(wavelength_set).to_vec());
             Explanation { sample: index, wavelengths, notes, radiance: sample.radiance.to_array() }
         };
         Ok((0..order.samples.min(most)).map(told).collect())

@@ -25,11 +25,11 @@ fn two_lamps() -> Scene {
 fn picture(scene: &Scene, path: Option<&Path>) -> (Picture, FluxBalance) {
     let prepared = Prepared::new(scene).expect("sound");
     let plan = Plan::new(&prepared, &from_below());
-    let shelf = path.map(|path| PhotonStore::new(path, scene, &prepared, Duration::from_secs(60), true).expect("a database"));
+    let photon_store = path.map(|path| PhotonStore::new(path, scene, &prepared, Duration::from_secs(60), true).expect("a database"));
     let tracer =
-        ray_tracer_watched(&Task { shelf: shelf.as_ref(), ..Task::new(&prepared, &plan) }).expect("a tracer").0;
+        ray_tracer_watched(&Task { photon_store: photon_store.as_ref(), ..Task::new(&prepared, &plan) }).expect("a tracer").0;
     let rendering = tracer.render(&from_below(), &RenderOrder::of(&scene.settings), &Watch::NOBODY).expect("a picture");
-    (rendering.picture, rendering.balance.expect("light was caught"))
+    (rendering.picture, rendering.flux_balance.expect("light was caught"))
 }
 
 #[test]
@@ -38,17 +38,17 @@ fn light_from_a_database_gives_the_same_picture_to_the_bit_and_is_not_followed_a
     let path = folder.path().join("light.redb");
     let mut scene = two_lamps();
     let (plain, balance) = picture(&scene, None);
-    assert_eq!(balance.before, 0);
+    assert_eq!(balance.stored_paths, 0);
     let (first, balance) = picture(&scene, Some(&path));
-    assert_eq!((&first, balance.before), (&plain, 0));
+    assert_eq!((&first, balance.stored_paths), (&plain, 0));
     let (again, balance) = picture(&scene, Some(&path));
     assert_eq!(again, plain);
     // The last ways to each of what lamps are aimed at are no whole block.
-    assert!(balance.before > balance.ways * 4 / 5 && balance.before < balance.ways, "{balance}");
-    let before = balance.before;
+    assert!(balance.stored_paths > balance.paths * 4 / 5 && balance.stored_paths < balance.paths, "{balance}");
+    let before = balance.stored_paths;
     // Neither the size of the picture nor the samples matter, nor where light is looked for.
     (scene.settings.image.width, scene.settings.image.samples, scene.settings.photons.radius) = (9, 2, Some(0.1));
-    assert_eq!(picture(&scene, Some(&path)).1.before, before);
+    assert_eq!(picture(&scene, Some(&path)).1.stored_paths, before);
     // Each pass has its own light.
     scene.settings.image.samples = 2 * SHARING;
     let (plain, _) = picture(&scene, None);
@@ -62,18 +62,18 @@ fn where_one_lamp_changes_the_light_of_the_other_is_taken_from_the_database() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("light.redb");
     let mut scene = two_lamps();
-    let whole = picture(&scene, Some(&path)).1.ways;
+    let whole = picture(&scene, Some(&path)).1.paths;
     scene.lights[1] = Light::Point { at: DVec3::new(0.1, 0.8, 0.0), intensity: Color::grey(2.0) };
     let (plain, _) = picture(&scene, None);
     let (changed, balance) = picture(&scene, Some(&path));
     assert_eq!(changed, plain);
-    assert!(balance.before > whole / 4 && balance.before < whole * 9 / 10, "{balance}");
+    assert!(balance.stored_paths > whole / 4 && balance.stored_paths < whole * 9 / 10, "{balance}");
     // More ways of a lamp are added to those that are there.
     scene.settings.photons.count = 50_000;
     let (plain, _) = picture(&scene, None);
     let (more, balance) = picture(&scene, Some(&path));
     assert_eq!(more, plain);
-    assert!(balance.before == 0 || balance.before < balance.ways, "{balance}");
+    assert!(balance.stored_paths == 0 || balance.stored_paths < balance.paths, "{balance}");
 }
 
 #[test]
@@ -90,7 +90,7 @@ fn nothing_is_taken_where_surfaces_or_how_light_is_followed_have_changed() {
     (seeded.settings.image.seed, shallow.settings.light.reflection_depth) = (5, 1);
     for other in [moved, painted, seeded, shallow] {
         let (taken, balance) = picture(&other, Some(&path));
-        assert_eq!(balance.before, 0);
+        assert_eq!(balance.stored_paths, 0);
         assert_eq!(taken, picture(&other, None).0);
     }
 }

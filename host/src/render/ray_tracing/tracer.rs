@@ -32,11 +32,11 @@ const MOST_WAITING: usize = 8;
 /// A part of a sample's way.
 #[derive(Clone, Copy)]
 struct PathSegment {
-    sight: BoundedRay,
+    bounded: BoundedRay,
     /// How much of the radiance along it comes to the eye.
-    passed: Channels,
+    throughput: Channels,
     /// How much of the light of a lamp counts that it meets.
-    lamps: f64,
+    lamp_weight: f64,
     /// How far from the beginning of its ray it begins, scene units: more than 0 behind what it went straight through.
     begin: f64,
     /// How many legs came before it.
@@ -44,7 +44,7 @@ struct PathSegment {
     /// Unlike that of all other legs of the sample.
     number: u32,
     /// The density with which its direction was drawn, 1/sr; none where there was no choice.
-    density: Option<f64>,
+    pdf: Option<f64>,
     /// The normal of the element from which it goes on.
     normal: Option<DVec3>,
     /// What it goes through.
@@ -54,14 +54,14 @@ struct PathSegment {
     /// Whether it only looks for lights: it is one too many for anything else.
     for_lights: bool,
     /// Which turns its light takes from here to the eye.
-    course: PathHistory,
+    history: PathHistory,
     /// What its last turn was.
-    turn: LastScattering,
+    last_scattering: LastScattering,
     /// Whether light that was followed from lamps counts nothing on it: it was caught where narrow turns bring it to a
     /// broad one.
-    is_known: bool,
+    is_in_photon_map: bool,
     /// Whether a denoiser is guided by what it meets: it comes from the eye, by mirrors and smooth interfaces alone.
-    guides: bool,
+    records_features: bool,
 }
 
 /// Which turns light takes to the eye, by the lobes that it goes on from.
@@ -84,7 +84,7 @@ impl PathHistory {
             (PathHistory::NoBroad, true) => PathHistory::OneBroad,
             (_, true) => PathHistory::SeveralBroad,
             (PathHistory::OneBroad, false) => PathHistory::Caustic,
-            (course, false) => course,
+            (history, false) => history,
         }
     }
 
@@ -116,13 +116,13 @@ pub(super) struct PathResult {
     /// Radiance of each class.
     pub(super) radiance: [Channels; PathClass::ALL.len()],
     /// Radiance of each class at other wavelengths than those of the sample, linear sRGB.
-    pub(super) other: [DVec3; PathClass::ALL.len()],
+    pub(super) other_wavelengths: [DVec3; PathClass::ALL.len()],
     /// Whether the first leg met an object or light.
     pub(super) covered: bool,
     /// What it met: distance from the eye, normal, object and material.
     pub(super) first: Option<FirstHit>,
     /// Variance of its luminance by the chance in caught light that is seen, which other samples share.
-    pub(super) shared: f64,
+    pub(super) shared_variance: f64,
     /// The albedo that is seen, straight or by mirrors and smooth interfaces; a light counts as 1.
     pub(super) albedo: Channels,
     /// The normals there, each times the part of the light that comes to the eye.
@@ -135,9 +135,9 @@ impl PathResult {
     }
 
     /// A light that a leg meets.
-    fn record_light_albedo(&mut self, leg: &PathSegment) {
-        if leg.guides {
-            self.albedo += leg.passed;
+    fn record_light_albedo(&mut self, segment: &PathSegment) {
+        if segment.records_features {
+            self.albedo += segment.throughput;
         }
     }
 }
@@ -164,7 +164,7 @@ pub(super) struct PathScratch {
 struct SampleRecord<'a, 'b> {
     counts: &'a mut RayCounts,
     log: &'a mut PathLog<'b>,
-    seen: &'a mut PathResult,
+    result: &'a mut PathResult,
 }
 
 /// Follows rays through a scene as its plan tells.
@@ -175,15 +175,15 @@ pub(super) struct PathTracer<'a> {
     depth: u32,
     caustics: Caustics,
     /// Light that was caught on its way from lamps.
-    caught: Option<&'a PhotonEstimator<'a>>,
+    photons: Option<&'a PhotonEstimator<'a>>,
     /// Light that diffuse surfaces send each other, if it is known already.
     indirect: Option<&'a dyn IndirectLight>,
     /// Whether there is light that is not followed from where it comes from.
-    has_others: bool,
+    has_unmapped_lights: bool,
     /// What the eye is in.
-    around: Media,
+    camera_media: Media,
     /// Whether a denoiser is to be guided.
-    guides: bool,
+    records_features: bool,
 }
 
 impl<'a> PathTracer<'a> {
@@ -195,10 +195,10 @@ impl<'a> PathTracer<'a> {
         world: &'a World<'a>,
         depth: u32,
         shadows: bool,
-        (catches, caught): (bool, Option<&'a PhotonEstimator<'a>>),
+        (catches, photons): (bool, Option<&'a PhotonEstimator<'a>>),
         indirect: Option<&'a dyn IndirectLight>,
         around: Media,
-        guides: bool,
+        records_features: bool,
     ) -> PathTracer<'a> {
         let settings = &world.appearance.prepared.settings;
         let caustics = match settings.light.caustics {
@@ -211,321 +211,321 @@ impl<'a> PathTracer<'a> {
         let has_others =
             appearance.ambient.is_some() || appearance.sources.iter().any(|(_, source)| !source.emits_photons());
         let direct = DirectLighting::new(world, shadows, settings.light.samples.max(1));
-        PathTracer { world, direct, depth, caustics, caught, indirect, has_others, around, guides }
+        PathTracer { world, direct, depth, caustics, photons, indirect, has_unmapped_lights: has_others, camera_media: around, records_features }
     }
 
     /// The radiance that arrives along a line of sight.
     pub(super) fn radiance(
         &self,
-        sight: &BoundedRay,
-        comb: usize,
-        draws: &PathSampler,
-        work: &mut PathScratch,
+        bounded: &BoundedRay,
+        wavelength_set: usize,
+        sampler: &PathSampler,
+        scratch: &mut PathScratch,
         mut log: PathLog<'_>,
     ) -> PathResult {
-        let mut seen = PathResult::default();
+        let mut result = PathResult::default();
         let first = PathSegment {
-            sight: *sight,
-            passed: Channels::ONE,
-            lamps: 1.0,
+            bounded: *bounded,
+            throughput: Channels::ONE,
+            lamp_weight: 1.0,
             begin: 0.0,
             depth: 0,
             number: 1,
-            density: None,
+            pdf: None,
             normal: None,
-            media: self.around,
+            media: self.camera_media,
             lane: None,
             for_lights: false,
-            course: PathHistory::NoBroad,
-            turn: LastScattering::Other,
-            is_known: false,
-            guides: self.guides,
+            history: PathHistory::NoBroad,
+            last_scattering: LastScattering::Other,
+            is_in_photon_map: false,
+            records_features: self.records_features,
         };
-        let PathScratch { counts, waiting } = work;
+        let PathScratch { counts, waiting } = scratch;
         waiting.push(first);
-        while let Some(leg) = waiting.pop() {
-            match leg.depth {
+        while let Some(segment) = waiting.pop() {
+            match segment.depth {
                 0 => counts.primary += 1,
                 _ => counts.reflected += 1,
             }
-            let direction = leg.sight.ray.direction;
-            match self.world.intersect(&leg.sight, comb, draws.time) {
+            let direction = segment.bounded.ray.direction;
+            match self.world.intersect(&segment.bounded, wavelength_set, sampler.time) {
                 RayHit::Nothing => {
-                    let radiance = match leg.for_lights && !self.direct.has_sky() {
+                    let radiance = match segment.for_lights && !self.direct.has_sky() {
                         true => Channels::ZERO,
                         false => {
-                            let ray = Ray { direction: direction.normalize(), ..leg.sight.ray };
-                            let part = |sky: &LightSource, density| self.mis_weight(&leg, sky, density);
-                            self.world.appearance.escaped_radiance(&ray, leg.normal, comb, part)
+                            let ray = Ray { direction: direction.normalize(), ..segment.bounded.ray };
+                            let part = |sky: &LightSource, pdf| self.mis_weight(&segment, sky, pdf);
+                            self.world.appearance.escaped_radiance(&ray, segment.normal, wavelength_set, part)
                         }
                     };
-                    seen.add(leg.course.class(), leg.passed * radiance);
-                    seen.record_light_albedo(&leg);
-                    seen.covered |= leg.depth > 0;
-                    log.note(|| PathNote::term(leg.depth, "meets nothing", leg.passed * radiance));
+                    result.add(segment.history.class(), segment.throughput * radiance);
+                    result.record_light_albedo(&segment);
+                    result.covered |= segment.depth > 0;
+                    log.note(|| PathNote::term(segment.depth, "meets nothing", segment.throughput * radiance));
                 }
-                RayHit::Light(index, glow) => {
-                    let absorbed = leg.media.transmittance(self.world, glow.t * direction.length() - leg.begin, comb);
+                RayHit::Light(index, light_hit) => {
+                    let absorbed = segment.media.transmittance(self.world, light_hit.t * direction.length() - segment.begin, wavelength_set);
                     let (number, source) = &self.world.appearance.sources[index];
-                    let radiance = absorbed * glow.radiance * self.mis_weight(&leg, source, glow.density);
-                    seen.add(leg.course.class(), leg.passed * radiance);
-                    seen.record_light_albedo(&leg);
-                    seen.covered = true;
-                    log.note(|| PathNote::light(leg.depth, *number, leg.passed * radiance));
+                    let radiance = absorbed * light_hit.radiance * self.mis_weight(&segment, source, light_hit.pdf);
+                    result.add(segment.history.class(), segment.throughput * radiance);
+                    result.record_light_albedo(&segment);
+                    result.covered = true;
+                    log.note(|| PathNote::light(segment.depth, *number, segment.throughput * radiance));
                 }
-                RayHit::Surface(found) => {
-                    if leg.depth == 0 {
-                        let SurfaceInteraction { depth, object, material, .. } = found;
-                        seen.first = Some(FirstHit { distance: depth, normal: found.element.normal, object, material });
+                RayHit::Surface(interaction) => {
+                    if segment.depth == 0 {
+                        let SurfaceInteraction { depth, object, material, .. } = interaction;
+                        result.first = Some(FirstHit { distance: depth, normal: interaction.element.normal, object, material });
                     }
-                    seen.covered = true;
-                    let counting = &mut SampleRecord { counts, log: &mut log, seen: &mut seen };
-                    self.scatter(leg, &found, (comb, draws), counting, waiting);
+                    result.covered = true;
+                    let counting = &mut SampleRecord { counts, log: &mut log, result: &mut result };
+                    self.scatter(segment, &interaction, (wavelength_set, sampler), counting, waiting);
                 }
             }
         }
-        seen
+        result
     }
 
     /// What an element sends back along a leg, and the legs that go on from there.
     fn scatter(
         &self,
-        mut leg: PathSegment,
-        found: &SurfaceInteraction<'_>,
-        (comb, draws): (usize, &PathSampler),
-        SampleRecord { counts, log, seen }: &mut SampleRecord<'_, '_>,
+        mut segment: PathSegment,
+        interaction: &SurfaceInteraction<'_>,
+        (wavelength_set, sampler): (usize, &PathSampler),
+        SampleRecord { counts, log, result }: &mut SampleRecord<'_, '_>,
         waiting: &mut Vec<PathSegment>,
     ) {
-        let optics = found.optics;
-        let towards = leg.sight.ray.direction.normalize();
-        leg.passed *= leg.media.transmittance(self.world, found.distance - leg.begin, comb);
-        let crossing = leg.media.crossing(self.world, found, &leg.sight.ray);
-        if !crossing.is_interface {
-            let sight = BoundedRay { t_min: crossing.last, ..leg.sight };
-            waiting.push(PathSegment { sight, begin: found.distance, media: crossing.media, ..leg });
+        let bsdf = interaction.bsdf;
+        let towards = segment.bounded.ray.direction.normalize();
+        segment.throughput *= segment.media.transmittance(self.world, interaction.distance - segment.begin, wavelength_set);
+        let medium_interface = segment.media.crossing(self.world, interaction, &segment.bounded.ray);
+        if !medium_interface.is_interface {
+            let bounded = BoundedRay { t_min: medium_interface.last, ..segment.bounded };
+            waiting.push(PathSegment { bounded, begin: interaction.distance, media: medium_interface.media, ..segment });
             return;
         }
-        log.note(|| PathNote::element(leg.depth, self.world.appearance.prepared, found));
+        log.note(|| PathNote::element(segment.depth, self.world.appearance.prepared, interaction));
         if let Some((emission, factor)) =
-            self.world.emitted(found, towards, comb, |source, density| self.mis_weight(&leg, source, density))
+            self.world.emitted(interaction, towards, wavelength_set, |source, pdf| self.mis_weight(&segment, source, pdf))
         {
-            let radiance = leg.passed * emission * factor;
-            seen.add(leg.course.class(), radiance);
-            seen.record_light_albedo(&leg);
-            log.note(|| PathNote::term(leg.depth, "emits", radiance));
+            let radiance = segment.throughput * emission * factor;
+            result.add(segment.history.class(), radiance);
+            result.record_light_albedo(&segment);
+            log.note(|| PathNote::term(segment.depth, "emits", radiance));
         }
-        if leg.for_lights && !optics.is_passable() {
+        if segment.for_lights && !bsdf.is_passable() {
             return;
         }
-        let frame = found.frame();
+        let frame = interaction.frame();
         // Where wavelengths part, the one that is left is drawn together with the comb, as often as it will be seen.
-        let drawn = match leg.lane {
-            None if found.disperses() => {
-                let visibility = self.world.appearance.wavelengths.visibility(comb);
-                leg.passed.sample_lane(visibility, draws.point(SampleDimension::Wavelengths)[1])
+        let drawn = match segment.lane {
+            None if interaction.disperses() => {
+                let visibility = self.world.appearance.wavelengths.visibility(wavelength_set);
+                segment.throughput.sample_lane(visibility, sampler.point(SampleDimension::Wavelengths)[1])
             }
             _ => None,
         };
-        let (lane, alone) = drawn.unwrap_or((leg.lane.unwrap_or(0), leg.passed));
-        let side = crossing.indices(self.world, comb);
-        let sighting = ShadingContext { view: frame.local(-towards), comb, side, lane, painted: found.texture_values() };
-        if leg.for_lights {
-            let onward = optics.straight_sample(&sighting);
-            waiting.extend(onward.and_then(|onward| self.straight_segment(&leg, found, (onward, 0), draws)));
+        let (lane, lane_throughput) = drawn.unwrap_or((segment.lane.unwrap_or(0), segment.throughput));
+        let side = medium_interface.indices(self.world, wavelength_set);
+        let context = ShadingContext { view: frame.local(-towards), wavelength_set, indices: side, lane, texture_values: interaction.texture_values() };
+        if segment.for_lights {
+            let sample = bsdf.straight_sample(&context);
+            waiting.extend(sample.and_then(|onward| self.straight_segment(&segment, interaction, (onward, 0), sampler)));
             return;
         }
-        if leg.guides {
-            let passed = self.world.appearance.wavelengths.broad_bands(leg.passed).element_sum() / 3.0;
-            seen.albedo += leg.passed * optics.non_delta_albedo(&sighting);
-            seen.normal += found.element.normal * passed;
+        if segment.records_features {
+            let mean_throughput = self.world.appearance.wavelengths.broad_bands(segment.throughput).element_sum() / 3.0;
+            result.albedo += segment.throughput * bsdf.non_delta_albedo(&context);
+            result.normal += interaction.element.normal * mean_throughput;
         }
         if let Some(ambient) = &self.world.appearance.ambient {
-            let radiance = leg.passed * optics.ambient(&sighting) * ambient.of(comb);
-            seen.add(PathClass::Indirect, radiance);
-            log.note(|| PathNote::term(leg.depth, "ambient light", radiance));
+            let radiance = segment.throughput * bsdf.ambient(&context) * ambient.of(wavelength_set);
+            result.add(PathClass::Indirect, radiance);
+            log.note(|| PathNote::term(segment.depth, "ambient light", radiance));
         }
-        if let Some(radiance) = self.indirect(found, comb).filter(|_| !leg.is_known) {
-            seen.add(PathClass::Indirect, leg.passed * radiance);
-            log.note(|| PathNote::term(leg.depth, "light of other surfaces", leg.passed * radiance));
+        if let Some(radiance) = self.indirect(interaction, wavelength_set).filter(|_| !segment.is_in_photon_map) {
+            result.add(PathClass::Indirect, segment.throughput * radiance);
+            log.note(|| PathNote::term(segment.depth, "light of other surfaces", segment.throughput * radiance));
         }
-        let is_worth = |onward: BsdfSample| (leg.passed * onward.weight).max() > LEAST_SPLIT;
+        let is_worth = |sample: BsdfSample| (segment.throughput * sample.weight).max() > LEAST_SPLIT;
         let (count, all_worth) =
-            optics.specular_samples(&sighting).fold((0, true), |(count, all), onward| (count + 1, all && is_worth(onward)));
-        let directions = count + usize::from(optics.continues_non_delta());
+            bsdf.specular_samples(&context).fold((0, true), |(count, all), sample| (count + 1, all && is_worth(sample)));
+        let directions = count + usize::from(bsdf.continues_non_delta());
         let parts = directions <= 1 || waiting.len() + directions <= MOST_WAITING && all_worth;
-        let among = if parts { LobeSelection::NonDelta } else { LobeSelection::All };
-        let highest = self.clamp_value(&leg);
-        let encounter = PathVertex {
-            found,
-            behind: crossing.media,
+        let selection = if parts { LobeSelection::NonDelta } else { LobeSelection::All };
+        let clamp_value = self.clamp_value(&segment);
+        let vertex = PathVertex {
+            interaction,
+            media_behind: medium_interface.media,
             frame,
-            sighting,
-            draws: *draws,
-            leg: leg.number,
-            among,
-            highest,
-            is_known: leg.is_known,
-            alone,
+            context,
+            sampler: *sampler,
+            segment: segment.number,
+            selection,
+            clamp_value,
+            is_in_photon_map: segment.is_in_photon_map,
+            lane_throughput,
         };
-        if optics.has_non_delta() {
-            let add = |number, radiance| log.note(|| PathNote::direct_light(leg.depth, number, leg.passed * radiance));
-            let light = self.direct.radiance(&encounter, counts, add);
+        if bsdf.has_non_delta() {
+            let add = |number, radiance| log.note(|| PathNote::direct_light(segment.depth, number, segment.throughput * radiance));
+            let light = self.direct.radiance(&vertex, counts, add);
             for (is_broad, radiance) in [true, false].into_iter().zip(light) {
-                seen.add(leg.course.extended(is_broad).class(), leg.passed * radiance);
+                result.add(segment.history.extended(is_broad).class(), segment.throughput * radiance);
             }
         }
-        if let Some(caught) = self.caught.filter(|_| optics.stores_photons() && !leg.is_known) {
+        if let Some(photons) = self.photons.filter(|_| bsdf.stores_photons() && !segment.is_in_photon_map) {
             let (light, error) =
-                caught.radiance_estimate(found, &encounter.sighting, (leg.passed, leg.lane.is_some()), leg.course != PathHistory::NoBroad);
-            let first = leg.course.extended(true).extended(false).class();
-            if leg.course == PathHistory::NoBroad {
-                let seen_as = |(radiance, other): (Channels, DVec3)| {
-                    self.world.appearance.wavelengths.to_srgb(comb, radiance) + other
+                photons.radiance_estimate(interaction, &vertex.context, (segment.throughput, segment.lane.is_some()), segment.history != PathHistory::NoBroad);
+            let first = segment.history.extended(true).extended(false).class();
+            if segment.history == PathHistory::NoBroad {
+                let to_srgb = |(radiance, other): (Channels, DVec3)| {
+                    self.world.appearance.wavelengths.to_srgb(wavelength_set, radiance) + other
                 };
-                let luminance = light.map(seen_as).into_iter().sum::<DVec3>().dot(LUMINANCE);
-                seen.shared += (luminance * error).powi(2);
+                let luminance = light.map(to_srgb).into_iter().sum::<DVec3>().dot(LUMINANCE);
+                result.shared_variance += (luminance * error).powi(2);
             }
             for (class, (radiance, elsewhere)) in [first, PathClass::Indirect].into_iter().zip(light) {
-                seen.add(class, radiance);
-                seen.other[class as usize] += elsewhere;
-                log.note(|| PathNote::term(leg.depth, "caught light", radiance));
+                result.add(class, radiance);
+                result.other_wavelengths[class as usize] += elsewhere;
+                log.note(|| PathNote::term(segment.depth, "caught light", radiance));
             }
         }
-        if optics.continues_paths() {
-            let point = draws.for_segment(leg.number, SampleDimension::Direction, 0);
-            let [choice, _] = draws.for_segment(leg.number, SampleDimension::Choice, 0);
+        if bsdf.continues_paths() {
+            let point = sampler.for_segment(segment.number, SampleDimension::Direction, 0);
+            let [choice, _] = sampler.for_segment(segment.number, SampleDimension::Choice, 0);
             if parts {
-                let drawn = optics.continues_non_delta().then(|| optics.sample(&sighting, choice, point, among)).flatten();
-                let legs = optics.specular_samples(&sighting).zip(0..).chain(drawn.map(|onward| (onward, 2)));
-                waiting.extend(legs.filter_map(|(onward, branch)| self.next_segment(&leg, &encounter, onward, branch)));
+                let drawn = bsdf.continues_non_delta().then(|| bsdf.sample(&context, choice, point, selection)).flatten();
+                let samples = bsdf.specular_samples(&context).zip(0..).chain(drawn.map(|sample| (sample, 2)));
+                waiting.extend(samples.filter_map(|(sample, branch)| self.next_segment(&segment, &vertex, sample, branch)));
             } else {
-                let drawn = optics.sample(&sighting, choice, point, among);
-                waiting.extend(drawn.and_then(|onward| self.next_segment(&leg, &encounter, onward, 0)));
+                let drawn = bsdf.sample(&context, choice, point, selection);
+                waiting.extend(drawn.and_then(|sample| self.next_segment(&segment, &vertex, sample, 0)));
             }
         }
     }
 
     /// Radiance of an element by light of other diffuse ones, as far as it is known already.
-    fn indirect(&self, found: &SurfaceInteraction<'_>, comb: usize) -> Option<Channels> {
-        let indirect = self.indirect.filter(|_| found.optics.is_diffuse())?;
-        let corners = self.world.appearance.prepared.corners(found.triangle);
-        let weights = crate::numeric::triangle::weights(corners, found.element.position);
-        let irradiance = indirect.irradiance(found.triangle, found.element.outside, weights, IrradiancePart::Indirect);
-        Some(diffuse_albedo(found.optics, comb, found.texture_values()) * irradiance * std::f64::consts::FRAC_1_PI)
+    fn indirect(&self, interaction: &SurfaceInteraction<'_>, wavelength_set: usize) -> Option<Channels> {
+        let indirect = self.indirect.filter(|_| interaction.bsdf.is_diffuse())?;
+        let corners = self.world.appearance.prepared.corners(interaction.triangle);
+        let weights = crate::numeric::triangle::weights(corners, interaction.element.position);
+        let irradiance = indirect.irradiance(interaction.triangle, interaction.element.outside, weights, IrradiancePart::Indirect);
+        Some(diffuse_albedo(interaction.bsdf, wavelength_set, interaction.texture_values()) * irradiance * std::f64::consts::FRAC_1_PI)
     }
 
     /// How much a light counts that a leg meets.
     ///
     /// - `density`: with which the light would have drawn the leg's direction.
-    fn mis_weight(&self, leg: &PathSegment, source: &LightSource, density: f64) -> f64 {
-        let is_caustic = leg.density.is_none() && leg.course != PathHistory::NoBroad;
+    fn mis_weight(&self, segment: &PathSegment, source: &LightSource, pdf: f64) -> f64 {
+        let is_caustic = segment.pdf.is_none() && segment.history != PathHistory::NoBroad;
         match self.caustics {
             // What is not followed from lamps counts wherever it is met.
-            Caustics::PhotonMapped if !source.emits_photons() => power_heuristic(leg.density, density),
-            Caustics::PhotonMapped if leg.is_known => 0.0,
+            Caustics::PhotonMapped if !source.emits_photons() => power_heuristic(segment.pdf, pdf),
+            Caustics::PhotonMapped if segment.is_in_photon_map => 0.0,
             // A shadow ray has gone through what is polished.
-            Caustics::LeftOut if leg.turn == LastScattering::ClearInterface && self.world.appearance.clears => 0.0,
-            Caustics::LeftOut if source.is_sky() => power_heuristic(leg.density, density),
+            Caustics::LeftOut if segment.last_scattering == LastScattering::ClearInterface && self.world.appearance.has_clear_shadows => 0.0,
+            Caustics::LeftOut if source.is_sky() => power_heuristic(segment.pdf, pdf),
             Caustics::PhotonMapped | Caustics::LeftOut if is_caustic => 0.0,
-            _ => leg.lamps * power_heuristic(leg.density, density),
+            _ => segment.lamp_weight * power_heuristic(segment.pdf, pdf),
         }
     }
 
     /// The greatest value with which narrow lobes may reflect a lamp where a leg arrives, 1/sr.
-    fn clamp_value(&self, leg: &PathSegment) -> f64 {
+    fn clamp_value(&self, segment: &PathSegment) -> f64 {
         match self.caustics {
-            Caustics::PhotonMapped if leg.course != PathHistory::NoBroad => 0.0,
-            Caustics::LeftOut if leg.course != PathHistory::NoBroad => HIGHEST,
+            Caustics::PhotonMapped if segment.history != PathHistory::NoBroad => 0.0,
+            Caustics::LeftOut if segment.history != PathHistory::NoBroad => HIGHEST,
             _ => f64::INFINITY,
         }
     }
 
     /// The leg that goes on in a direction; none if it is not worth following.
-    fn next_segment(&self, leg: &PathSegment, encounter: &PathVertex<'_>, onward: BsdfSample, branch: u32) -> Option<PathSegment> {
-        let PathVertex { found, frame, sighting, draws, highest, alone, .. } = *encounter;
-        if onward.is_straight {
-            return self.straight_segment(leg, found, (onward, branch), &draws);
+    fn next_segment(&self, segment: &PathSegment, vertex: &PathVertex<'_>, sample: BsdfSample, branch: u32) -> Option<PathSegment> {
+        let PathVertex { interaction, frame, context, sampler, clamp_value, lane_throughput, .. } = *vertex;
+        if sample.is_straight {
+            return self.straight_segment(segment, interaction, (sample, branch), &sampler);
         }
-        let through = onward.light.z < 0.0;
-        let parts_wavelengths = through && leg.lane.is_none() && found.disperses();
+        let through = sample.light.z < 0.0;
+        let parts_wavelengths = through && segment.lane.is_none() && interaction.disperses();
         // Beyond the last leg, a direction that might have been drawn for a light still looks for it.
-        let is_last = leg.depth >= self.depth;
-        if is_last && (onward.density.is_none() || !self.direct.has_area_lights()) {
+        let is_last = segment.depth >= self.depth;
+        if is_last && (sample.pdf.is_none() || !self.direct.has_area_lights()) {
             return None;
         }
-        let goes_back = self.caustics == Caustics::PhotonMapped && !onward.is_broad && leg.course != PathHistory::NoBroad;
-        let is_known = leg.is_known || goes_back;
-        if is_known && !self.has_others {
+        let goes_back = self.caustics == Caustics::PhotonMapped && !sample.is_broad && segment.history != PathHistory::NoBroad;
+        let is_in_photon_map = segment.is_in_photon_map || goes_back;
+        if is_in_photon_map && !self.has_unmapped_lights {
             return None;
         }
-        let passed = if parts_wavelengths { alone } else { leg.passed } * onward.weight;
-        let number = leg.number.wrapping_mul(3).wrapping_add(branch);
-        let passed = russian_roulette(passed, number, &draws)?;
-        let element = &found.element;
-        let direction = frame.world(onward.light);
+        let throughput = if parts_wavelengths { lane_throughput } else { segment.throughput } * sample.weight;
+        let number = segment.number.wrapping_mul(3).wrapping_add(branch);
+        let throughput = russian_roulette(throughput, number, &sampler)?;
+        let element = &interaction.element;
+        let direction = frame.world(sample.light);
         // Of a spread lobe, what falls on the wrong side of the triangle or its surface is lost.
-        if onward.density.is_some() && (direction.dot(element.plane(!through)) < 0.0) != through {
+        if sample.pdf.is_some() && (direction.dot(element.plane(!through)) < 0.0) != through {
             return None;
         }
         let direction = element.righted(direction, !through);
-        let media = if through { encounter.behind } else { leg.media };
-        let lamps = match onward.density {
-            Some(density) if highest.is_finite() && !onward.is_broad => {
-                (highest * onward.light.z.abs() / (onward.weight.max() * density)).clamp(0.0, 1.0)
+        let media = if through { vertex.media_behind } else { segment.media };
+        let lamps = match sample.pdf {
+            Some(pdf) if clamp_value.is_finite() && !sample.is_broad => {
+                (clamp_value * sample.light.z.abs() / (sample.weight.max() * pdf)).clamp(0.0, 1.0)
             }
             _ => 1.0,
         };
         let origin = if through { element.through } else { element.leave };
-        let turn = match (onward.density, leg.turn) {
+        let turn = match (sample.pdf, segment.last_scattering) {
             (Some(_), _) => LastScattering::NonDelta,
             (None, LastScattering::NonDelta | LastScattering::ClearInterface) if through => LastScattering::ClearInterface,
             _ => LastScattering::Other,
         };
         Some(PathSegment {
-            sight: BoundedRay {
+            bounded: BoundedRay {
                 ray: Ray { origin, direction },
                 t_min: 0.0,
                 t_max: f64::INFINITY,
                 // A curved mirror widens it more; its many samples make up for that.
-                cone: RayCone { width: leg.sight.cone.at(found.distance), ..leg.sight.cone },
+                cone: RayCone { width: segment.bounded.cone.at(interaction.distance), ..segment.bounded.cone },
             },
-            passed,
-            lamps,
+            throughput,
+            lamp_weight: lamps,
             begin: 0.0,
-            depth: leg.depth + 1,
+            depth: segment.depth + 1,
             number,
-            density: onward.density,
+            pdf: sample.pdf,
             normal: Some(element.normal),
             media,
-            lane: if parts_wavelengths { Some(sighting.lane) } else { leg.lane },
+            lane: if parts_wavelengths { Some(context.lane) } else { segment.lane },
             for_lights: is_last,
-            course: leg.course.extended(onward.is_broad),
-            turn,
-            is_known,
-            guides: leg.guides && onward.density.is_none(),
+            history: segment.history.extended(sample.is_broad),
+            last_scattering: turn,
+            is_in_photon_map,
+            records_features: segment.records_features && sample.pdf.is_none(),
         })
     }
 
     /// The rest of a leg behind what it goes straight through: the same ray, so that lights are met as if nothing was there.
-    fn straight_segment(&self, leg: &PathSegment, found: &SurfaceInteraction<'_>, (onward, branch): (BsdfSample, u32), draws: &PathSampler) -> Option<PathSegment> {
-        let is_last = leg.depth >= self.depth;
-        if is_last && (leg.density.is_none() || !self.direct.has_area_lights()) {
+    fn straight_segment(&self, segment: &PathSegment, interaction: &SurfaceInteraction<'_>, (sample, branch): (BsdfSample, u32), sampler: &PathSampler) -> Option<PathSegment> {
+        let is_last = segment.depth >= self.depth;
+        if is_last && (segment.pdf.is_none() || !self.direct.has_area_lights()) {
             return None;
         }
-        let number = leg.number.wrapping_mul(3).wrapping_add(branch);
-        let passed = russian_roulette(leg.passed * onward.weight, number, draws)?;
-        let sight = BoundedRay { t_min: found.t, ..leg.sight };
-        let for_lights = leg.for_lights || is_last;
-        Some(PathSegment { sight, passed, begin: found.distance, depth: leg.depth + 1, number, for_lights, ..*leg })
+        let number = segment.number.wrapping_mul(3).wrapping_add(branch);
+        let throughput = russian_roulette(segment.throughput * sample.weight, number, sampler)?;
+        let bounded = BoundedRay { t_min: interaction.t, ..segment.bounded };
+        let for_lights = segment.for_lights || is_last;
+        Some(PathSegment { bounded, throughput, begin: interaction.distance, depth: segment.depth + 1, number, for_lights, ..*segment })
     }
 }
 
 /// What of a leg is followed: all of it, or, of one that passes little on, by chance more or nothing.
-fn russian_roulette(passed: Channels, number: u32, draws: &PathSampler) -> Option<Channels> {
-    let most = passed.max();
+fn russian_roulette(throughput: Channels, number: u32, sampler: &PathSampler) -> Option<Channels> {
+    let most = throughput.max();
     if most >= ENERGY_CUTOFF {
-        return Some(passed);
+        return Some(throughput);
     }
     let survival = most / ENERGY_CUTOFF;
-    (most > 0.0 && draws.for_segment(number, SampleDimension::Survival, 0)[0] < survival).then(|| passed * survival.recip())
+    (most > 0.0 && sampler.for_segment(number, SampleDimension::Survival, 0)[0] < survival).then(|| throughput * survival.recip())
 }

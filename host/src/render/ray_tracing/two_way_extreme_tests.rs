@@ -21,8 +21,8 @@ fn followed(mut scene: Scene, view: Option<View>, photons: u32) -> (Rendering, F
     let rendering = two_way(&scene, view, 2);
     let finite = |pixel: &crate::picture::Pixel| pixel.radiance.iter().all(|band| band.is_finite() && *band >= 0.0);
     assert!(rendering.picture.pixels().iter().all(finite));
-    let balance = rendering.balance.expect("light is followed");
-    let parts = [balance.straight, balance.caught, balance.absorbed, balance.escaped, balance.stopped];
+    let balance = rendering.flux_balance.expect("light is followed");
+    let parts = [balance.straight, balance.stored, balance.absorbed, balance.escaped, balance.stopped];
     assert!(parts.iter().all(|part| *part > -1e-9 * balance.sent), "{balance}");
     (rendering, balance)
 }
@@ -60,7 +60,7 @@ fn a_burning_mirror_gathers_all_light_in_a_point() {
     scene.settings.image.samples = 16;
     let (rendering, balance) = followed(scene, Some(down_on(DVec3::ZERO, 0.02, 0.2)), 50_000);
     let expected = 0.9 * (PI - 0.04);
-    assert!((balance.caught / expected - 1.0).abs() < 0.01, "{} {expected}", balance.caught);
+    assert!((balance.stored / expected - 1.0).abs() < 0.01, "{} {expected}", balance.stored);
     // A disc is never wider than what holds a few hundred ways of light.
     assert!((shown(&rendering, 0.02) / expected - 1.0).abs() < 0.1, "{} {expected}", shown(&rendering, 0.02));
 }
@@ -71,7 +71,7 @@ fn a_ball_of_index_2_gathers_light_where_it_stands() {
     let mut scene = scene(vec![ball(1.0, DVec3::Y, glass(2.0)), floor(6.0, 0.0)], vec![light], 16);
     scene.settings.image.samples = 4;
     let (_, balance) = followed(scene, Some(from_above(2.0)), 30_000);
-    assert!(balance.caught > 0.5 * PI && balance.caught < PI);
+    assert!(balance.stored > 0.5 * PI && balance.stored < PI);
 }
 
 #[test]
@@ -87,7 +87,7 @@ fn a_beam_of_a_ten_thousandth_of_a_degree_finds_its_mirror() {
         ];
         let (_, balance) = followed(scene(objects, vec![light], 8), Some(from_below()), 20_000);
         let power = 1e12 * 2.0 * PI * 2.0 * (0.5 * outer.to_radians()).sin().powi(2) * flat;
-        assert!((balance.caught / (0.8 * power) - 1.0).abs() < 0.01, "{} {}", balance.caught, 0.8 * power);
+        assert!((balance.stored / (0.8 * power) - 1.0).abs() < 0.01, "{} {}", balance.stored, 0.8 * power);
     }
 }
 
@@ -117,7 +117,7 @@ fn a_rod_guides_light_through_a_hundred_reflections() {
     let power = 2.0 * PI * (1.0 - 0.5 * (0.1f64.to_radians().cos() + 0.2f64.to_radians().cos()));
     let scene = scene(vec![rod, floor(20.0, 0.5 * length + 1.0)], vec![light], 4);
     let (_, balance) = followed(scene, Some(from_above(5.0)), 20_000);
-    let found = [balance.caught, balance.escaped, balance.stopped].map(|part| part / power);
+    let found = [balance.stored, balance.escaped, balance.stopped].map(|part| part / power);
     // What comes back from the far end has too many turns before it.
     let expected = [(1.0 - reflected).powi(2), reflected, (1.0 - reflected) * reflected];
     assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 0.01), "{found:?} {expected:?}");
@@ -156,7 +156,7 @@ fn a_cut_diamond_gives_back_all_light_that_falls_on_its_table() {
     scene.settings.image.samples = 1;
     let (_, balance) = followed(scene, Some(from_above(3.9)), 20_000);
     assert!(balance.straight == 0.0 && balance.escaped == 0.0, "{balance}");
-    assert!(balance.caught > 0.999 * balance.sent && balance.stopped < 1e-3 * balance.sent, "{balance}");
+    assert!(balance.stored > 0.999 * balance.sent && balance.stopped < 1e-3 * balance.sent, "{balance}");
 }
 
 #[test]
@@ -170,7 +170,7 @@ fn a_box_of_perfect_mirrors_keeps_all_light_for_the_ball_in_it() {
     scene.settings.image.samples = 1;
     let (_, balance) = followed(scene, Some(from_above(0.9)), 5_000);
     assert!(balance.escaped.abs() < 1e-6 * balance.sent && balance.absorbed.abs() < 1e-9 * balance.sent, "{balance}");
-    let all = balance.straight + balance.caught + balance.stopped;
+    let all = balance.straight + balance.stored + balance.stopped;
     assert!((all / (4.0 * PI) - 1.0).abs() < 0.02 && balance.stopped < 0.05 * all, "{balance}");
 }
 

@@ -48,7 +48,7 @@ pub(super) fn two_way(scene: &Scene, view: Option<View>, threads: usize) -> Rend
     let tracer = ray_tracer(&prepared, &plan).expect("an octree");
     let order = RenderOrder { threads: NonZeroUsize::new(threads), ..RenderOrder::of(&scene.settings) };
     let rendering = tracer.render(&view, &order, &Watch::NOBODY).expect("a picture");
-    if let Some(balance) = &rendering.balance {
+    if let Some(balance) = &rendering.flux_balance {
         assert!(balance.residual() < 1e-6 && balance.sent > 0.0, "{balance}");
     }
     rendering
@@ -241,11 +241,11 @@ fn points_that_stand_for_surfaces_come_near_them_as_voxels_get_small() {
     let mut scene = ball_and_mirror();
     (scene.settings.image.samples, scene.settings.photons.count) = (16, 50_000);
     let exact = two_way(&scene, None, 2);
-    let caught = |rendering: &Rendering| rendering.balance.map_or(0.0, |balance| balance.caught / balance.sent);
+    let stored = |rendering: &Rendering| rendering.flux_balance.map_or(0.0, |balance| balance.stored / balance.sent);
     let off = [(6, 0.1), (8, 0.03)].map(|(depth, most)| {
         scene.settings.photons.point_depth = Some(depth);
         let rendering = two_way(&scene, None, 2);
-        let off = caught(&rendering) / caught(&exact) - 1.0;
+        let off = stored(&rendering) / stored(&exact) - 1.0;
         assert!(off.abs() < most, "{off} at {depth}");
         difference(&rendering.picture, &exact.picture).expect("of one size").rmse
     });
@@ -260,7 +260,7 @@ fn the_picture_is_the_same_for_any_number_of_threads_and_with_nothing_left_out()
     (scene.settings.image.samples, scene.settings.photons.count) = (9, 5_000);
     let one = two_way(&scene, None, 1);
     let two = two_way(&scene, None, 2);
-    assert!(one.picture == two.picture && one.balance == two.balance);
+    assert!(one.picture == two.picture && one.flux_balance == two.flux_balance);
     scene.settings.light.caustics = Caustics::PhotonMapped;
     let all = super::tests::trace(&scene, None, true, 2);
     assert!(one.picture == all.picture, "{:?}", difference(&one.picture, &all.picture));

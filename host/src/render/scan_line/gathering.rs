@@ -16,14 +16,14 @@ const BEYOND: f64 = -1.0;
 
 impl<'a> Shader<'a> {
     /// Finds the surfaces of a pixel, and which samples see them.
-    pub(super) fn gather(&self, pixel: &StripPixel, strip: &Strip, desk: &mut PixelScratch<'a>) {
-        let PixelScratch { surfaces, parts, samples, .. } = desk;
+    pub(super) fn gather(&self, pixel: &StripPixel, strip: &Strip, scratch: &mut PixelScratch<'a>) {
+        let PixelScratch { surfaces, parts, samples, .. } = scratch;
         surfaces.clear();
         parts.clear();
         samples.clear();
         let opaque = strip.near.len();
         for (i, sample) in pixel.samples().enumerate() {
-            samples.push(SampleSight { begin: parts.len(), like: i, glow: None, light: DVec3::ZERO });
+            samples.push(SampleSight { begin: parts.len(), like: i, before_light: None, light: DVec3::ZERO });
             let mut add = |triangle: u32, near: f64, fragment: usize| {
                 let before = parts.iter().rfind(|part| part.triangle == triangle).map(|part| part.surface);
                 let surface = before.unwrap_or_else(|| self.surface(surfaces, triangle, near));
@@ -34,8 +34,8 @@ impl<'a> Shader<'a> {
                 let layer = strip.layers[index];
                 add(layer.triangle, layer.near, opaque + index);
             }
-            if strip.seen[sample] != NONE {
-                add(strip.seen[sample], strip.near[sample], sample);
+            if strip.triangles[sample] != NONE {
+                add(strip.triangles[sample], strip.near[sample], sample);
             }
         }
     }
@@ -58,15 +58,15 @@ impl<'a> Shader<'a> {
             face: (b - a).cross(c - a).normalize_or_zero(),
             near,
             curved: self.is_curved(triangle),
-            seen: [prepared.object_of[triangle as usize], prepared.material_number(triangle)],
+            ids: [prepared.object_of[triangle as usize], prepared.material_number(triangle)],
             count: 0,
             sum: [0.0; 2],
             alone: true,
             nearness: [0.0; 2],
-            found: None,
-            own: Channels::ZERO,
-            passed: Channels::ZERO,
-            lit: 0..0,
+            interaction: None,
+            unlit_radiance: Channels::ZERO,
+            transmittance: Channels::ZERO,
+            contributions: 0..0,
         }
     }
 
@@ -83,9 +83,9 @@ impl<'a> Shader<'a> {
     }
 
     /// The mean distance of what samples see of a surface, its normal, object and material.
-    pub(super) fn first(&self, surface: &PixelSurface, found: &PixelInteraction<'_>) -> (f64, DVec3, [u32; 2]) {
+    pub(super) fn first(&self, surface: &PixelSurface, interaction: &PixelInteraction<'_>) -> (f64, DVec3, [u32; 2]) {
         let [near, depth] = surface.nearness.map(|sum| sum / f64::from(surface.count));
-        (self.distance(found.distance, self.depth(near), depth), found.element.normal, found.seen)
+        (self.distance(interaction.distance, self.depth(near), depth), interaction.element.normal, interaction.ids)
     }
 
     /// The mean distance of some samples.
@@ -116,16 +116,16 @@ impl<'a> Shader<'a> {
             let places = parts.map(|part| (pixel.place(part.sample), part.triangle));
             (places.min_by(|(a, _), (b, _)| away(*a).total_cmp(&away(*b)))?.1, BEYOND)
         };
-        let sight = self.eye.ray(middle, [0.5; 2])?;
-        if let Some(found) = last
-            && found.move_to(triangle, &sight.ray)
+        let bounded = self.eye.ray(middle, [0.5; 2])?;
+        if let Some(interaction) = last
+            && interaction.move_to(triangle, &bounded.ray)
         {
-            founds.push(*found);
+            founds.push(*interaction);
         } else {
-            let found = self.element(triangle, &sight, least)?;
-            founds.push(found);
-            if found.is_flat {
-                *last = Some(found);
+            let interaction = self.element(triangle, &bounded, least)?;
+            founds.push(interaction);
+            if interaction.is_flat {
+                *last = Some(interaction);
             }
         }
         Some(founds.len() - 1)
@@ -134,28 +134,28 @@ impl<'a> Shader<'a> {
     /// The element that a line of sight meets in a triangle.
     ///
     /// - `least`: the least weight of a corner, 0 where the element must lie within the triangle.
-    pub(super) fn element(&self, triangle: u32, sight: &BoundedRay, least: f64) -> Option<PixelInteraction<'a>> {
+    pub(super) fn element(&self, triangle: u32, bounded: &BoundedRay, least: f64) -> Option<PixelInteraction<'a>> {
         let prepared = self.appearance.prepared;
-        let length = sight.ray.direction.length();
-        let towards = sight.ray.direction * length.recip();
-        let hit = plane_hit(&sight.ray, prepared.corners(triangle), triangle, least)?;
-        let mut element = SurfaceElement::new(prepared, triangle, &sight.ray, &hit, self.appearance.curved)?;
+        let length = bounded.ray.direction.length();
+        let towards = bounded.ray.direction * length.recip();
+        let hit = plane_hit(&bounded.ray, prepared.corners(triangle), triangle, least)?;
+        let mut element = SurfaceElement::new(prepared, triangle, &bounded.ray, &hit, self.appearance.curved)?;
         let (object, material) = (prepared.object_of[triangle as usize], prepared.material_number(triangle));
-        let optics = self.appearance.bsdf(object, material);
+        let bsdf = self.appearance.bsdf(object, material);
         let distance = hit.t * length;
         let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
         let mut sides = Default::default();
-        if optics.is_textured() {
-            sides = footprint(element.face, towards, sight.cone.at(distance));
+        if bsdf.is_textured() {
+            sides = footprint(element.face, towards, bounded.cone.at(distance));
             let place = prepared.texture_place(triangle, weights, sides);
-            element.tilt(-towards, |normal| optics.tilted(&place, normal));
+            element.tilt(-towards, |normal| bsdf.tilted(&place, normal));
         }
         let normal = element.normal;
-        let frame = optics.along.map_or_else(|| ShadingFrame::from_normal(normal), |along| ShadingFrame::brushed(normal, along));
+        let frame = bsdf.brushed_along.map_or_else(|| ShadingFrame::from_normal(normal), |along| ShadingFrame::brushed(normal, along));
         let curved = self.is_curved(triangle);
-        let is_flat = !curved && !optics.is_textured();
+        let is_flat = !curved && !bsdf.is_textured();
         let seen = [object, material];
-        Some(PixelInteraction { element, curved, is_flat, frame, optics, distance, seen, towards, triangle, weights, sides })
+        Some(PixelInteraction { element, curved, is_flat, frame, bsdf, distance, ids: seen, towards, triangle, weights, sides })
     }
 }
 

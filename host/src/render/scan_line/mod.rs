@@ -70,7 +70,7 @@ pub struct ScanLine<'a> {
     /// For each triangle of the scene, whether light goes straight through; empty if there is none such.
     passable: Vec<bool>,
     /// What each group of casters lets through, comb by comb; the first is opaque.
-    passing: Vec<Vec<Channels>>,
+    group_transmittance: Vec<Vec<Channels>>,
     lamps: Vec<LampPoint>,
     /// None without a sky, and where a solution is shown.
     sky_light: Option<SkyLight>,
@@ -97,7 +97,7 @@ struct PictureWork<'a> {
 struct BandScratch<'a> {
     strip: Strip,
     counts: Vec<Vec<i32>>,
-    desk: PixelScratch<'a>,
+    pixel: PixelScratch<'a>,
 }
 
 impl<'a> ScanLine<'a> {
@@ -132,7 +132,7 @@ impl<'a> ScanLine<'a> {
             }
         }
         let sky_light = if solution.is_none() { SkyLight::new(&appearance) } else { None };
-        ScanLine { plan, appearance, casters, triangles, passable, passing, lamps, sky_light, solution }
+        ScanLine { plan, appearance, casters, triangles, passable, group_transmittance: passing, lamps, sky_light, solution }
     }
 
     /// The shadow volumes of a lamp.
@@ -140,14 +140,14 @@ impl<'a> ScanLine<'a> {
         if !self.plan.needs(Stage::Shadows) {
             return Vec::new();
         }
-        let groups = self.passing.len();
+        let groups = self.group_transmittance.len();
         let shadow = |lamp: &LampPoint| Shadow::new(&self.casters, lamp.position, picture, bands, groups);
         self.lamps.par_iter().map(shadow).collect()
     }
 
     /// For each lamp, whether points are in its shadow; none where no surface is curved.
     fn enclosed<'s>(&'s self, shadows: &'s [Shadow]) -> Vec<Option<ShadowVolumes<'s>>> {
-        let groups = self.passing.len();
+        let groups = self.group_transmittance.len();
         let of = |Shadow { light, facing, silhouettes, .. }: &'s Shadow| {
             let new = || ShadowVolumes::new(&self.casters, *light, facing, silhouettes, groups).sorted();
             self.appearance.curved.then(new)
@@ -166,7 +166,7 @@ impl<'a> ScanLine<'a> {
         let (has_surfaces, has_sky) = (sources().any(LightSource::is_surface), sources().any(LightSource::is_infinite));
         let wavelengths = &self.appearance.wavelengths;
         let background = || {
-            let seen = |comb| wavelengths.to_srgb(comb, self.appearance.escaped_radiance(&AHEAD, None, comb, |_, _| 1.0));
+            let seen = |wavelength_set| wavelengths.to_srgb(wavelength_set, self.appearance.escaped_radiance(&AHEAD, None, wavelength_set, |_, _| 1.0));
             (0..wavelengths.count()).map(seen).sum::<DVec3>() / wavelengths.count() as f64
         };
         Shader {
@@ -176,9 +176,9 @@ impl<'a> ScanLine<'a> {
             sky_light: self.sky_light.as_ref(),
             solution: self.solution.as_deref(),
             enclosed,
-            passing: &self.passing,
+            group_transmittance: &self.group_transmittance,
             eye,
-            is_plain: wavelengths.count() == 1 && !has_surfaces && self.passing.len() == 1,
+            is_plain: wavelengths.count() == 1 && !has_surfaces && self.group_transmittance.len() == 1,
             matte,
             has_surfaces,
             has_sky,
@@ -256,8 +256,8 @@ impl<'a> PictureWork<'a> {
         let first = band * self.rows * samples;
         let last = first + tallies.len() / self.width * samples;
         let mut drawn = SpanCounts::default();
-        let BandScratch { strip, counts, desk } = tools;
-        desk.clear();
+        let BandScratch { strip, counts, pixel: scratch } = tools;
+        scratch.clear();
         tallies.fill(Tally::default());
         counts.resize_with(self.shadows.len(), Vec::new);
         for begin in (first..last).step_by(MOST_LINES) {
@@ -279,7 +279,7 @@ impl<'a> PictureWork<'a> {
                 for (column, tally) in tallies.iter_mut().enumerate() {
                     let first = (from - range.start) * self.width + column;
                     let pixel = StripPixel { at: [column, row], first, stride: self.width, places, mean, part };
-                    self.shader.shade(&pixel, strip, counts, desk, tally);
+                    self.shader.shade(&pixel, strip, counts, scratch, tally);
                 }
             }
         }
@@ -306,9 +306,9 @@ fn passable_triangles(appearance: &Appearance<'_>, groups: &[u8]) -> Vec<bool> {
 /// A polished body lets through what its two surfaces do at right angles, less what is absorbed on its mean chord.
 fn groups(appearance: &Appearance<'_>) -> (Vec<u8>, Vec<Vec<Channels>>) {
     let prepared = appearance.prepared;
-    let combs = 0..appearance.wavelengths.count();
-    let mut passing: Vec<Vec<Channels>> = vec![combs.clone().map(|_| Channels::ZERO).collect()];
-    if !(appearance.passing || appearance.clears) {
+    let sets = 0..appearance.wavelengths.count();
+    let mut passing: Vec<Vec<Channels>> = vec![sets.clone().map(|_| Channels::ZERO).collect()];
+    if !(appearance.has_passable || appearance.has_clear_shadows) {
         return (Vec::new(), passing);
     }
     let mut groups = vec![0; prepared.triangles.len()];
@@ -317,18 +317,18 @@ fn groups(appearance: &Appearance<'_>) -> (Vec<u8>, Vec<Vec<Channels>>) {
         let key = (prepared.object_of[triangle as usize], prepared.material_number(triangle));
         let group = known.iter().rev().find(|(other, _)| *other == key).map(|(_, group)| *group);
         groups[triangle as usize] = group.unwrap_or_else(|| {
-            let optics = appearance.bsdf(key.0, key.1);
+            let bsdf = appearance.bsdf(key.0, key.1);
             let place = || prepared.texture_place(triangle, [1.0 / 3.0; 3], Default::default());
-            let body = optics.interior.as_ref().filter(|_| appearance.clears && optics.is_clear());
+            let body = bsdf.interior.as_ref().filter(|_| appearance.has_clear_shadows && bsdf.is_clear());
             let chord = body.map(|_| mean_chord(prepared, key.0));
-            let passes = |comb: usize| match body.zip(chord) {
+            let passes = |wavelength_set: usize| match body.zip(chord) {
                 Some((interior, chord)) => {
-                    let surface = optics.clear_transmittance(comb, 1.0, place);
-                    surface * surface * interior.absorption.of(comb).map(|absorption| (-absorption * chord).exp())
+                    let surface = bsdf.clear_transmittance(wavelength_set, 1.0, place);
+                    surface * surface * interior.absorption.of(wavelength_set).map(|absorption| (-absorption * chord).exp())
                 }
-                None => optics.straight_transmittance(comb, 1.0, place),
+                None => bsdf.straight_transmittance(wavelength_set, 1.0, place),
             };
-            let passes: Vec<Channels> = combs.clone().map(passes).collect();
+            let passes: Vec<Channels> = sets.clone().map(passes).collect();
             let is_opaque = passes.iter().all(|part| part.max() <= 0.0);
             let same = passing.iter().skip(1).position(|other| *other == passes);
             let group = match same {
@@ -406,6 +406,6 @@ impl Renderer for ScanLine<'_> {
         let (spans, complete) =
             pool.install(|| self.draw((&mut film, &mut picture), (view, order), &stopped, watch))?;
         let (seconds, threads) = (start.elapsed().as_secs_f64(), pool.current_num_threads());
-        Ok(Rendering { picture, film, complete, rays: RayCounts::default(), spans, balance: None, seconds, threads })
+        Ok(Rendering { picture, film, complete, rays: RayCounts::default(), spans, flux_balance: None, seconds, threads })
     }
 }

@@ -16,7 +16,7 @@ use glam::DVec3;
 pub(super) struct LampContribution {
     pub(super) lamp: usize,
     /// At the wavelengths that are looked at.
-    pub(super) adds: Channels,
+    pub(super) radiance: Channels,
     /// What to add to the count of the surface's own group: its light arrives on the other side.
     pub(super) turned: i32,
     /// In how many opaque volumes it is, where that is not left to the samples.
@@ -31,7 +31,7 @@ pub(super) struct SampleSight {
     /// The first sample of the pixel that gets the same light.
     pub(super) like: usize,
     /// How many of its parts are before a light that is no object, if it sees one.
-    pub(super) glow: Option<usize>,
+    pub(super) before_light: Option<usize>,
     /// What it gets, summed over the combs of wavelengths, if it is not like another.
     pub(super) light: DVec3,
 }
@@ -48,7 +48,7 @@ pub(super) struct Shader<'a> {
     /// For each lamp with shadows.
     pub(super) enclosed: &'a [Option<ShadowVolumes<'a>>],
     /// What each group of casters lets through, comb by comb.
-    pub(super) passing: &'a [Vec<Channels>],
+    pub(super) group_transmittance: &'a [Vec<Channels>],
     pub(super) eye: &'a CameraRays,
     /// Whether every sample sees bands of light through nothing passable, and no light that is a surface.
     pub(super) is_plain: bool,
@@ -68,10 +68,10 @@ pub(super) struct PixelScratch<'a> {
     pub(super) surfaces: Vec<PixelSurface>,
     pub(super) parts: Vec<SampleFragment>,
     /// Elements of the surfaces, and what their patterns are mixed of.
-    pub(super) founds: Vec<PixelInteraction<'a>>,
+    pub(super) interactions: Vec<PixelInteraction<'a>>,
     pub(super) mixtures: Vec<Option<TextureMixture<'a>>>,
     /// What lamps add, surface by surface.
-    pub(super) lit: Vec<LampContribution>,
+    pub(super) contributions: Vec<LampContribution>,
     /// For each sample of the pixel.
     pub(super) samples: Vec<SampleSight>,
     /// The last element: its neighbours may differ in their place only.

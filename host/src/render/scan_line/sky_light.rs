@@ -30,28 +30,28 @@ impl SkyLight {
         let skies: Vec<&LightSource> =
             appearance.sources.iter().map(|(_, source)| source).filter(|source| source.is_sky()).collect();
         let sequence = SobolSequence::new(0, 0);
-        let of_comb = |comb: usize| {
+        let of_comb = |wavelength_set: usize| {
             let mut sums = [Channels::ZERO; 9];
             for sky in &skies {
                 for index in 0..DIRECTIONS {
-                    let Some(beam) = sky.sample_incident(DVec3::ZERO, None, sequence.point(index, 0), comb) else { continue };
-                    let harmonics = harmonics(beam.towards);
+                    let Some(light_sample) = sky.sample_incident(DVec3::ZERO, None, sequence.point(index, 0), wavelength_set) else { continue };
+                    let harmonics = harmonics(light_sample.towards);
                     for ((sum, harmonic), kept) in sums.iter_mut().zip(harmonics).zip(COSINE_KERNEL) {
-                        *sum += beam.irradiance * (harmonic * kept / f64::from(DIRECTIONS));
+                        *sum += light_sample.irradiance * (harmonic * kept / f64::from(DIRECTIONS));
                     }
                 }
             }
             sums
         };
-        let combs = 0..appearance.wavelengths.count();
-        (!skies.is_empty()).then(|| SkyLight { coefficients: combs.map(of_comb).collect() })
+        let sets = 0..appearance.wavelengths.count();
+        (!skies.is_empty()).then(|| SkyLight { coefficients: sets.map(of_comb).collect() })
     }
 
     /// The radiance of an even sky that lights a surface as much as the skies of the scene do: E(n)/π.
     ///
     /// - `normal`: unit length.
-    pub(super) fn radiance(&self, normal: DVec3, comb: usize) -> Channels {
-        let terms = self.coefficients[comb].iter().zip(harmonics(normal));
+    pub(super) fn radiance(&self, normal: DVec3, wavelength_set: usize) -> Channels {
+        let terms = self.coefficients[wavelength_set].iter().zip(harmonics(normal));
         let sum = terms.fold(Channels::ZERO, |sum, (coefficient, harmonic)| sum + *coefficient * harmonic);
         // Nine terms swing below 0 opposite to a small bright place.
         sum.map(|value| value.max(0.0))

@@ -69,7 +69,7 @@ pub(super) struct PixelSurface {
     pub(super) near: f64,
     pub(super) curved: bool,
     /// Its object and material.
-    pub(super) seen: [u32; 2],
+    pub(super) ids: [u32; 2],
     /// How many samples see it, the sum of their places in pixels, and whether all see the same triangle.
     pub(super) count: u32,
     pub(super) sum: [f64; 2],
@@ -77,20 +77,20 @@ pub(super) struct PixelSurface {
     /// Sums of their nearness and depth.
     pub(super) nearness: [f64; 2],
     /// Which of the elements that were found is its own.
-    pub(super) found: Option<usize>,
+    pub(super) interaction: Option<usize>,
     /// At the wavelengths that are looked at, what it sends to the eye without lights, and the part of light that goes straight
     /// through.
-    pub(super) own: Channels,
-    pub(super) passed: Channels,
+    pub(super) unlit_radiance: Channels,
+    pub(super) transmittance: Channels,
     /// Which of the lights that were found are its own.
-    pub(super) lit: Range<usize>,
+    pub(super) contributions: Range<usize>,
 }
 
 impl PixelSurface {
     /// Whether two triangles are lit as one.
     pub(super) fn goes_on_in(&self, other: &PixelSurface) -> bool {
         self.curved == other.curved
-            && self.seen == other.seen
+            && self.ids == other.ids
             && (self.near - other.near).abs() <= BESIDE * self.near.abs()
             && self.face.dot(other.face) > if self.curved { SMOOTH } else { FLAT }
     }
@@ -118,10 +118,10 @@ pub(super) struct PixelInteraction<'a> {
     pub(super) is_flat: bool,
     /// About its normal.
     pub(super) frame: ShadingFrame,
-    pub(super) optics: &'a Bsdf,
+    pub(super) bsdf: &'a Bsdf,
     pub(super) distance: f64,
     /// Object and material.
-    pub(super) seen: [u32; 2],
+    pub(super) ids: [u32; 2],
     pub(super) towards: DVec3,
     pub(super) triangle: u32,
     pub(super) weights: [f64; 3],

@@ -64,7 +64,7 @@ pub(super) fn lines_of(corners: &[ScreenPoint]) -> [f64; 2] {
 pub(super) struct ScreenTriangles<'a> {
     prepared: &'a Prepared,
     points: Vec<ScreenPoint>,
-    facets: Vec<ScreenTriangle>,
+    triangles: Vec<ScreenTriangle>,
     outlines: Vec<ClippedPolygon>,
     bands: BandLists,
     /// For each triangle of the scene, whether light goes straight through it; empty if none is so.
@@ -90,7 +90,7 @@ pub(super) struct Strip {
     /// For each sample, line by line, the nearness of its opaque surface, minus infinity if there is none.
     pub(super) near: Vec<f64>,
     /// Its triangle.
-    pub(super) seen: Vec<u32>,
+    pub(super) triangles: Vec<u32>,
     /// For each tile of columns, the least nearness of what its samples see, infinite where there is nothing.
     farthest: Vec<f64>,
     /// Passable surfaces, sample by sample from the nearest.
@@ -143,7 +143,7 @@ impl<'a> ScreenTriangles<'a> {
             facets.push(ScreenTriangle { triangle, outline });
         }
         let bands = BandLists::new(&ranges, lines, bands);
-        ScreenTriangles { prepared, points, facets, outlines, bands, passable }
+        ScreenTriangles { prepared, points, triangles: facets, outlines, bands, passable }
     }
 
     /// Where a vertex is in the picture; worth nothing for one that is cut off.
@@ -154,7 +154,7 @@ impl<'a> ScreenTriangles<'a> {
     /// Gives the facets of a band that are passable or not.
     fn each(&self, band: usize, passable: bool, mut give: impl FnMut(u32, &[ScreenPoint])) {
         for &number in self.bands.of(band) {
-            let ScreenTriangle { triangle, outline } = self.facets[number as usize];
+            let ScreenTriangle { triangle, outline } = self.triangles[number as usize];
             if self.passable.get(triangle as usize).copied().unwrap_or(false) != passable {
                 continue;
             }
@@ -168,7 +168,7 @@ impl<'a> ScreenTriangles<'a> {
     /// Finds what the samples of some lines of a band see.
     pub(super) fn rasterize(&self, band: usize, lines: &SampleLines, strip: &mut Strip) {
         let samples = lines.range.len() * lines.width;
-        let Strip { near, seen, farthest, layers, begins, spans } = strip;
+        let Strip { near, triangles: seen, farthest, layers, begins, spans } = strip;
         near.clear();
         near.resize(samples, f64::NEG_INFINITY);
         seen.clear();

@@ -65,15 +65,15 @@ impl Tiling {
     /// Ours; that colours at corners are mixed between them: Gouraud 1971, Cohen and Greenberg 1985.
     pub fn new(solution: &Radiosity, prepared: &Prepared, plan: &Plan, most: usize) -> Result<Tiling, RenderError> {
         let appearance = Appearance::new(prepared, plan)?;
-        let looks = TileShading { solution, appearance: &appearance };
+        let shading = TileShading { solution, appearance: &appearance };
         let shown = |triangle: &u32| {
             let object = prepared.object_of[*triangle as usize];
-            let optics = appearance.bsdf(object, prepared.material_number(*triangle));
+            let bsdf = appearance.bsdf(object, prepared.material_number(*triangle));
             let [a, b, c] = prepared.corners(*triangle);
-            plan.includes_object(object as usize) && !optics.is_passable() && (b - a).cross(c - a) != DVec3::ZERO
+            plan.includes_object(object as usize) && !bsdf.is_passable() && (b - a).cross(c - a) != DVec3::ZERO
         };
         let triangles: Vec<u32> = (0..prepared.triangles.len() as u32).filter(shown).collect();
-        let trees: Vec<TileNode> = triangles.par_iter().map(|triangle| looks.tree(*triangle)).collect();
+        let trees: Vec<TileNode> = triangles.par_iter().map(|triangle| shading.tree(*triangle)).collect();
         let lamps = lamps(prepared, plan, &appearance);
         let mut tiling = Tiling { elements: trees.iter().map(TileNode::leaves).sum(), ..Tiling::default() };
         let mut tolerance = TOLERANCE;
@@ -88,8 +88,8 @@ impl Tiling {
             }
             let tiles =
                 triangles.par_iter().zip(pieces).zip(outlines).flat_map_iter(|((triangle, pieces), outlines)| {
-                    let looks = &looks;
-                    let tile = move |(piece, outline): (TrianglePiece, Vec<TileCorner>)| looks.tile(*triangle, &piece, &outline);
+                    let shading = &shading;
+                    let tile = move |(piece, outline): (TrianglePiece, Vec<TileCorner>)| shading.tile(*triangle, &piece, &outline);
                     pieces.into_iter().zip(outlines).filter(|(_, outline)| outline.len() > 2).map(tile)
                 });
             tiling.tiles = tiles.collect();
@@ -190,9 +190,9 @@ fn lamps(prepared: &Prepared, plan: &Plan, appearance: &Appearance<'_>) -> Vec<C
             return Vec::new();
         }
         let strength = wavelengths.light(radiance);
-        let combs = wavelengths.count();
-        let seen: DVec3 = (0..combs).map(|comb| wavelengths.to_srgb(comb, strength.of(comb))).sum();
-        let color = [srgb::encoded(seen / combs as f64), DVec3::ZERO];
+        let sets = wavelengths.count();
+        let seen: DVec3 = (0..sets).map(|wavelength_set| wavelengths.to_srgb(wavelength_set, strength.of(wavelength_set))).sum();
+        let color = [srgb::encoded(seen / sets as f64), DVec3::ZERO];
         let tile = |corners: Vec<DVec3>| ColorTile { colors: vec![color; corners.len()], corners };
         patch.polygons(LAMP_SIDES).into_iter().map(tile).collect()
     };

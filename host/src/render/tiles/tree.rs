@@ -155,20 +155,20 @@ impl TileShading<'_> {
     /// The colours of a place of a triangle, as a display gets them.
     fn colors(&self, triangle: u32, weights: [f64; 3]) -> Colors {
         let Appearance { prepared, wavelengths, .. } = self.appearance;
-        let optics = self.appearance.bsdf(prepared.object_of[triangle as usize], prepared.material_number(triangle));
-        let mixture = optics.is_textured().then(|| optics.texture_mixture(&prepared.texture_place(triangle, weights, Default::default())));
+        let bsdf = self.appearance.bsdf(prepared.object_of[triangle as usize], prepared.material_number(triangle));
+        let mixture = bsdf.is_textured().then(|| bsdf.texture_mixture(&prepared.texture_place(triangle, weights, Default::default())));
         let irradiance = [true, false].map(|outside| self.solution.irradiance(triangle, outside, weights, IrradiancePart::All));
         let mut seen = [DVec3::ZERO; 2];
-        let combs = wavelengths.count();
-        for comb in 0..combs {
-            let own = optics.emission.as_ref().map_or(Channels::ZERO, |emission| emission.of(comb));
-            let painting = mixture.as_ref().map(|mixture| mixture.at(comb));
-            let reflectance = diffuse_albedo(optics, comb, painting.as_ref().map_or(&[], |painting| painting.as_slice()));
+        let sets = wavelengths.count();
+        for wavelength_set in 0..sets {
+            let own = bsdf.emission.as_ref().map_or(Channels::ZERO, |emission| emission.of(wavelength_set));
+            let texture_values = mixture.as_ref().map(|mixture| mixture.at(wavelength_set));
+            let reflectance = diffuse_albedo(bsdf, wavelength_set, texture_values.as_ref().map_or(&[], |painting| painting.as_slice()));
             for (seen, irradiance) in seen.iter_mut().zip(irradiance) {
-                *seen += wavelengths.to_srgb(comb, own + reflectance * irradiance * FRAC_1_PI);
+                *seen += wavelengths.to_srgb(wavelength_set, own + reflectance * irradiance * FRAC_1_PI);
             }
         }
-        seen.map(|seen| srgb::encoded(seen / combs as f64).as_vec3())
+        seen.map(|seen| srgb::encoded(seen / sets as f64).as_vec3())
     }
 }
 

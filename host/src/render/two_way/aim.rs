@@ -172,21 +172,21 @@ impl ProjectionMap {
     }
 
     fn of(wanted: &[bool]) -> ProjectionMap {
-        let mut guide = ProjectionMap { rows: Vec::with_capacity(ProjectionMap::SIDE), columns: Vec::with_capacity(wanted.len()) };
+        let mut map = ProjectionMap { rows: Vec::with_capacity(ProjectionMap::SIDE), columns: Vec::with_capacity(wanted.len()) };
         let mut all = 0.0;
         for row in wanted.chunks(ProjectionMap::SIDE) {
             let mut below = 0.0;
-            let first = guide.columns.len();
+            let first = map.columns.len();
             for wanted in row {
                 below += if *wanted { 1.0 } else { ProjectionMap::UNWANTED };
-                guide.columns.push(below);
+                map.columns.push(below);
             }
-            guide.columns[first..].iter_mut().for_each(|part| *part /= below);
+            map.columns[first..].iter_mut().for_each(|part| *part /= below);
             all += below;
-            guide.rows.push(all);
+            map.rows.push(all);
         }
-        guide.rows.iter_mut().for_each(|part| *part /= all);
-        guide
+        map.rows.iter_mut().for_each(|part| *part /= all);
+        map
     }
 
     /// A point of the square, more often where it is wanted.
@@ -230,13 +230,13 @@ pub(super) fn bounding_spheres(prepared: &Prepared, is_meant: impl Fn(u32) -> bo
         let halves = halves(prepared, parts.swap_remove(worst).triangles);
         parts.extend(halves.map(|triangles| Part::new(prepared, triangles)));
     }
-    parts.into_iter().map(|part| part.ball).filter(|ball| ball.radius > 0.0 && ball.radius.is_finite()).collect()
+    parts.into_iter().map(|part| part.ball).filter(|sphere| sphere.radius > 0.0 && sphere.radius.is_finite()).collect()
 }
 
 /// The ball around all triangles that a test chooses; none if there are none.
 pub(super) fn bounding_sphere(prepared: &Prepared, is_meant: impl Fn(u32) -> bool) -> Option<BoundingSphere> {
     let meant: Vec<u32> = (0..prepared.triangles.len() as u32).filter(|triangle| is_meant(*triangle)).collect();
-    (!meant.is_empty()).then(|| Part::new(prepared, meant).ball).filter(|ball| ball.radius > 0.0)
+    (!meant.is_empty()).then(|| Part::new(prepared, meant).ball).filter(|sphere| sphere.radius > 0.0)
 }
 
 /// Some triangles in a ball.
@@ -292,40 +292,40 @@ mod tests {
 
     #[test]
     fn directions_and_lines_to_a_ball_are_even_and_all_of_them() {
-        let ball = BoundingSphere { center: DVec3::new(1.0, 2.0, 3.0), radius: 0.5 };
+        let sphere = BoundingSphere { center: DVec3::new(1.0, 2.0, 3.0), radius: 0.5 };
         let sequence = SobolSequence::new(2, 2);
         let from = DVec3::new(-1.0, 0.5, 2.0);
-        let axis = (ball.center - from).normalize();
-        let mean: DVec3 = (0..4096).map(|i| ball.direction(from, sequence.point(i, 0))).sum::<DVec3>() / 4096.0;
-        let cosine = (1.0 - (0.5 / ball.center.distance(from)).powi(2)).sqrt();
+        let axis = (sphere.center - from).normalize();
+        let mean: DVec3 = (0..4096).map(|i| sphere.direction(from, sequence.point(i, 0))).sum::<DVec3>() / 4096.0;
+        let cosine = (1.0 - (0.5 / sphere.center.distance(from)).powi(2)).sqrt();
         assert!((mean - axis * (0.5 * (1.0 + cosine))).length() < 1e-4);
         let solid_angle = TAU * (1.0 - cosine);
         for i in 0..4096 {
-            let direction = ball.direction(from, sequence.point(i, 1));
+            let direction = sphere.direction(from, sequence.point(i, 1));
             assert!((direction.length() - 1.0).abs() < 1e-12);
-            let (density, place) = ball.pdf(from, direction).expect("towards the ball");
-            assert!((density * solid_angle - 1.0).abs() < 1e-9);
-            assert!((ball.direction(from, place) - direction).length() < 1e-9);
-            let on = ball.line(direction, sequence.point(i, 2));
-            let (density, place) = ball.line_pdf(direction, on).expect("through the ball");
-            assert!((density * PI * 0.25 - 1.0).abs() < 1e-12);
-            assert!((ball.line(direction, place) - on).length() < 1e-9);
-            let (density, place) = ball.pdf(ball.center, direction).expect("from inside");
-            assert!(density == 0.5 / TAU && (ball.direction(ball.center, place) - direction).length() < 1e-9);
+            let (pdf, place) = sphere.pdf(from, direction).expect("towards the ball");
+            assert!((pdf * solid_angle - 1.0).abs() < 1e-9);
+            assert!((sphere.direction(from, place) - direction).length() < 1e-9);
+            let on = sphere.line(direction, sequence.point(i, 2));
+            let (pdf, place) = sphere.line_pdf(direction, on).expect("through the ball");
+            assert!((pdf * PI * 0.25 - 1.0).abs() < 1e-12);
+            assert!((sphere.line(direction, place) - on).length() < 1e-9);
+            let (pdf, place) = sphere.pdf(sphere.center, direction).expect("from inside");
+            assert!(pdf == 0.5 / TAU && (sphere.direction(sphere.center, place) - direction).length() < 1e-9);
         }
-        assert_eq!(ball.pdf(from, -axis), None);
-        assert_eq!(ball.line_pdf(DVec3::Z, ball.center + DVec3::X), None);
+        assert_eq!(sphere.pdf(from, -axis), None);
+        assert_eq!(sphere.line_pdf(DVec3::Z, sphere.center + DVec3::X), None);
     }
 
     #[test]
     fn a_projection_map_samples_what_is_wanted_and_knows_how_often() {
-        let guide = ProjectionMap::around(&[[0.1, 0.2], [0.11, 0.99], [0.0, 0.0]]);
+        let map = ProjectionMap::around(&[[0.1, 0.2], [0.11, 0.99], [0.0, 0.0]]);
         let sequence = SobolSequence::new(3, 3);
         let count = 1 << 14;
         // The mean of what is drawn over its density is the integral over the square.
-        let drawn = || (0..count).map(|i| guide.sample(sequence.point(i, 0)));
+        let drawn = || (0..count).map(|i| map.sample(sequence.point(i, 0)));
         let mean = |of: &dyn Fn([f64; 2]) -> f64| {
-            drawn().map(|place| of(place) / guide.pdf(place)).sum::<f64>() / f64::from(count)
+            drawn().map(|place| of(place) / map.pdf(place)).sum::<f64>() / f64::from(count)
         };
         assert!((mean(&|_| 1.0) - 1.0).abs() < 2e-2 && (mean(&|[x, y]| x + 2.0 * y) - 1.5).abs() < 3e-2);
         let wanted = drawn().filter(|[x, y]| *x < 0.16 && (*y < 0.06 || (0.15..0.26).contains(y) || *y > 0.93)).count();

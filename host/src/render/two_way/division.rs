@@ -24,23 +24,23 @@ const NARROW: f64 = 0.9;
 /// What a few ways from a lamp to a ball brought.
 struct PilotResult {
     /// Flux, W.
-    caught: f64,
+    stored: f64,
     /// The root mean square of what a way adds to it. With ways in proportion to this, chance shows least in all together.
     ///
     /// # Source
     /// Neyman 1934, optimal allocation.
     deviation: f64,
     /// Where they have to be sent.
-    guide: ProjectionMap,
+    map: ProjectionMap,
 }
 
 impl PhotonMapper<'_> {
     /// How many ways from each of so many lamps, and to each of so many balls, are followed first.
-    pub(super) fn pilot_paths(photons: u32, lamps: usize, balls: usize) -> u32 {
+    pub(super) fn pilot_paths(photons: u32, lamps: usize, spheres: usize) -> u32 {
         let pilot = (photons / 8).clamp(*PILOT.start(), *PILOT.end());
         // A lamp more or less seldom matters to the others.
         let each = pilot >> lamps.next_power_of_two().trailing_zeros().min(31);
-        (each / balls as u32).max(LEAST_PILOT)
+        (each / spheres as u32).max(LEAST_PILOT)
     }
 
     /// Divides the ways among lamps and balls, as a few of them are of use.
@@ -49,27 +49,27 @@ impl PhotonMapper<'_> {
     ///   nothing does.
     pub(super) fn allocate_paths(&mut self, world: &World<'_>, lamps: &[usize], everything: Option<BoundingSphere>) {
         let photons = world.appearance.prepared.settings.photons.count;
-        let wide = everything.map(|ball| {
-            self.balls.push(ball);
-            self.balls.len() - 1
+        let wide = everything.map(|sphere| {
+            self.spheres.push(sphere);
+            self.spheres.len() - 1
         });
-        let all = self.balls.len();
+        let all = self.spheres.len();
         for lamp in lamps {
-            let mut balls: Vec<usize> = (0..all).collect();
+            let mut spheres: Vec<usize> = (0..all).collect();
             // In the cone of a spot, however thin it is.
             let cone = world.appearance.sources[*lamp].1.cone().filter(|(.., cosine)| *cosine > NARROW);
             if let Some((at, axis, cosine)) = cone {
                 let far = world.appearance.prepared.bounds.diagonal();
-                balls.push(self.balls.len());
-                self.balls.push(BoundingSphere::in_cone(at, axis * far, cosine));
+                spheres.push(self.spheres.len());
+                self.spheres.push(BoundingSphere::in_cone(at, axis * far, cosine));
             }
-            let (part, count) = (1.0 / balls.len() as f64, PhotonMapper::pilot_paths(photons, lamps.len(), balls.len()));
-            let aims = balls.into_iter().map(|ball| PhotonTarget { ball, part, count, guide: ProjectionMap::even() }).collect();
-            self.lamps.push(PhotonSource { source: *lamp, aims, caught: None, name: None });
+            let (part, count) = (1.0 / spheres.len() as f64, PhotonMapper::pilot_paths(photons, lamps.len(), spheres.len()));
+            let targets = spheres.into_iter().map(|sphere| PhotonTarget { sphere, part, count, map: ProjectionMap::even() }).collect();
+            self.lamps.push(PhotonSource { source: *lamp, targets, stored_flux: None, name: None });
         }
         let chunks =
-            (0..self.lamps.len()).flat_map(|lamp| (0..self.lamps[lamp].aims.len()).map(move |aim| (lamp, aim)));
-        let chunks: Vec<PathBatch> = chunks.map(|(lamp, aim)| PathBatch { lamp, aim, number: 0 }).collect();
+            (0..self.lamps.len()).flat_map(|lamp| (0..self.lamps[lamp].targets.len()).map(move |target| (lamp, target)));
+        let chunks: Vec<PathBatch> = chunks.map(|(lamp, target)| PathBatch { lamp, aim: target, number: 0 }).collect();
         let found: Vec<PilotResult> = chunks.par_iter().map(|chunk| self.trace_pilot(world, chunk, wide)).collect();
         let all: f64 = found.iter().map(|explored| explored.deviation).sum();
         if all <= 0.0 {
@@ -79,42 +79,42 @@ impl PhotonMapper<'_> {
         let mut found = found.into_iter();
         let mut shares: Vec<f64> = Vec::with_capacity(self.lamps.len());
         for lamp in &mut self.lamps {
-            let found: Vec<PilotResult> = found.by_ref().take(lamp.aims.len()).collect();
+            let found: Vec<PilotResult> = found.by_ref().take(lamp.targets.len()).collect();
             let deviation: f64 = found.iter().map(|explored| explored.deviation).sum();
-            lamp.caught = Some(found.iter().map(|explored| explored.caught).sum()).filter(|caught| *caught > 0.0);
+            lamp.stored_flux = Some(found.iter().map(|explored| explored.stored).sum()).filter(|flux| *flux > 0.0);
             let least = LEAST_PART / found.len() as f64;
             let part = |explored: &PilotResult| (explored.deviation / deviation.max(f64::MIN_POSITIVE)).max(least);
             let sum: f64 = found.iter().map(part).sum();
-            for (aim, explored) in lamp.aims.iter_mut().zip(found) {
-                (aim.part, aim.guide) = (part(&explored) / sum, explored.guide);
+            for (target, explored) in lamp.targets.iter_mut().zip(found) {
+                (target.part, target.map) = (part(&explored) / sum, explored.map);
             }
             shares.push((deviation / all).max(LEAST_PART / lamps.len() as f64));
         }
         let sum: f64 = shares.iter().sum();
         for (lamp, share) in self.lamps.iter_mut().zip(shares) {
-            for aim in &mut lamp.aims {
-                aim.count = (aim.part * share / sum * f64::from(photons)).ceil() as u32;
+            for target in &mut lamp.targets {
+                target.count = (target.part * share / sum * f64::from(photons)).ceil() as u32;
             }
         }
     }
 
     /// Follows a few ways from a lamp to a ball: what they bring, and where they have to be sent.
     fn trace_pilot(&self, world: &World<'_>, chunk: &PathBatch, wide: Option<usize>) -> PilotResult {
-        let PhotonTarget { ball, count, part, .. } = self.lamps[chunk.lamp].aims[chunk.aim];
+        let PhotonTarget { sphere, count, part, .. } = self.lamps[chunk.lamp].targets[chunk.aim];
         let mut used = Vec::new();
         let (mut sum, mut squares) = (0.0, 0.0);
         for index in 0..count {
             let balance = self.trace_batch(world, PILOT_PASS, chunk, index..index + 1).balance;
             // What goes everywhere is of use everywhere: what little of it is found tells too little.
-            let is_of_use = if Some(ball) == wide { balance.sent > 0.0 } else { balance.caught > 0.0 };
+            let is_of_use = if Some(sphere) == wide { balance.sent > 0.0 } else { balance.stored > 0.0 };
             if is_of_use {
-                let choices = PhotonSampler::new(self.sequence(world, PILOT_PASS, chunk), index);
-                used.push(choices.point(PhotonDimension::Aim, 0));
+                let sampler = PhotonSampler::new(self.sequence(world, PILOT_PASS, chunk), index);
+                used.push(sampler.point(PhotonDimension::Aim, 0));
             }
-            sum += balance.caught;
-            squares += balance.caught * balance.caught;
+            sum += balance.stored;
+            squares += balance.stored * balance.stored;
         }
         let count = f64::from(count);
-        PilotResult { caught: part * sum / count, deviation: part * (squares / count).sqrt(), guide: ProjectionMap::around(&used) }
+        PilotResult { stored: part * sum / count, deviation: part * (squares / count).sqrt(), map: ProjectionMap::around(&used) }
     }
 }

@@ -37,9 +37,9 @@ pub(super) struct Photon {
     /// The side of a surface on which it arrived, as [`side_of`] numbers them.
     pub(super) side: u32,
     /// Which wavelengths it carries.
-    pub(super) comb: u8,
+    pub(super) wavelength_set: u8,
     /// Whether a broad turn was among those that it took.
-    pub(super) is_again: bool,
+    pub(super) had_broad: bool,
 }
 
 /// One side of a smooth surface.
@@ -53,19 +53,23 @@ pub(super) fn side_of(surface: u32, outside: bool) -> u32 {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct FluxBalance {
     /// Ways that were followed.
-    pub ways: u64,
+    #[serde(rename = "ways")]
+    pub paths: u64,
     /// How many of them were taken from a database.
-    pub before: u64,
+    #[serde(rename = "before")]
+    pub stored_paths: u64,
     /// Sent out towards what mirrors or refracts.
     pub sent: f64,
     /// Sent again by what spreads light.
-    pub again: f64,
+    #[serde(rename = "again")]
+    pub rescattered: f64,
     /// Gained, or lost where negative, by chance: where one of several ways was followed instead of all.
     pub gained: f64,
     /// Came to what spreads it without a mirror or glass on the way: light that goes straight.
     pub straight: f64,
     /// Caught on surfaces, behind mirrors and glass.
-    pub caught: f64,
+    #[serde(rename = "caught")]
+    pub stored: f64,
     /// Absorbed by mirrors, in glass, and by lamps.
     pub absorbed: f64,
     /// Left the scene.
@@ -77,20 +81,20 @@ pub struct FluxBalance {
 impl FluxBalance {
     /// What is missing on one side, as a part of all.
     pub fn residual(&self) -> f64 {
-        let arrived = self.straight + self.caught + self.absorbed + self.escaped + self.stopped;
-        (self.sent + self.again + self.gained - arrived).abs() / self.sent.max(f64::MIN_POSITIVE)
+        let arrived = self.straight + self.stored + self.absorbed + self.escaped + self.stopped;
+        (self.sent + self.rescattered + self.gained - arrived).abs() / self.sent.max(f64::MIN_POSITIVE)
     }
 
     /// The balance of ways with another flux.
     pub(super) fn scaled(&self, factor: f64) -> FluxBalance {
         FluxBalance {
-            ways: self.ways,
-            before: self.before,
+            paths: self.paths,
+            stored_paths: self.stored_paths,
             sent: self.sent * factor,
-            again: self.again * factor,
+            rescattered: self.rescattered * factor,
             gained: self.gained * factor,
             straight: self.straight * factor,
-            caught: self.caught * factor,
+            stored: self.stored * factor,
             absorbed: self.absorbed * factor,
             escaped: self.escaped * factor,
             stopped: self.stopped * factor,
@@ -101,18 +105,18 @@ impl FluxBalance {
 impl std::fmt::Display for FluxBalance {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let part = |watts: f64| 100.0 * watts / self.sent.max(f64::MIN_POSITIVE);
-        write!(f, "{} ways of light followed", self.ways)?;
-        if self.before > 0 {
-            write!(f, ", {} of them before", self.before)?;
+        write!(f, "{} ways of light followed", self.paths)?;
+        if self.stored_paths > 0 {
+            write!(f, ", {} of them before", self.stored_paths)?;
         }
         write!(
             f,
             ": {:.5} W sent, {:.2} % again by what spreads it ({:+.2} % by chance); caught \
              {:.2} %, absorbed {:.2} %, escaped {:.2} %, straight {:.2} %, stopped {:.2} %; {:.1e} of it is missing",
             self.sent,
-            part(self.again),
+            part(self.rescattered),
             part(self.gained),
-            part(self.caught),
+            part(self.stored),
             part(self.absorbed),
             part(self.escaped),
             part(self.straight),
@@ -127,13 +131,13 @@ impl std::ops::Add for FluxBalance {
 
     fn add(self, other: FluxBalance) -> FluxBalance {
         FluxBalance {
-            ways: self.ways + other.ways,
-            before: self.before + other.before,
+            paths: self.paths + other.paths,
+            stored_paths: self.stored_paths + other.stored_paths,
             sent: self.sent + other.sent,
-            again: self.again + other.again,
+            rescattered: self.rescattered + other.rescattered,
             gained: self.gained + other.gained,
             straight: self.straight + other.straight,
-            caught: self.caught + other.caught,
+            stored: self.stored + other.stored,
             absorbed: self.absorbed + other.absorbed,
             escaped: self.escaped + other.escaped,
             stopped: self.stopped + other.stopped,
@@ -174,8 +178,8 @@ impl PhotonSampler {
         PhotonSampler { sequence, index }
     }
 
-    pub(super) fn point(&self, purpose: PhotonDimension, turn: u32) -> [f64; 2] {
-        self.sequence.point(self.index, u64::from(turn) << 8 | purpose as u64)
+    pub(super) fn point(&self, purpose: PhotonDimension, number: u32) -> [f64; 2] {
+        self.sequence.point(self.index, u64::from(number) << 8 | purpose as u64)
     }
 }
 
@@ -184,7 +188,7 @@ impl PhotonSampler {
 pub(super) struct EmittedPhoton {
     pub(super) ray: Ray,
     pub(super) flux: Channels,
-    pub(super) comb: usize,
+    pub(super) wavelength_set: usize,
     pub(super) time: f64,
 }
 
@@ -193,15 +197,15 @@ pub(super) struct PhotonTracer<'a> {
     pub(super) world: &'a World<'a>,
     pub(super) surfaces: &'a SmoothSurfaces,
     /// Around what mirrors or refracts.
-    pub(super) balls: &'a [BoundingSphere],
+    pub(super) spheres: &'a [BoundingSphere],
     /// Most turns.
-    pub(super) turns: u32,
+    pub(super) most_bounces: u32,
     /// The flux of light as it is caught, in the mean, W: more than this is sent on in parts, and of less only some. None if
     /// it is not known yet.
-    pub(super) typical: Option<f64>,
+    pub(super) typical_flux: Option<f64>,
     /// Legs to be followed; none between ways.
     pub(super) waiting: Vec<PhotonSegment>,
-    pub(super) caught: Vec<Photon>,
+    pub(super) photons: Vec<Photon>,
     pub(super) balance: FluxBalance,
 }
 
@@ -215,11 +219,11 @@ pub(super) struct PhotonSegment {
     /// Tells its choices from those of others of the same way.
     number: u32,
     /// How many were before it, and how often a surface has sent it on other than straight.
-    legs: u32,
-    turns: u32,
+    segments: u32,
+    bounces: u32,
     /// Whether the last of them was narrow, and whether any was broad.
-    is_beam: bool,
-    is_again: bool,
+    was_narrow: bool,
+    had_broad: bool,
 }
 
 impl PhotonTracer<'_> {
@@ -229,51 +233,51 @@ impl PhotonTracer<'_> {
     }
 
     /// Follows light to its end.
-    pub(super) fn trace(&mut self, start: &EmittedPhoton, choices: &PhotonSampler) {
-        let EmittedPhoton { ray, flux, comb, time } = *start;
-        self.balance.ways += 1;
+    pub(super) fn trace(&mut self, start: &EmittedPhoton, sampler: &PhotonSampler) {
+        let EmittedPhoton { ray, flux, wavelength_set, time } = *start;
+        self.balance.paths += 1;
         self.balance.sent += self.watts(flux);
         let first = flux.max();
         let cone = RayCone { width: WIDTH * self.world.appearance.prepared.bounds.diagonal(), growth: 0.0 };
         let media = Media::default();
-        let leg = PhotonSegment {
+        let segment = PhotonSegment {
             ray,
             t_min: 0.0,
             flux,
             media,
             lane: None,
             number: 1,
-            legs: 0,
-            turns: 0,
-            is_beam: false,
-            is_again: false,
+            segments: 0,
+            bounces: 0,
+            was_narrow: false,
+            had_broad: false,
         };
-        self.waiting.push(leg);
-        while let Some(mut leg) = self.waiting.pop() {
-            self.russian_roulette(&mut leg, first, choices);
+        self.waiting.push(segment);
+        while let Some(mut segment) = self.waiting.pop() {
+            self.russian_roulette(&mut segment, first, sampler);
             // Straight through panes it goes on as it was; a limit keeps even endless stacks of them from hanging.
-            if leg.turns > self.turns || leg.legs > self.turns.saturating_mul(2) {
-                self.balance.stopped += self.watts(leg.flux);
+            if segment.bounces > self.most_bounces || segment.segments > self.most_bounces.saturating_mul(2) {
+                self.balance.stopped += self.watts(segment.flux);
                 continue;
             }
-            if leg.flux.max() <= 0.0 {
+            if segment.flux.max() <= 0.0 {
                 continue;
             }
-            let sight = BoundedRay { ray: leg.ray, t_min: leg.t_min, t_max: f64::INFINITY, cone };
-            match self.world.intersect(&sight, comb, time) {
-                RayHit::Nothing => self.balance.escaped += self.watts(leg.flux),
-                RayHit::Light(..) => self.balance.absorbed += self.watts(leg.flux),
-                RayHit::Surface(found) => {
-                    let length = found.distance - leg.t_min * leg.ray.direction.length();
-                    leg.media.notice(&found);
-                    let left = leg.flux * leg.media.transmittance(self.world, length, comb);
-                    self.balance.absorbed += self.watts(leg.flux) - self.watts(left);
-                    leg.flux = left;
-                    let crossing = leg.media.crossing(self.world, &found, &leg.ray);
-                    if crossing.is_interface {
-                        self.scatter(&leg, &found, (comb, crossing), choices);
+            let bounded = BoundedRay { ray: segment.ray, t_min: segment.t_min, t_max: f64::INFINITY, cone };
+            match self.world.intersect(&bounded, wavelength_set, time) {
+                RayHit::Nothing => self.balance.escaped += self.watts(segment.flux),
+                RayHit::Light(..) => self.balance.absorbed += self.watts(segment.flux),
+                RayHit::Surface(interaction) => {
+                    let length = interaction.distance - segment.t_min * segment.ray.direction.length();
+                    segment.media.notice(&interaction);
+                    let left = segment.flux * segment.media.transmittance(self.world, length, wavelength_set);
+                    self.balance.absorbed += self.watts(segment.flux) - self.watts(left);
+                    segment.flux = left;
+                    let medium_interface = segment.media.crossing(self.world, &interaction, &segment.ray);
+                    if medium_interface.is_interface {
+                        self.scatter(&segment, &interaction, (wavelength_set, medium_interface), sampler);
                     } else {
-                        self.waiting.push(PhotonSegment { t_min: crossing.last, media: crossing.media, ..leg });
+                        self.waiting.push(PhotonSegment { t_min: medium_interface.last, media: medium_interface.media, ..segment });
                     }
                 }
             }
@@ -281,197 +285,197 @@ impl PhotonTracer<'_> {
     }
 
     /// Ends a leg by chance where it is faint, or gives it what others have lost.
-    fn russian_roulette(&mut self, leg: &mut PhotonSegment, first: f64, choices: &PhotonSampler) {
-        let faint = match leg.is_again {
-            true => (first * FAINT).max(FAINT_BROAD * self.typical.unwrap_or(0.0)),
-            false if leg.turns > CERTAIN_BOUNCES => first * FAINT,
+    fn russian_roulette(&mut self, segment: &mut PhotonSegment, first: f64, sampler: &PhotonSampler) {
+        let faint = match segment.had_broad {
+            true => (first * FAINT).max(FAINT_BROAD * self.typical_flux.unwrap_or(0.0)),
+            false if segment.bounces > CERTAIN_BOUNCES => first * FAINT,
             false => return,
         };
-        let part = leg.flux.max() / faint;
+        let part = segment.flux.max() / faint;
         if part < 1.0 {
-            let before = self.watts(leg.flux);
-            let survives = choices.point(PhotonDimension::Survival, leg.number)[0] < part;
-            leg.flux = if survives { leg.flux * part.recip() } else { Channels::ZERO };
-            self.balance.gained += self.watts(leg.flux) - before;
+            let before = self.watts(segment.flux);
+            let survives = sampler.point(PhotonDimension::Survival, segment.number)[0] < part;
+            segment.flux = if survives { segment.flux * part.recip() } else { Channels::ZERO };
+            self.balance.gained += self.watts(segment.flux) - before;
         }
     }
 
     /// Catches light on an element, and sends it on.
-    fn scatter(&mut self, leg: &PhotonSegment, found: &SurfaceInteraction<'_>, (comb, crossing): (usize, MediumInterface), choices: &PhotonSampler) {
-        let optics = found.optics;
-        let incoming = self.watts(leg.flux);
-        let towards = -leg.ray.direction.normalize();
-        if leg.is_beam && optics.stores_photons() {
-            self.caught.push(Photon {
-                position: self.world.hit_position(found, &leg.ray),
+    fn scatter(&mut self, segment: &PhotonSegment, interaction: &SurfaceInteraction<'_>, (wavelength_set, medium_interface): (usize, MediumInterface), sampler: &PhotonSampler) {
+        let bsdf = interaction.bsdf;
+        let incoming = self.watts(segment.flux);
+        let towards = -segment.ray.direction.normalize();
+        if segment.was_narrow && bsdf.stores_photons() {
+            self.photons.push(Photon {
+                position: self.world.hit_position(interaction, &segment.ray),
                 towards,
-                flux: leg.flux,
-                side: side_of(self.surfaces.of(found.triangle), found.element.outside),
-                comb: comb as u8,
-                is_again: leg.is_again,
+                flux: segment.flux,
+                side: side_of(self.surfaces.of(interaction.triangle), interaction.element.outside),
+                wavelength_set: wavelength_set as u8,
+                had_broad: segment.had_broad,
             });
         }
-        let arrival = PhotonInteraction { leg, found, crossing, frame: found.frame(), comb, towards, choices };
-        let beam = (optics.casts_caustics() || optics.is_passable()).then(|| self.scatter_narrow(&arrival)).flatten();
+        let arrival = PhotonInteraction { segment, interaction, medium_interface, frame: interaction.frame(), wavelength_set, towards, sampler };
+        let narrow = (bsdf.casts_caustics() || bsdf.is_passable()).then(|| self.scatter_narrow(&arrival)).flatten();
         // What does not go on is absorbed, or caught. What is spread was caught, too, and is sent again.
-        let (expected, beam) = beam.unwrap_or((0.0, None));
-        match (leg.is_beam, optics.stores_photons()) {
+        let (expected, narrow) = narrow.unwrap_or((0.0, None));
+        match (segment.was_narrow, bsdf.stores_photons()) {
             (false, true) => self.balance.straight += incoming - expected,
-            (true, true) => self.balance.caught += incoming - expected,
+            (true, true) => self.balance.stored += incoming - expected,
             _ => self.balance.absorbed += incoming - expected,
         }
-        self.balance.gained += beam.as_ref().map_or(0.0, |leg| self.watts(leg.flux)) - expected;
-        self.waiting.extend(beam);
-        if optics.is_broad() {
+        self.balance.gained += narrow.as_ref().map_or(0.0, |segment| self.watts(segment.flux)) - expected;
+        self.waiting.extend(narrow);
+        if bsdf.is_broad() {
             self.scatter_broad(&arrival);
         }
     }
 
     /// Where narrow lobes send light: the flux that is expected to go on, and one of the ways.
     fn scatter_narrow(&self, arrival: &PhotonInteraction<'_>) -> Option<(f64, Option<PhotonSegment>)> {
-        let PhotonInteraction { leg, found, comb, choices, .. } = arrival;
-        let optics = found.optics;
-        let [choice, parting] = choices.point(PhotonDimension::Choice, leg.number);
+        let PhotonInteraction { segment, interaction, wavelength_set, sampler, .. } = arrival;
+        let bsdf = interaction.bsdf;
+        let [choice, parting] = sampler.point(PhotonDimension::Choice, segment.number);
         // Where wavelengths part, the one that is left is drawn as it is seen.
-        let alone = match leg.lane {
-            None if found.disperses() => leg.flux.sample_lane(self.world.appearance.wavelengths.visibility(*comb), parting),
+        let alone = match segment.lane {
+            None if interaction.disperses() => segment.flux.sample_lane(self.world.appearance.wavelengths.visibility(*wavelength_set), parting),
             _ => None,
         };
-        let lane = leg.lane.or(alone.map(|(lane, _)| lane)).unwrap_or(0);
-        let sighting = self.context(arrival, lane);
-        let direction = choices.point(PhotonDimension::Direction, leg.number);
-        let drawn = optics.sample(&sighting, choice, direction, LobeSelection::Narrow);
-        let Some(mut drawn) = drawn.filter(|drawn| drawn.density.is_none() || arrival.is_sound(drawn)) else {
+        let lane = segment.lane.or(alone.map(|(lane, _)| lane)).unwrap_or(0);
+        let context = self.context(arrival, lane);
+        let direction = sampler.point(PhotonDimension::Direction, segment.number);
+        let drawn = bsdf.sample(&context, choice, direction, LobeSelection::Narrow);
+        let Some(mut drawn) = drawn.filter(|drawn| drawn.pdf.is_none() || arrival.is_sound(drawn)) else {
             return Some((0.0, None));
         };
-        arrival.make_adjoint(&sighting, LobeSelection::Narrow, &mut drawn);
-        let flux = leg.flux * flux_factor(&sighting, &drawn);
-        let expected = match drawn.density {
+        arrival.make_adjoint(&context, LobeSelection::Narrow, &mut drawn);
+        let flux = segment.flux * flux_factor(&context, &drawn);
+        let expected = match drawn.pdf {
             // Its own weight is all that is known of a spread one.
             Some(_) => self.watts(flux),
-            None => optics.specular_samples(&sighting).map(|onward| self.watts(leg.flux * flux_factor(&sighting, &onward))).sum(),
+            None => bsdf.specular_samples(&context).map(|sample| self.watts(segment.flux * flux_factor(&context, &sample))).sum(),
         };
         let (flux, lane) = match alone.filter(|_| drawn.light.z < 0.0 && !drawn.is_straight) {
-            Some((lane, alone)) => (alone * flux_factor(&sighting, &drawn), Some(lane)),
-            None => (flux, leg.lane),
+            Some((lane, alone)) => (alone * flux_factor(&context, &drawn), Some(lane)),
+            None => (flux, segment.lane),
         };
-        Some((expected, Some(arrival.next_segment(&drawn, (flux, lane), leg.number.wrapping_mul(MOST_PARTS)))))
+        Some((expected, Some(arrival.next_segment(&drawn, (flux, lane), segment.number.wrapping_mul(MOST_PARTS)))))
     }
 
     /// Sends on what broad lobes spread: half of it to what mirrors or refracts, as far as it is known where that is.
     fn scatter_broad(&mut self, arrival: &PhotonInteraction<'_>) {
-        let PhotonInteraction { leg, found, frame, choices, .. } = arrival;
-        let optics = found.optics;
-        let sighting = self.context(arrival, leg.lane.unwrap_or(0));
-        let from = found.element.position;
-        let plane = found.element.plane(true);
-        let balls = self.balls;
-        let angles = || balls.iter().map(|ball| ball.solid_angle(from, plane));
+        let PhotonInteraction { segment, interaction, frame, sampler, .. } = arrival;
+        let bsdf = interaction.bsdf;
+        let context = self.context(arrival, segment.lane.unwrap_or(0));
+        let from = interaction.element.position;
+        let plane = interaction.element.plane(true);
+        let spheres = self.spheres;
+        let angles = || spheres.iter().map(|sphere| sphere.solid_angle(from, plane));
         // Through what spreads it behind itself, only the lobes know the way.
-        let all: f64 = if optics.interior.is_none() { angles().sum() } else { 0.0 };
+        let all: f64 = if bsdf.interior.is_none() { angles().sum() } else { 0.0 };
         // Much light is sent in many parts, each of them about as much as others that are caught.
-        let worth = 0.5 * self.watts(leg.flux) * (all / PI).min(1.0);
-        let parts = match self.typical {
-            Some(typical) if !leg.is_again => (worth / typical).clamp(1.0, f64::from(MOST_PARTS - 1)) as u32,
+        let worth = 0.5 * self.watts(segment.flux) * (all / PI).min(1.0);
+        let parts = match self.typical_flux {
+            Some(typical) if !segment.had_broad => (worth / typical).clamp(1.0, f64::from(MOST_PARTS - 1)) as u32,
             _ => 1,
         };
         for part in 1..=parts {
-            let number = leg.number.wrapping_mul(MOST_PARTS).wrapping_add(part);
-            let [half, which] = choices.point(PhotonDimension::Aimed, number);
-            let point = choices.point(PhotonDimension::Spread, number);
+            let number = segment.number.wrapping_mul(MOST_PARTS).wrapping_add(part);
+            let [half, which] = sampler.point(PhotonDimension::Aimed, number);
+            let point = sampler.point(PhotonDimension::Spread, number);
             let drawn = if all > 0.0 && half < 0.5 {
                 let mut left = which * all;
                 let is_chosen = |(_, angle): &(&BoundingSphere, f64)| {
                     left -= angle;
                     left < 0.0
                 };
-                let ball = balls.iter().zip(angles()).find(is_chosen);
-                ball.map(|(ball, _)| BsdfSample {
+                let sphere = spheres.iter().zip(angles()).find(is_chosen);
+                sphere.map(|(ball, _)| BsdfSample {
                     light: frame.local(ball.direction(from, point)),
                     weight: Channels::ZERO,
-                    density: Some(0.0),
+                    pdf: Some(0.0),
                     is_straight: false,
                     is_broad: true,
                 })
             } else {
-                let [choice, _] = choices.point(PhotonDimension::Choice, number);
-                optics.sample(&sighting, choice, point, LobeSelection::Broad)
+                let [choice, _] = sampler.point(PhotonDimension::Choice, number);
+                bsdf.sample(&context, choice, point, LobeSelection::Broad)
             };
             let Some(mut drawn) = drawn.filter(|drawn| arrival.is_sound(drawn)) else { continue };
             if all > 0.0 {
                 let direction = frame.world(drawn.light);
-                let aimed = balls.iter().zip(angles()).filter(|(b, angle)| *angle > 0.0 && b.is_hit(from, direction));
-                let lobes = optics.pdf_among(LobeSelection::Broad, &sighting, drawn.light);
-                drawn.density = Some(0.5 * (aimed.count() as f64 / all + lobes));
+                let aimed = spheres.iter().zip(angles()).filter(|(b, angle)| *angle > 0.0 && b.is_hit(from, direction));
+                let lobes = bsdf.pdf_among(LobeSelection::Broad, &context, drawn.light);
+                drawn.pdf = Some(0.5 * (aimed.count() as f64 / all + lobes));
             }
-            arrival.make_adjoint(&sighting, LobeSelection::Broad, &mut drawn);
-            let flux = leg.flux * flux_factor(&sighting, &drawn) * f64::from(parts).recip();
+            arrival.make_adjoint(&context, LobeSelection::Broad, &mut drawn);
+            let flux = segment.flux * flux_factor(&context, &drawn) * f64::from(parts).recip();
             if flux.max() > 0.0 && flux.is_finite() {
-                self.balance.again += self.watts(flux);
-                let leg = PhotonSegment { is_beam: false, is_again: true, ..arrival.next_segment(&drawn, (flux, leg.lane), number) };
-                self.waiting.push(leg);
+                self.balance.rescattered += self.watts(flux);
+                let segment = PhotonSegment { was_narrow: false, had_broad: true, ..arrival.next_segment(&drawn, (flux, segment.lane), number) };
+                self.waiting.push(segment);
             }
         }
     }
 
     fn context<'b>(&self, arrival: &PhotonInteraction<'b>, lane: usize) -> ShadingContext<'b> {
-        let PhotonInteraction { found, crossing, frame, comb, towards, .. } = arrival;
-        let side = crossing.indices(self.world, *comb);
-        ShadingContext { view: frame.local(*towards), comb: *comb, side, lane, painted: found.texture_values() }
+        let PhotonInteraction { interaction, medium_interface, frame, wavelength_set, towards, .. } = arrival;
+        let side = medium_interface.indices(self.world, *wavelength_set);
+        ShadingContext { view: frame.local(*towards), wavelength_set: *wavelength_set, indices: side, lane, texture_values: interaction.texture_values() }
     }
 }
 
 /// Light that came to an element.
 struct PhotonInteraction<'a> {
-    leg: &'a PhotonSegment,
-    found: &'a SurfaceInteraction<'a>,
-    crossing: MediumInterface,
+    segment: &'a PhotonSegment,
+    interaction: &'a SurfaceInteraction<'a>,
+    medium_interface: MediumInterface,
     frame: ShadingFrame,
-    comb: usize,
+    wavelength_set: usize,
     /// Towards where it came from, unit length.
     towards: DVec3,
-    choices: &'a PhotonSampler,
+    sampler: &'a PhotonSampler,
 }
 
 impl PhotonInteraction<'_> {
     /// Whether a direction of a spread lobe is on the same side of the triangle and of its surface: what is not is lost.
     fn is_sound(&self, drawn: &BsdfSample) -> bool {
         let above = drawn.light.z > 0.0;
-        let plane = self.found.element.plane(above);
+        let plane = self.interaction.element.plane(above);
         (self.frame.world(drawn.light).dot(plane) > 0.0) == above && drawn.weight.is_finite()
     }
 
     /// Gives a direction of a spread lobe the weight with which light goes from here to there, where that is not the same as
     /// from there to here.
-    fn make_adjoint(&self, sighting: &ShadingContext<'_>, among: LobeSelection, drawn: &mut BsdfSample) {
-        if let Some(density) = drawn.density.filter(|_| drawn.light.z > 0.0) {
-            let back = ShadingContext { view: drawn.light, ..*sighting };
-            drawn.weight = self.found.optics.value_among(among, &back, sighting.view) * (drawn.light.z / density);
+    fn make_adjoint(&self, context: &ShadingContext<'_>, selection: LobeSelection, drawn: &mut BsdfSample) {
+        if let Some(pdf) = drawn.pdf.filter(|_| drawn.light.z > 0.0) {
+            let back = ShadingContext { view: drawn.light, ..*context };
+            drawn.weight = self.interaction.bsdf.value_among(selection, &back, context.view) * (drawn.light.z / pdf);
         }
     }
 
     /// The leg that goes on by a narrow turn.
     fn next_segment(&self, drawn: &BsdfSample, (flux, lane): (Channels, Option<usize>), number: u32) -> PhotonSegment {
-        let PhotonInteraction { leg, found, frame, .. } = self;
-        let legs = leg.legs + 1;
+        let PhotonInteraction { segment, interaction, frame, .. } = self;
+        let segments = segment.segments + 1;
         if drawn.is_straight {
-            return PhotonSegment { t_min: found.t, flux, number, legs, ..**leg };
+            return PhotonSegment { t_min: interaction.t, flux, number, segments, ..**segment };
         }
         let through = drawn.light.z < 0.0;
-        let media = if through { self.crossing.media } else { leg.media };
-        let element = &found.element;
+        let media = if through { self.medium_interface.media } else { segment.media };
+        let element = &interaction.element;
         let direction = element.righted(frame.world(drawn.light), !through);
         let origin = if through { element.through } else { element.leave };
-        let (ray, turns) = (Ray { origin, direction }, leg.turns + 1);
-        PhotonSegment { ray, t_min: 0.0, flux, media, lane, number, legs, turns, is_beam: true, is_again: leg.is_again }
+        let (ray, bounces) = (Ray { origin, direction }, segment.bounces + 1);
+        PhotonSegment { ray, t_min: 0.0, flux, media, lane, number, segments, bounces, was_narrow: true, had_broad: segment.had_broad }
     }
 }
 
 /// The part of flux that goes on: radiance grows as it enters what is denser; flux does not.
-fn flux_factor(sighting: &ShadingContext<'_>, onward: &BsdfSample) -> Channels {
-    if onward.light.z >= 0.0 || onward.is_straight {
-        return onward.weight;
+fn flux_factor(context: &ShadingContext<'_>, sample: &BsdfSample) -> Channels {
+    if sample.light.z >= 0.0 || sample.is_straight {
+        return sample.weight;
     }
-    let [before, behind] = [sighting.side.before.0, sighting.side.behind.0];
-    onward.weight * Channels(std::array::from_fn(|lane| (behind[lane] / before[lane]).powi(2)))
+    let [before, behind] = [context.indices.before.0, context.indices.behind.0];
+    sample.weight * Channels(std::array::from_fn(|lane| (behind[lane] / before[lane]).powi(2)))
 }

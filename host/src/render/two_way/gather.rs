@@ -51,7 +51,7 @@ pub(super) struct PhotonMap {
     /// How much is looked at around a place, at the most.
     most: usize,
     /// Which wavelengths each carries, and whether it took a broad turn.
-    combs: Vec<u8>,
+    wavelength_sets: Vec<u8>,
 }
 
 /// Marks what took a broad turn; combs are fewer.
@@ -101,9 +101,9 @@ pub(super) struct PhotonContribution {
     pub(super) towards: DVec3,
     /// Irradiance, W/m².
     pub(super) irradiance: Channels,
-    pub(super) comb: usize,
+    pub(super) wavelength_set: usize,
     /// Whether a broad turn was among those that it took.
-    pub(super) is_again: bool,
+    pub(super) had_broad: bool,
 }
 
 /// Sums over the light within a ring, or a disc: of its strength and of the square, each times powers of d².
@@ -166,18 +166,18 @@ struct Disc {
 
 impl PhotonMap {
     /// Sorts what was caught.
-    pub(super) fn new(caught: &[Photon], lanes: usize) -> PhotonMap {
-        let positions: Vec<DVec3> = caught.iter().map(|c| c.position).collect();
+    pub(super) fn new(photons: &[Photon], lanes: usize) -> PhotonMap {
+        let positions: Vec<DVec3> = photons.iter().map(|c| c.position).collect();
         let (points, order) = SortedPoints::new(&positions);
-        let sorted = || order.par_iter().map(|number| &caught[*number as usize]);
+        let sorted = || order.par_iter().map(|number| &photons[*number as usize]);
         PhotonMap {
             towards: sorted().map(|c| c.towards.as_vec3().to_array()).collect(),
             sides: sorted().map(|c| c.side).collect(),
             flux: sorted().flat_map_iter(|c| c.flux.0[..lanes].iter().map(|flux| *flux as f32)).collect(),
             strength: sorted().map(|c| (c.flux.0[..lanes].iter().sum::<f64>() / lanes as f64) as f32).collect(),
-            combs: sorted().map(|c| if c.is_again { c.comb | HAD_BROAD } else { c.comb }).collect(),
+            wavelength_sets: sorted().map(|c| if c.had_broad { c.wavelength_set | HAD_BROAD } else { c.wavelength_set }).collect(),
             lanes,
-            most: FEW.max((SHARE * (caught.len() as f64).powf(2.0 / 3.0)) as usize),
+            most: FEW.max((SHARE * (photons.len() as f64).powf(2.0 / 3.0)) as usize),
             points,
         }
     }
@@ -189,15 +189,15 @@ impl PhotonMap {
             + size_of_val(&self.sides[..])
             + size_of_val(&self.flux[..])
             + size_of_val(&self.strength[..])
-            + size_of_val(&self.combs[..])
+            + size_of_val(&self.wavelength_sets[..])
     }
 
     /// Visits the light that arrives around a place, as if it arrived at it.
     ///
     /// - Returns the standard error of the irradiance by all of it, over the irradiance: what chance does as ways of light
     ///   arrive or not; 0 without light.
-    pub(super) fn each(&self, place: &GatherPoint, surroundings: &GatherContext<'_>, mut visit: impl FnMut(&PhotonContribution)) -> f64 {
-        let Some(Gathered { near, square, factor, error }) = self.gathered(place, surroundings) else { return 0.0 };
+    pub(super) fn each(&self, gather_point: &GatherPoint, gather_context: &GatherContext<'_>, mut visit: impl FnMut(&PhotonContribution)) -> f64 {
+        let Some(Gathered { near, square, factor, error }) = self.gathered(gather_point, gather_context) else { return 0.0 };
         for (number, distance) in near {
             let number = number as usize;
             let weight = factor * (1.0 - f64::from(distance) / square);
@@ -206,8 +206,8 @@ impl PhotonMap {
             visit(&PhotonContribution {
                 towards: DVec3::from_array(self.towards[number].map(f64::from)),
                 irradiance: Channels(irradiance) * weight,
-                comb: usize::from(self.combs[number] & !HAD_BROAD),
-                is_again: self.combs[number] & HAD_BROAD != 0,
+                wavelength_set: usize::from(self.wavelength_sets[number] & !HAD_BROAD),
+                had_broad: self.wavelength_sets[number] & HAD_BROAD != 0,
             });
         }
         error
@@ -215,15 +215,15 @@ impl PhotonMap {
 
     /// The irradiance around a place, W/m²: by light that took narrow turns only, and by light that took broad ones among
     /// them; and the standard error, as [`Captured::each`] has it. Wherever it comes from and whatever its comb is.
-    pub(super) fn irradiance(&self, place: &GatherPoint, surroundings: &GatherContext<'_>) -> ([Channels; 2], f64) {
+    pub(super) fn irradiance(&self, gather_point: &GatherPoint, gather_context: &GatherContext<'_>) -> ([Channels; 2], f64) {
         let mut sums = [[0.0; LANES]; 2];
-        let Some(Gathered { near, square, factor, error }) = self.gathered(place, surroundings) else {
+        let Some(Gathered { near, square, factor, error }) = self.gathered(gather_point, gather_context) else {
             return (sums.map(Channels), 0.0);
         };
         for (number, distance) in near {
             let number = number as usize;
             let weight = 1.0 - f64::from(distance) / square;
-            let sum = &mut sums[usize::from(self.combs[number] & HAD_BROAD != 0)];
+            let sum = &mut sums[usize::from(self.wavelength_sets[number] & HAD_BROAD != 0)];
             sum.iter_mut().zip(self.flux_of(number)).for_each(|(lane, flux)| *lane += weight * f64::from(*flux));
         }
         (sums.map(|sum| Channels(sum) * factor), error)
@@ -236,13 +236,13 @@ impl PhotonMap {
     }
 
     /// What counts around a place.
-    fn gathered(&self, place: &GatherPoint, surroundings: &GatherContext<'_>) -> Option<Gathered> {
-        let most = match surroundings.detail {
+    fn gathered(&self, gather_point: &GatherPoint, gather_context: &GatherContext<'_>) -> Option<Gathered> {
+        let most = match gather_context.detail {
             GatherDetail::Fine => self.most,
             GatherDetail::Coarse => COARSE,
             GatherDetail::Smooth => SMOOTH * self.most,
         };
-        let around = self.points.nearby(place.position, surroundings.reach, most);
+        let around = self.points.nearby(gather_point.position, gather_context.reach, most);
         if around.count == 0 {
             return None;
         }
@@ -250,18 +250,18 @@ impl PhotonMap {
         let reach = (around.reach / side) as f32;
         let squares = [reach * reach, (HEIGHT as f32 * reach).powi(2)];
         let mut near: Vec<(u32, f32)> = Vec::with_capacity(around.count);
-        self.points.within(&around, place.position, place.outside, squares, |number, square| {
-            if self.sides[number as usize] == place.side {
+        self.points.within(&around, gather_point.position, gather_point.outside, squares, |number, square| {
+            if self.sides[number as usize] == gather_point.side {
                 near.push((number, square));
             }
         });
         if near.is_empty() {
             return None;
         }
-        let (x, y) = place.outside.any_orthonormal_pair();
+        let (x, y) = gather_point.outside.any_orthonormal_pair();
         let flat = (around.reach, [x, y]);
-        let walls = self.keep_visible(&mut near, place, flat, surroundings);
-        let Disc { square, part, error } = self.disc(&near, &walls, place, flat, surroundings)?;
+        let walls = self.keep_visible(&mut near, gather_point, flat, gather_context);
+        let Disc { square, part, error } = self.disc(&near, &walls, gather_point, flat, gather_context)?;
         near.retain(|(_, distance)| f64::from(*distance) < square);
         // In scene units.
         let area = square * side * side;
@@ -275,16 +275,16 @@ impl PhotonMap {
     fn keep_visible(
         &self,
         near: &mut Vec<(u32, f32)>,
-        place: &GatherPoint,
+        gather_point: &GatherPoint,
         (reach, axes): (f64, [DVec3; 2]),
-        surroundings: &GatherContext<'_>,
+        gather_context: &GatherContext<'_>,
     ) -> Vec<OccluderSegment> {
-        let above = (place.leave - place.position).normalize_or(place.outside);
-        let GatherContext { world, surfaces, opaque, .. } = surroundings;
-        let flat = PlanarDisc::new(place.leave, above, axes, reach);
+        let above = (gather_point.leave - gather_point.position).normalize_or(gather_point.outside);
+        let GatherContext { world, surfaces, opaque, .. } = gather_context;
+        let flat = PlanarDisc::new(gather_point.leave, above, axes, reach);
         let mut walls: Vec<OccluderSegment> = Vec::new();
         opaque.touching(flat.bounds(), |triangle| {
-            if walls.len() <= MANY_WALLS && surfaces.of(triangle) != place.surface {
+            if walls.len() <= MANY_WALLS && surfaces.of(triangle) != gather_point.surface {
                 walls.extend(flat.cut(world.appearance.prepared.corners(triangle)));
             }
         });
@@ -292,13 +292,13 @@ impl PhotonMap {
             return walls;
         }
         let side = self.points.side();
-        let local = self.points.local(place.position);
+        let local = self.points.local(gather_point.position);
         if walls.len() > MANY_WALLS {
             near.retain(|(number, _)| {
                 let way = DVec3::from_array(self.points.local_offset(local, *number as usize).map(f64::from)) * side;
                 // Along the plane: positions are rounded.
-                let ray = Ray { origin: place.leave, direction: way - above * way.dot(above) };
-                !world.any_between(&ray, |triangle| surfaces.of(triangle) != place.surface && world.is_opaque(triangle))
+                let ray = Ray { origin: gather_point.leave, direction: way - above * way.dot(above) };
+                !world.any_between(&ray, |triangle| surfaces.of(triangle) != gather_point.surface && world.is_opaque(triangle))
             });
             return Vec::new();
         }
@@ -319,7 +319,7 @@ impl PhotonMap {
         &self,
         near: &[(u32, f32)],
         walls: &[OccluderSegment],
-        place: &GatherPoint,
+        gather_point: &GatherPoint,
         (reach, axes): (f64, [DVec3; 2]),
         of: &GatherContext<'_>,
     ) -> Option<Disc> {
@@ -330,9 +330,9 @@ impl PhotonMap {
             let ring = (f64::from(*square) / whole * RINGS as f64) as usize;
             rings[ring.min(RINGS - 1)].add(f64::from(self.strength[*number as usize]), f64::from(*square));
         }
-        let borders = of.surfaces.around(place.surface, place.position, axes, reach);
-        let in_sight = (!(borders.is_empty() && walls.is_empty())).then(|| VisibleParts::new(walls, &borders));
-        let part = |square: f64| in_sight.as_ref().map_or(1.0, |seen| seen.part((square / whole).sqrt()));
+        let borders = of.surfaces.around(gather_point.surface, gather_point.position, axes, reach);
+        let visible_parts = (!(borders.is_empty() && walls.is_empty())).then(|| VisibleParts::new(walls, &borders));
+        let part = |square: f64| visible_parts.as_ref().map_or(1.0, |seen| seen.part((square / whole).sqrt()));
         let (mut sums, mut next) = (Sums::default(), 0);
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
         let mut best = None;

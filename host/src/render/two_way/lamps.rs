@@ -7,9 +7,9 @@ use super::aim::ProjectionMap;
 pub(super) struct PhotonSource {
     /// An index into the sources.
     pub(super) source: usize,
-    pub(super) aims: Vec<PhotonTarget>,
+    pub(super) targets: Vec<PhotonTarget>,
     /// What is caught of its flux, W; none before some of it was.
-    pub(super) caught: Option<f64>,
+    pub(super) stored_flux: Option<f64>,
     /// The name of its light in a database, less the pass; none without one.
     pub(super) name: Option<String>,
 }
@@ -17,11 +17,11 @@ pub(super) struct PhotonSource {
 /// Ways from a lamp to a ball.
 #[derive(Clone, Debug)]
 pub(super) struct PhotonTarget {
-    pub(super) ball: usize,
+    pub(super) sphere: usize,
     /// How probable it is that a way of the lamp goes there; all together are 1.
     pub(super) part: f64,
     /// How many do.
     pub(super) count: u32,
     /// Where it is best aimed at.
-    pub(super) guide: ProjectionMap,
+    pub(super) map: ProjectionMap,
 }

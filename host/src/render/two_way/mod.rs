@@ -69,15 +69,15 @@ pub(in crate::render) struct PhotonMapper<'a> {
     /// Triangles that stand in the way of light.
     opaque: TriangleBvh,
     /// Those around what mirrors or refracts, and then others at which lamps are aimed.
-    balls: Vec<BoundingSphere>,
+    spheres: Vec<BoundingSphere>,
     bodies: usize,
     lamps: Vec<PhotonSource>,
-    turns: u32,
+    most_bounces: u32,
     reach: f64,
     seed: u64,
     /// What was caught, pass by pass, as far as it is kept.
-    kept: Mutex<Vec<Arc<PhotonPass>>>,
-    shelf: Option<&'a PhotonStore>,
+    passes: Mutex<Vec<Arc<PhotonPass>>>,
+    store: Option<&'a PhotonStore>,
 }
 
 /// Ways that are followed together: so many from a lamp to one ball.
@@ -91,13 +91,13 @@ struct PathBatch {
 /// What such ways brought, as if each of them were all of the lamp.
 #[derive(Clone, Debug)]
 struct BatchResult {
-    caught: Vec<Photon>,
+    photons: Vec<Photon>,
     balance: FluxBalance,
 }
 
 impl BatchResult {
     fn scaled(mut self, factor: f64) -> BatchResult {
-        self.caught.iter_mut().for_each(|caught| caught.flux *= factor);
+        self.photons.iter_mut().for_each(|photon| photon.flux *= factor);
         BatchResult { balance: self.balance.scaled(factor), ..self }
     }
 }
@@ -105,15 +105,15 @@ impl BatchResult {
 /// What a pass caught.
 struct PhotonPass {
     pass: u32,
-    light: PhotonMap,
+    map: PhotonMap,
     balance: FluxBalance,
 }
 
 /// Light that was caught, with what is needed to show it.
 pub(in crate::render) struct PhotonEstimator<'a> {
     world: &'a World<'a>,
-    two_way: &'a PhotonMapper<'a>,
-    capture: Arc<PhotonPass>,
+    mapper: &'a PhotonMapper<'a>,
+    pass: Arc<PhotonPass>,
     shrink: f64,
 }
 
@@ -124,7 +124,7 @@ impl<'s> PhotonMapper<'s> {
     pub(in crate::render) fn new(
         world: &World<'_>,
         keeps: impl Fn(usize) -> bool,
-        shelf: Option<&'s PhotonStore>,
+        photon_store: Option<&'s PhotonStore>,
     ) -> Option<PhotonMapper<'s>> {
         let appearance = &world.appearance;
         let prepared = appearance.prepared;
@@ -133,37 +133,37 @@ impl<'s> PhotonMapper<'s> {
             let object = prepared.object_of[triangle as usize];
             (keeps(object as usize), appearance.bsdf(object, prepared.material_number(triangle)))
         };
-        let throws = |triangle: u32| matches!(of(triangle), (true, optics) if optics.casts_caustics());
-        let balls = aim::bounding_spheres(prepared, throws);
+        let casts_caustics = |triangle: u32| matches!(of(triangle), (true, optics) if optics.casts_caustics());
+        let spheres = aim::bounding_spheres(prepared, casts_caustics);
         let lamps: Vec<usize> =
             (0..appearance.sources.len()).filter(|i| appearance.sources[*i].1.emits_photons()).collect();
-        if balls.is_empty() || lamps.is_empty() {
+        if spheres.is_empty() || lamps.is_empty() {
             return None;
         }
-        let takes = |object: usize| {
+        let stores_photons = |object: usize| {
             let materials = 0..prepared.objects[object].materials.len() as u32;
             keeps(object) && materials.into_iter().any(|m| appearance.bsdf(object as u32, m).stores_photons())
         };
         let opaque = |triangle: u32| of(triangle).0 && world.is_opaque(triangle);
         let mut two_way = PhotonMapper {
-            surfaces: SmoothSurfaces::new(prepared, takes),
+            surfaces: SmoothSurfaces::new(prepared, stores_photons),
             opaque: TriangleBvh::new(&prepared.vertices, &prepared.triangles).only(opaque),
             lamps: Vec::new(),
-            turns: settings.light.reflection_depth.max(LEAST_BOUNCES),
+            most_bounces: settings.light.reflection_depth.max(LEAST_BOUNCES),
             reach: settings.photons.radius.unwrap_or_else(|| greatest_gather_radius(prepared)),
             seed: settings.image.seed,
-            kept: Mutex::new(Vec::new()),
-            shelf,
-            bodies: balls.len(),
-            balls,
+            passes: Mutex::new(Vec::new()),
+            store: photon_store,
+            bodies: spheres.len(),
+            spheres,
         };
-        let spreads = |triangle: u32| matches!(of(triangle), (true, optics) if optics.is_broad());
-        two_way.allocate_paths(world, &lamps, aim::bounding_sphere(prepared, spreads));
-        if let Some(shelf) = shelf {
+        let scatters_broad = |triangle: u32| matches!(of(triangle), (true, optics) if optics.is_broad());
+        two_way.allocate_paths(world, &lamps, aim::bounding_sphere(prepared, scatters_broad));
+        if let Some(photon_store) = photon_store {
             let (photons, lamps) = (settings.photons.count, lamps.len());
             for lamp in &mut two_way.lamps {
-                let pilot = PhotonMapper::pilot_paths(photons, lamps, lamp.aims.len());
-                lamp.name = Some(shelf.name(world, lamp, &keeps, pilot));
+                let pilot = PhotonMapper::pilot_paths(photons, lamps, lamp.targets.len());
+                lamp.name = Some(photon_store.name(world, lamp, &keeps, pilot));
             }
         }
         (!two_way.lamps.is_empty()).then_some(two_way)
@@ -178,64 +178,64 @@ impl<'s> PhotonMapper<'s> {
         pass: u32,
         watch: &Watch<'_>,
     ) -> Option<PhotonEstimator<'a>> {
-        let shown = |capture: Arc<PhotonPass>| {
+        let shown = |photon_pass: Arc<PhotonPass>| {
             let shrink = f64::from(pass + 1).powf(-1.0 / 3.0);
-            PhotonEstimator { world, two_way: self, capture, shrink }
+            PhotonEstimator { world, mapper: self, pass: photon_pass, shrink }
         };
-        let kept = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(capture) = kept().iter().find(|capture| capture.pass == pass) {
-            return Some(shown(capture.clone()));
+        let kept = || self.passes.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(photon_pass) = kept().iter().find(|photon_pass| photon_pass.pass == pass) {
+            return Some(shown(photon_pass.clone()));
         }
-        let capture = Arc::new(self.photon_pass(world, pass, watch)?);
+        let photon_pass = Arc::new(self.photon_pass(world, pass, watch)?);
         let mut kept = kept();
-        let bytes: usize = kept.iter().map(|capture| capture.light.bytes()).sum();
+        let bytes: usize = kept.iter().map(|photon_pass| photon_pass.map.bytes()).sum();
         // Half of what is left is for the work that goes on.
         let most = MOST_BYTES.min(bytes as u64 + memory::left() / 2);
-        if (bytes + capture.light.bytes()) as u64 <= most {
-            kept.push(capture.clone());
+        if (bytes + photon_pass.map.bytes()) as u64 <= most {
+            kept.push(photon_pass.clone());
         }
-        Some(shown(capture))
+        Some(shown(photon_pass))
     }
 
     fn photon_pass(&self, world: &World<'_>, pass: u32, watch: &Watch<'_>) -> Option<PhotonPass> {
         let lanes = world.appearance.wavelengths.lanes();
         let before = self.stored_blocks(pass, lanes);
         let mut wanted: Vec<PathBatch> = Vec::new();
-        for (lamp, PhotonSource { aims, .. }) in self.lamps.iter().enumerate() {
-            for (aim, PhotonTarget { count, .. }) in aims.iter().enumerate() {
-                wanted.extend((0..count.div_ceil(CHUNK)).map(|number| PathBatch { lamp, aim, number }));
+        for (lamp, PhotonSource { targets, .. }) in self.lamps.iter().enumerate() {
+            for (target, PhotonTarget { count, .. }) in targets.iter().enumerate() {
+                wanted.extend((0..count.div_ceil(CHUNK)).map(|number| PathBatch { lamp, aim: target, number }));
             }
         }
-        let ways = |chunk: &PathBatch| {
-            let count = self.lamps[chunk.lamp].aims[chunk.aim].count;
+        let paths = |chunk: &PathBatch| {
+            let count = self.lamps[chunk.lamp].targets[chunk.aim].count;
             chunk.number * CHUNK..((chunk.number + 1) * CHUNK).min(count)
         };
-        let is_whole = |chunk: &PathBatch| ways(chunk).len() == CHUNK as usize;
+        let is_whole = |chunk: &PathBatch| paths(chunk).len() == CHUNK as usize;
         let known = |chunk: &PathBatch| before.get(chunk).filter(|_| is_whole(chunk)).cloned();
         let mut blocks: Vec<Option<BatchResult>> = wanted.iter().map(known).collect();
         let all = wanted.len() as u64;
         let mut kept = Instant::now();
-        let mut due = self.shelf.map(|shelf| kept + shelf.every);
+        let mut due = self.store.map(|photon_store| kept + photon_store.every);
         loop {
             let pauses = || watch.is_cancelled() || due.is_some_and(|due| Instant::now() >= due);
             let done = AtomicU64::new(blocks.iter().flatten().count() as u64);
             blocks.par_iter_mut().zip(&wanted).filter(|(block, _)| block.is_none()).for_each(|(block, chunk)| {
                 if !pauses() {
-                    *block = Some(self.trace_batch(world, u64::from(pass), chunk, ways(chunk)));
+                    *block = Some(self.trace_batch(world, u64::from(pass), chunk, paths(chunk)));
                     (watch.progress)(Progress::of(done.fetch_add(1, Ordering::Relaxed) + 1, all, "parts"));
                 }
             });
             let is_finished = blocks.iter().all(Option::is_some);
-            let lasts = is_finished && self.shelf.is_some_and(|shelf| shelf.lasts);
+            let lasts = is_finished && self.store.is_some_and(|photon_store| photon_store.keeps_finished);
             // Who is interrupted does not wait for little to be kept.
-            let worth = self.shelf.map_or(WORTH_KEEPING, |shelf| shelf.every.min(WORTH_KEEPING));
+            let worth = self.store.map_or(WORTH_KEEPING, |photon_store| photon_store.every.min(WORTH_KEEPING));
             if lasts || (!is_finished && kept.elapsed() >= worth) {
                 let begin = Instant::now();
                 let whole = wanted.iter().zip(&blocks).filter(|(chunk, _)| is_whole(chunk));
                 let whole = whole.filter_map(|(chunk, block)| Some((*chunk, block.as_ref()?)));
                 self.store_blocks(world, pass, whole.collect(), &before);
                 kept = Instant::now();
-                due = self.shelf.map(|shelf| after(shelf.every, begin));
+                due = self.store.map(|photon_store| after(photon_store.every, begin));
             }
             if is_finished {
                 break;
@@ -246,25 +246,25 @@ impl<'s> PhotonMapper<'s> {
         }
         let blocks = blocks.into_iter().flatten();
         let scaled = |(chunk, block): (&PathBatch, BatchResult)| {
-            let PhotonTarget { count, part, .. } = self.lamps[chunk.lamp].aims[chunk.aim];
+            let PhotonTarget { count, part, .. } = self.lamps[chunk.lamp].targets[chunk.aim];
             block.scaled(part / f64::from(count))
         };
         let blocks: Vec<BatchResult> = wanted.iter().zip(blocks).map(scaled).collect();
         let balance = blocks.iter().fold(FluxBalance::default(), |sum, block| sum + block.balance);
-        let caught: Vec<Photon> = blocks.into_iter().flat_map(|block| block.caught).collect();
-        Some(PhotonPass { pass, light: PhotonMap::new(&caught, lanes), balance })
+        let photons: Vec<Photon> = blocks.into_iter().flat_map(|block| block.photons).collect();
+        Some(PhotonPass { pass, map: PhotonMap::new(&photons, lanes), balance })
     }
 
     /// What of the light of a pass was followed in other runs.
     fn stored_blocks(&self, pass: u32, lanes: usize) -> HashMap<PathBatch, BatchResult> {
-        let Some(shelf) = self.shelf else { return HashMap::new() };
+        let Some(photon_store) = self.store else { return HashMap::new() };
         let named = self.lamps.iter().enumerate().filter_map(|(lamp, PhotonSource { name, .. })| Some((lamp, name.as_ref()?)));
-        named.flat_map(|(lamp, name)| shelf.load(&format!("{name}-{pass}"), lamp, lanes)).collect()
+        named.flat_map(|(lamp, name)| photon_store.load(&format!("{name}-{pass}"), lamp, lanes)).collect()
     }
 
     /// Keeps light of a pass for other runs, with what was kept before, of each lamp of which something is new.
     fn store_blocks(&self, world: &World<'_>, pass: u32, now: HashMap<PathBatch, &BatchResult>, before: &HashMap<PathBatch, BatchResult>) {
-        let Some(shelf) = self.shelf else { return };
+        let Some(photon_store) = self.store else { return };
         for (number, lamp) in self.lamps.iter().enumerate() {
             let Some(name) = &lamp.name else { continue };
             if now.keys().any(|chunk| chunk.lamp == number && !before.contains_key(chunk)) {
@@ -272,36 +272,36 @@ impl<'s> PhotonMapper<'s> {
                 all.extend(&now);
                 all.retain(|chunk, _| chunk.lamp == number);
                 let what = format!("light {}, pass {pass}", world.appearance.sources[lamp.source].0 + 1);
-                shelf.save(&format!("{name}-{pass}"), what, world.appearance.wavelengths.lanes(), &all);
+                photon_store.save(&format!("{name}-{pass}"), what, world.appearance.wavelengths.lanes(), &all);
             }
         }
     }
 
     /// Follows some ways from a lamp.
-    fn trace_batch(&self, world: &World<'_>, pass: u64, chunk: &PathBatch, ways: Range<u32>) -> BatchResult {
+    fn trace_batch(&self, world: &World<'_>, pass: u64, chunk: &PathBatch, paths: Range<u32>) -> BatchResult {
         let lamp = &self.lamps[chunk.lamp];
         let mut flight = PhotonTracer {
             world,
             surfaces: &self.surfaces,
-            balls: &self.balls[..self.bodies],
-            turns: self.turns,
-            typical: lamp.caught,
+            spheres: &self.spheres[..self.bodies],
+            most_bounces: self.most_bounces,
+            typical_flux: lamp.stored_flux,
             waiting: Vec::new(),
-            caught: Vec::new(),
+            photons: Vec::new(),
             balance: FluxBalance::default(),
         };
         let sequence = self.sequence(world, pass, chunk);
-        for index in ways {
-            let choices = PhotonSampler::new(sequence, index);
-            match self.emit(world, lamp, &lamp.aims[chunk.aim], &choices) {
-                Some(start) if start.flux.max() > 0.0 && start.flux.is_finite() => flight.trace(&start, &choices),
-                _ => flight.balance.ways += 1,
+        for index in paths {
+            let sampler = PhotonSampler::new(sequence, index);
+            match self.emit(world, lamp, &lamp.targets[chunk.aim], &sampler) {
+                Some(start) if start.flux.max() > 0.0 && start.flux.is_finite() => flight.trace(&start, &sampler),
+                _ => flight.balance.paths += 1,
             }
         }
         // As exactly as it is kept.
         let rounded = |flux: Channels| Channels(flux.0.map(|flux| f64::from(flux as f32)));
-        let caught = flight.caught.into_iter().map(|caught| Photon { flux: rounded(caught.flux), ..caught });
-        BatchResult { caught: caught.collect(), balance: flight.balance }
+        let photons = flight.photons.into_iter().map(|photon| Photon { flux: rounded(photon.flux), ..photon });
+        BatchResult { photons: photons.collect(), balance: flight.balance }
     }
 
     /// The choices of a pass for ways from a lamp.
@@ -312,39 +312,39 @@ impl<'s> PhotonMapper<'s> {
     }
 
     /// Light as it leaves a lamp, as if this were all of it.
-    fn emit(&self, world: &World<'_>, lamp: &PhotonSource, aim: &PhotonTarget, choices: &PhotonSampler) -> Option<EmittedPhoton> {
+    fn emit(&self, world: &World<'_>, lamp: &PhotonSource, target: &PhotonTarget, sampler: &PhotonSampler) -> Option<EmittedPhoton> {
         let appearance = &world.appearance;
         let source = &appearance.sources[lamp.source].1;
-        let [comb, time] = choices.point(PhotonDimension::Wavelengths, 0);
-        let comb = appearance.wavelengths.set_at(comb);
+        let [wavelength_set, time] = sampler.point(PhotonDimension::Wavelengths, 0);
+        let wavelength_set = appearance.wavelengths.set_at(wavelength_set);
         let time = if world.moves() { (time - 0.5) * appearance.prepared.settings.geometry.shutter } else { 0.0 };
-        let place = aim.guide.sample(choices.point(PhotonDimension::Aim, 0));
-        let ball = &self.balls[aim.ball];
+        let place = target.map.sample(sampler.point(PhotonDimension::Aim, 0));
+        let sphere = &self.spheres[target.sphere];
         // However a way might have been drawn.
-        let all = |density: &dyn Fn(&BoundingSphere) -> Option<DirectionPdf>| -> f64 {
+        let all = |pdf: &dyn Fn(&BoundingSphere) -> Option<DirectionPdf>| -> f64 {
             let of = |other: &PhotonTarget| {
-                let (density, place) = density(&self.balls[other.ball])?;
-                Some(other.part * density * other.guide.pdf(place))
+                let (pdf, place) = pdf(&self.spheres[other.sphere])?;
+                Some(other.part * pdf * other.map.pdf(place))
             };
-            lamp.aims.iter().filter_map(of).sum()
+            lamp.targets.iter().filter_map(of).sum()
         };
-        match source.sample_emission(choices.point(PhotonDimension::Start, 0), comb)? {
+        match source.sample_emission(sampler.point(PhotonDimension::Start, 0), wavelength_set)? {
             EmissionSample::Point { at, normal, area } => {
-                let direction = ball.direction(at, place);
-                let density = all(&|ball| ball.pdf(at, direction));
-                let flux = source.intensity(normal, direction, comb) * density.recip();
+                let direction = sphere.direction(at, place);
+                let pdf = all(&|ball| ball.pdf(at, direction));
+                let flux = source.intensity(normal, direction, wavelength_set) * pdf.recip();
                 // Clear of the lamp itself.
                 let largest = at.abs().max_element() + area.sqrt();
                 let clear = normal.map_or(DVec3::ZERO, |n| n * (1e-12 * largest * n.dot(direction).signum()));
-                Some(EmittedPhoton { ray: Ray { origin: at + clear, direction }, flux, comb, time })
+                Some(EmittedPhoton { ray: Ray { origin: at + clear, direction }, flux, wavelength_set, time })
             }
             EmissionSample::Parallel { direction, irradiance } => {
-                let on = ball.line(direction, place);
-                let density = all(&|ball| ball.line_pdf(direction, on));
+                let on = sphere.line(direction, place);
+                let pdf = all(&|ball| ball.line_pdf(direction, on));
                 let bounds = &appearance.prepared.bounds;
                 let far = 2.0 * bounds.diagonal() + on.distance(bounds.center());
                 let ray = Ray { origin: on - direction * far, direction };
-                Some(EmittedPhoton { ray, flux: irradiance * density.recip(), comb, time })
+                Some(EmittedPhoton { ray, flux: irradiance * pdf.recip(), wavelength_set, time })
             }
         }
     }
@@ -358,7 +358,7 @@ pub fn greatest_gather_radius(prepared: &Prepared) -> f64 {
 impl PhotonEstimator<'_> {
     /// What became of all that was sent.
     pub(in crate::render) fn balance(&self) -> FluxBalance {
-        self.capture.balance
+        self.pass.balance
     }
 
     /// What a side of a triangle reflects diffusely of the light that was caught around a point, W/m², in lanes that are
@@ -366,12 +366,12 @@ impl PhotonEstimator<'_> {
     pub(in crate::render) fn exitance(&self, triangle: u32, outside: bool, at: DVec3) -> Channels {
         let appearance = &self.world.appearance;
         let prepared = appearance.prepared;
-        let optics = appearance.bsdf(prepared.object_of[triangle as usize], prepared.material_number(triangle));
+        let bsdf = appearance.bsdf(prepared.object_of[triangle as usize], prepared.material_number(triangle));
         let corners = prepared.corners(triangle);
         let [a, b, c] = corners;
         let normal = (b - a).cross(c - a).try_normalize();
-        let Some(normal) = normal.filter(|_| optics.stores_photons()) else { return Channels::ZERO };
-        let surface = self.two_way.surfaces.of(triangle);
+        let Some(normal) = normal.filter(|_| bsdf.stores_photons()) else { return Channels::ZERO };
+        let surface = self.mapper.surfaces.of(triangle);
         let lift = LIFT * (at.abs().max_element() + prepared.bounds.diagonal());
         let place = GatherPoint {
             position: at,
@@ -380,23 +380,23 @@ impl PhotonEstimator<'_> {
             surface,
             side: flight::side_of(surface, outside),
         };
-        let ([narrow, broad], _) = self.capture.light.irradiance(&place, &self.gather_context(GatherDetail::Smooth));
+        let ([narrow, broad], _) = self.pass.map.irradiance(&place, &self.gather_context(GatherDetail::Smooth));
         let irradiance = narrow + broad;
         if irradiance == Channels::ZERO {
             return irradiance;
         }
         let weights = crate::numeric::triangle::weights(corners, at);
         let size = normal.any_orthonormal_pair();
-        let place = optics.is_textured().then(|| prepared.texture_place(triangle, weights, [size.0 * lift, size.1 * lift]));
-        mean_diffuse_albedo(optics, place.as_ref(), appearance.wavelengths.count()) * irradiance
+        let place = bsdf.is_textured().then(|| prepared.texture_place(triangle, weights, [size.0 * lift, size.1 * lift]));
+        mean_diffuse_albedo(bsdf, place.as_ref(), appearance.wavelengths.count()) * irradiance
     }
 
     fn gather_context(&self, detail: GatherDetail) -> GatherContext<'_> {
         GatherContext {
             world: self.world,
-            surfaces: &self.two_way.surfaces,
-            opaque: &self.two_way.opaque,
-            reach: self.two_way.reach,
+            surfaces: &self.mapper.surfaces,
+            opaque: &self.mapper.opaque,
+            reach: self.mapper.reach,
             detail,
             shrink: self.shrink,
         }
@@ -411,14 +411,14 @@ impl PhotonEstimator<'_> {
     ///   over it.
     pub(in crate::render) fn radiance_estimate(
         &self,
-        found: &SurfaceInteraction<'_>,
-        sighting: &ShadingContext<'_>,
-        (passed, is_parted): (Channels, bool),
+        interaction: &SurfaceInteraction<'_>,
+        context: &ShadingContext<'_>,
+        (throughput, is_parted): (Channels, bool),
         coarse: bool,
     ) -> ([(Channels, DVec3); 2], f64) {
-        let two_way = self.two_way;
-        let element = &found.element;
-        let surface = two_way.surfaces.of(found.triangle);
+        let two_way = self.mapper;
+        let element = &interaction.element;
+        let surface = two_way.surfaces.of(interaction.triangle);
         let sign = if element.outside { 1.0 } else { -1.0 };
         let place = GatherPoint {
             position: element.position,
@@ -428,35 +428,35 @@ impl PhotonEstimator<'_> {
             side: flight::side_of(surface, element.outside),
         };
         let appearance = &self.world.appearance;
-        let surroundings = self.gather_context(if coarse { GatherDetail::Coarse } else { GatherDetail::Fine });
-        let frame = found.frame();
+        let gather_context = self.gather_context(if coarse { GatherDetail::Coarse } else { GatherDetail::Fine });
+        let frame = interaction.frame();
         let wavelengths = &appearance.wavelengths;
         let is_one_color = !wavelengths.is_spectral() || is_parted;
-        if let Some(value) = found.optics.constant_value(sighting).filter(|_| is_one_color) {
-            let (irradiance, error) = self.capture.light.irradiance(&place, &surroundings);
-            return (irradiance.map(|irradiance| (passed * value * irradiance, DVec3::ZERO)), error);
+        if let Some(value) = interaction.bsdf.constant_value(context).filter(|_| is_one_color) {
+            let (irradiance, error) = self.pass.map.irradiance(&place, &gather_context);
+            return (irradiance.map(|irradiance| (throughput * value * irradiance, DVec3::ZERO)), error);
         }
-        let mut found_light = [(Channels::ZERO, DVec3::ZERO); 2];
-        let error = self.capture.light.each(&place, &surroundings, |arriving| {
-            let light = frame.local(arriving.towards);
-            let (sum, elsewhere) = &mut found_light[usize::from(arriving.is_again)];
+        let mut sums = [(Channels::ZERO, DVec3::ZERO); 2];
+        let error = self.pass.map.each(&place, &gather_context, |contribution| {
+            let light = frame.local(contribution.towards);
+            let (sum, elsewhere) = &mut sums[usize::from(contribution.had_broad)];
             if is_one_color {
-                *sum += found.optics.non_narrow_value(sighting, light) * arriving.irradiance;
+                *sum += interaction.bsdf.non_narrow_value(context, light) * contribution.irradiance;
             } else {
                 // The light has other wavelengths than the ray.
-                let at = ShadingContext { comb: arriving.comb, ..*sighting };
-                let passed = between(passed, sighting.comb, arriving.comb, wavelengths.count());
-                let radiance = found.optics.non_narrow_value(&at, light) * arriving.irradiance * passed;
-                *elsewhere += wavelengths.to_srgb(arriving.comb, radiance);
+                let at = ShadingContext { wavelength_set: contribution.wavelength_set, ..*context };
+                let throughput = between(throughput, context.wavelength_set, contribution.wavelength_set, wavelengths.count());
+                let radiance = interaction.bsdf.non_narrow_value(&at, light) * contribution.irradiance * throughput;
+                *elsewhere += wavelengths.to_srgb(contribution.wavelength_set, radiance);
             }
         });
-        (found_light.map(|(sum, elsewhere)| (passed * sum, elsewhere)), error)
+        (sums.map(|(sum, elsewhere)| (throughput * sum, elsewhere)), error)
     }
 }
 
 /// A quantity that is known at the wavelengths of a comb, at those of another, by straight lines.
-fn between(quantity: Channels, known: usize, wanted: usize, combs: usize) -> Channels {
-    let apart = (wanted as f64 - known as f64) / combs as f64;
+fn between(quantity: Channels, known: usize, wanted: usize, sets: usize) -> Channels {
+    let apart = (wanted as f64 - known as f64) / sets as f64;
     let (other, part) = (if apart < 0.0 { -1 } else { 1 }, apart.abs());
     Channels(std::array::from_fn(|lane| {
         let beside = (lane as isize + other).clamp(0, LANES as isize - 1) as usize;

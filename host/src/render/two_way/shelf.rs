@@ -39,7 +39,7 @@ pub struct PhotonStore {
     /// Time after which light of an unfinished pass is kept.
     pub(super) every: Duration,
     /// Whether light of finished passes is kept, too.
-    pub(super) lasts: bool,
+    pub(super) keeps_finished: bool,
 }
 
 /// Hashes what is written to it.
@@ -113,7 +113,7 @@ impl PhotonStore {
         sum.add(&(FORM, &dark));
         sum.0.write(bytemuck::cast_slice(&prepared.triangles));
         sum.0.write(bytemuck::cast_slice(&prepared.vertices));
-        Ok(PhotonStore { path: path.into(), scene: sum.value(), every, lasts })
+        Ok(PhotonStore { path: path.into(), scene: sum.value(), every, keeps_finished: lasts })
     }
 
     /// The name of the light of a lamp, less the pass.
@@ -125,7 +125,7 @@ impl PhotonStore {
         let number = appearance.sources[lamp.source].0;
         let mut sum = Sum::new();
         let kept: Vec<bool> = (0..prepared.objects.len()).map(keeps).collect();
-        let ways = (appearance.wavelengths.is_spectral(), appearance.curved, appearance.exact, appearance.passing);
+        let ways = (appearance.wavelengths.is_spectral(), appearance.curved, appearance.exact, appearance.has_passable);
         sum.add(&(self.scene, number as u64, pilot, kept, ways));
         match appearance.emitter(lamp.source) {
             None => sum.add(&prepared.lights[number]),
@@ -145,15 +145,15 @@ impl PhotonStore {
     /// Light of a lamp that was followed before, block by block; of more, the first blocks.
     pub(super) fn load(&self, name: &str, lamp: usize, lanes: usize) -> HashMap<PathBatch, BatchResult> {
         let found = Store::open(&self.path).and_then(|store| store.find(RecordKind::Photons, name));
-        let caught = match found {
-            Ok(Some(Record { content: RecordContent::Photons(caught), .. })) => *caught,
+        let stored_photons = match found {
+            Ok(Some(Record { content: RecordContent::Photons(stored_photons), .. })) => *stored_photons,
             Ok(_) => return HashMap::new(),
             Err(error) => {
                 tracing::warn!("caught light is not read: {error}");
                 return HashMap::new();
             }
         };
-        let blocks = caught.blocks.into_iter().filter(|_| usize::from(caught.lanes) == lanes);
+        let blocks = stored_photons.blocks.into_iter().filter(|_| usize::from(stored_photons.lanes) == lanes);
         blocks
             .map(|block| (PathBatch { lamp, aim: block.aim as usize, number: block.number }, read(&block, lanes)))
             .collect()
@@ -187,24 +187,24 @@ impl PhotonStore {
 }
 
 fn written(chunk: &PathBatch, block: &BatchResult, lanes: usize) -> PhotonBlock {
-    let FluxBalance { ways: _, before: _, sent, again, gained, straight, caught, absorbed, escaped, stopped } =
+    let FluxBalance { paths: _, stored_paths: _, sent, rescattered: again, gained, straight, stored, absorbed, escaped, stopped } =
         block.balance;
-    let all = || block.caught.iter();
+    let all = || block.photons.iter();
     PhotonBlock {
         aim: chunk.aim as u32,
         number: chunk.number,
-        ways: u64::from(CHUNK),
-        balance: [sent, again, gained, straight, caught, absorbed, escaped, stopped],
-        positions: all().map(|caught| caught.position.to_array()).collect(),
-        towards: all().map(|caught| caught.towards.as_vec3().to_array()).collect(),
-        flux: all().flat_map(|caught| caught.flux.0[..lanes].iter().map(|flux| *flux as f32)).collect(),
-        sides: all().map(|caught| caught.side).collect(),
-        combs: all().map(|caught| if caught.is_again { caught.comb | HAD_BROAD } else { caught.comb }).collect(),
+        paths: u64::from(CHUNK),
+        balance: [sent, again, gained, straight, stored, absorbed, escaped, stopped],
+        positions: all().map(|photon| photon.position.to_array()).collect(),
+        towards: all().map(|photon| photon.towards.as_vec3().to_array()).collect(),
+        flux: all().flat_map(|photon| photon.flux.0[..lanes].iter().map(|flux| *flux as f32)).collect(),
+        sides: all().map(|photon| photon.side).collect(),
+        wavelength_sets: all().map(|photon| if photon.had_broad { photon.wavelength_set | HAD_BROAD } else { photon.wavelength_set }).collect(),
     }
 }
 
 fn read(block: &PhotonBlock, lanes: usize) -> BatchResult {
-    let caught = |k: usize| {
+    let photon = |k: usize| {
         let mut flux = [0.0; LANES];
         flux.iter_mut().zip(&block.flux[k * lanes..(k + 1) * lanes]).for_each(|(lane, flux)| *lane = f64::from(*flux));
         Photon {
@@ -212,12 +212,12 @@ fn read(block: &PhotonBlock, lanes: usize) -> BatchResult {
             towards: DVec3::from_array(block.towards[k].map(f64::from)),
             flux: Channels(flux),
             side: block.sides[k],
-            comb: block.combs[k] & !HAD_BROAD,
-            is_again: block.combs[k] & HAD_BROAD != 0,
+            wavelength_set: block.wavelength_sets[k] & !HAD_BROAD,
+            had_broad: block.wavelength_sets[k] & HAD_BROAD != 0,
         }
     };
     let [sent, again, gained, straight, all, absorbed, escaped, stopped] = block.balance;
-    let (ways, before) = (block.ways, block.ways);
-    let balance = FluxBalance { ways, before, sent, again, gained, straight, caught: all, absorbed, escaped, stopped };
-    BatchResult { caught: (0..block.positions.len()).map(caught).collect(), balance }
+    let (ways, before) = (block.paths, block.paths);
+    let balance = FluxBalance { paths: ways, stored_paths: before, sent, rescattered: again, gained, straight, stored: all, absorbed, escaped, stopped };
+    BatchResult { photons: (0..block.positions.len()).map(photon).collect(), balance }
 }

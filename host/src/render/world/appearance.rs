@@ -17,9 +17,9 @@ pub(in crate::render) struct Appearance<'a> {
     pub(in crate::render) prepared: &'a Prepared,
     pub(in crate::render) wavelengths: WavelengthSets,
     /// All materials, each once.
-    optics: Vec<Bsdf>,
+    bsdfs: Vec<Bsdf>,
     /// For each object, which of them its materials are.
-    optics_of: Vec<Vec<u32>>,
+    bsdf_of: Vec<Vec<u32>>,
     /// All lights, objects that emit among them, with their numbers: those of the scene come first.
     pub(in crate::render) sources: Vec<(usize, LightSource)>,
     /// For each object and material of it that emits, which of the lights it is.
@@ -33,9 +33,9 @@ pub(in crate::render) struct Appearance<'a> {
     /// Whether rays are led on to exact surfaces.
     pub(in crate::render) exact: bool,
     /// Whether something lets light straight through.
-    pub(in crate::render) passing: bool,
+    pub(in crate::render) has_passable: bool,
     /// Whether light of lamps goes through polished bodies as if they did not bend it: where what they throw is left out.
-    pub(in crate::render) clears: bool,
+    pub(in crate::render) has_clear_shadows: bool,
     /// The place of each object among all of them, the largest first; empty where less than two are transparent.
     by_size: Vec<u32>,
     /// Whether two or more objects are transparent: one may be in another.
@@ -51,16 +51,16 @@ impl<'a> Appearance<'a> {
         let wavelengths = if plan.needs(Stage::Spectra) { WavelengthSets::spectral() } else { WavelengthSets::bands() };
         let mut appearance = Appearance {
             prepared,
-            optics: Vec::new(),
-            optics_of: Vec::new(),
+            bsdfs: Vec::new(),
+            bsdf_of: Vec::new(),
             sources: Vec::new(),
             emitters: Vec::new(),
             background: wavelengths.light(&prepared.background.into()),
             ambient: plan.needs(Stage::Ambient).then(|| wavelengths.light(&prepared.ambient.into())),
             curved: plan.needs(Stage::Normals),
             exact: plan.needs(Stage::ExactSurfaces),
-            passing: false,
-            clears: false,
+            has_passable: false,
+            has_clear_shadows: false,
             by_size: Vec::new(),
             has_nested: false,
             wavelengths,
@@ -72,12 +72,12 @@ impl<'a> Appearance<'a> {
                 .push((number, LightSource::new(light, &appearance.wavelengths).with_portals(&prepared.portals)));
         }
         appearance.add_emitters(plan);
-        appearance.passing = appearance.optics.iter().any(Bsdf::is_passable);
+        appearance.has_passable = appearance.bsdfs.iter().any(Bsdf::is_passable);
         let is_followed = plan.needs(Stage::PhotonMap) || prepared.settings.light.caustics == Caustics::PathTraced;
-        appearance.clears = !is_followed && appearance.optics.iter().any(Bsdf::is_clear);
+        appearance.has_clear_shadows = !is_followed && appearance.bsdfs.iter().any(Bsdf::is_clear);
         let is_transparent =
-            |numbers: &&Vec<u32>| numbers.iter().any(|number| appearance.optics[*number as usize].interior.is_some());
-        appearance.has_nested = appearance.optics_of.iter().filter(is_transparent).nth(1).is_some();
+            |numbers: &&Vec<u32>| numbers.iter().any(|number| appearance.bsdfs[*number as usize].interior.is_some());
+        appearance.has_nested = appearance.bsdf_of.iter().filter(is_transparent).nth(1).is_some();
         if appearance.has_nested {
             appearance.by_size = places_by_size(prepared);
         }
@@ -103,12 +103,12 @@ impl<'a> Appearance<'a> {
                     Interreflection::Followed => Interreflection::Followed,
                     _ => Interreflection::LeftOut,
                 };
-                let number = self.optics.len() as u32;
-                self.optics.push(library.bsdf(material, diffuse).map_err(failed)?);
+                let number = self.bsdfs.len() as u32;
+                self.bsdfs.push(library.bsdf(material, diffuse).map_err(failed)?);
                 alike.push((material, number));
                 numbers.push(number);
             }
-            self.optics_of.push(numbers);
+            self.bsdf_of.push(numbers);
         }
         Ok(())
     }
@@ -122,8 +122,8 @@ impl<'a> Appearance<'a> {
     fn add_emitters(&mut self, plan: &Plan) {
         let prepared = self.prepared;
         for (index, object) in prepared.objects.iter().enumerate().filter(|(index, _)| plan.includes_object(*index)) {
-            for (number, optics) in self.optics_of[index].iter().enumerate() {
-                let Some(emission) = &self.optics[*optics as usize].emission else { continue };
+            for (number, bsdf) in self.bsdf_of[index].iter().enumerate() {
+                let Some(emission) = &self.bsdfs[*bsdf as usize].emission else { continue };
                 let of = |triangle: &u32| prepared.material_number(*triangle) == number as u32;
                 let triangles = (object.first..object.first + object.count).filter(of);
                 let corners = triangles.map(|triangle| prepared.corners(triangle)).collect();
@@ -137,7 +137,7 @@ impl<'a> Appearance<'a> {
 
     /// The material of a number of an object.
     pub(in crate::render) fn bsdf(&self, object: u32, material: u32) -> &Bsdf {
-        &self.optics[self.optics_of[object as usize][material as usize] as usize]
+        &self.bsdfs[self.bsdf_of[object as usize][material as usize] as usize]
     }
 
     /// What is inside a material of an object, if it is transparent.
@@ -161,20 +161,20 @@ impl<'a> Appearance<'a> {
         &self,
         ray: &Ray,
         normal: Option<DVec3>,
-        comb: usize,
+        wavelength_set: usize,
         part: impl Fn(&LightSource, f64) -> f64,
     ) -> Channels {
-        let skies = self.sources.iter().filter_map(|(_, sky)| Some((sky, sky.sky_radiance(ray, normal, comb)?)));
-        let sum = skies.map(|(sky, glow)| glow.radiance * part(sky, glow.density)).reduce(|a, b| a + b);
-        sum.unwrap_or_else(|| self.background.of(comb))
+        let skies = self.sources.iter().filter_map(|(_, sky)| Some((sky, sky.sky_radiance(ray, normal, wavelength_set)?)));
+        let sum = skies.map(|(sky, light_hit)| light_hit.radiance * part(sky, light_hit.pdf)).reduce(|a, b| a + b);
+        sum.unwrap_or_else(|| self.background.of(wavelength_set))
     }
 
     /// The nearest surface that emits and is no object, and which of the lights it is.
-    pub(in crate::render) fn intersect_lights(&self, ray: &Ray, t_min: f64, t_max: f64, comb: usize) -> Option<(usize, LightHit)> {
+    pub(in crate::render) fn intersect_lights(&self, ray: &Ray, t_min: f64, t_max: f64, wavelength_set: usize) -> Option<(usize, LightHit)> {
         let mut nearest: Option<(usize, LightHit)> = None;
         for (index, (_, source)) in self.sources.iter().enumerate().filter(|(_, (_, source))| source.is_surface()) {
-            let limit = nearest.map_or(t_max, |(_, glow)| glow.t);
-            nearest = source.intersect(ray, t_min, limit, comb).map(|glow| (index, glow)).or(nearest);
+            let limit = nearest.map_or(t_max, |(_, light_hit)| light_hit.t);
+            nearest = source.intersect(ray, t_min, limit, wavelength_set).map(|light_hit| (index, light_hit)).or(nearest);
         }
         nearest
     }
@@ -184,9 +184,9 @@ impl<'a> Appearance<'a> {
         &self,
         object: u32,
         material: u32,
-        comb: usize,
+        wavelength_set: usize,
     ) -> Option<(Channels, Option<usize>)> {
-        let emission = self.bsdf(object, material).emission.as_ref()?.of(comb);
+        let emission = self.bsdf(object, material).emission.as_ref()?.of(wavelength_set);
         let key = (object, material);
         let index = self.emitters.iter().find(|(emitter, _)| *emitter == key).map(|(_, index)| *index);
         Some((emission, index))

@@ -93,16 +93,16 @@ impl CameraRays {
     /// - `through`: a point of the unit square, which chooses the point of the lens.
     #[inline]
     pub(in crate::render) fn ray(&self, at: [f64; 2], through: [f64; 2]) -> Option<BoundedRay> {
-        let sight = self.line(at, through)?;
+        let bounded = self.line(at, through)?;
         if self.part == 0.0 {
-            return Some(sight);
+            return Some(bounded);
         }
-        let aside = self.line([at[0] + 1.0, at[1]], through).unwrap_or(sight);
-        let [one, two] = [sight.ray, aside.ray].map(|ray| Ray { direction: ray.direction.normalize(), ..ray });
+        let aside = self.line([at[0] + 1.0, at[1]], through).unwrap_or(bounded);
+        let [one, two] = [bounded.ray, aside.ray].map(|ray| Ray { direction: ray.direction.normalize(), ..ray });
         let apart = two.origin - one.origin;
         let width = (apart - one.direction * apart.dot(one.direction)).length() * self.part;
         let growth = (two.direction - one.direction).length() * self.part;
-        Some(BoundedRay { cone: RayCone { width, growth }, ..sight })
+        Some(BoundedRay { cone: RayCone { width, growth }, ..bounded })
     }
 
     /// The ray without its cone.
@@ -124,9 +124,9 @@ impl CameraRays {
                 Some(BoundedRay { ray, t_min: *near, t_max: *far, cone: RayCone::default() })
             }
             Kind::Matrix { rows, base, radius, depth_clipping } => {
-                let mut sight = line(rows, x, y, *radius, *depth_clipping)?;
-                sight.ray.origin += *base;
-                Some(sight)
+                let mut bounded = line(rows, x, y, *radius, *depth_clipping)?;
+                bounded.ray.origin += *base;
+                Some(bounded)
             }
         }
     }
@@ -250,14 +250,14 @@ mod tests {
         let bounds = Bounds { min: DVec3::splat(-1.0), max: DVec3::splat(1.0) };
         for depth_clipping in [true, false] {
             let view = View::Projection(Projection::from_workstation(&matrix, depth_clipping));
-            let sight = CameraRays::new(&view, 2, 2, &bounds).expect("sees").ray([0.5, 0.5], [0.5; 2]).expect("ray");
-            assert_eq!(sight.ray.direction, DVec3::NEG_Z);
-            let front = sight.ray.at(sight.t_min);
+            let bounded = CameraRays::new(&view, 2, 2, &bounds).expect("sees").ray([0.5, 0.5], [0.5; 2]).expect("ray");
+            assert_eq!(bounded.ray.direction, DVec3::NEG_Z);
+            let front = bounded.ray.at(bounded.t_min);
             assert_eq!((front.x, front.y), (-0.5, 0.5));
             if depth_clipping {
-                assert!((front.z - 1.0).abs() < 1e-12 && (sight.ray.at(sight.t_max).z + 1.0).abs() < 1e-12);
+                assert!((front.z - 1.0).abs() < 1e-12 && (bounded.ray.at(bounded.t_max).z + 1.0).abs() < 1e-12);
             } else {
-                assert!(front.z > 1.0 && sight.t_max == f64::INFINITY);
+                assert!(front.z > 1.0 && bounded.t_max == f64::INFINITY);
             }
         }
     }
@@ -270,9 +270,9 @@ mod tests {
         };
         let bounds = Bounds { min: DVec3::splat(-1.0), max: DVec3::splat(1.0) };
         let view = View::Projection(Projection::from_workstation(&matrix(1e-15, 1e15), true));
-        let sight = CameraRays::new(&view, 10, 10, &bounds).expect("sees").ray([2.5, 2.5], [0.5; 2]).expect("ray");
-        assert!((sight.ray.at(sight.t_min) - DVec3::new(-0.5, 0.5, 0.0)).length() < 1e-12);
-        assert!(sight.t_max > 9e14);
+        let bounded = CameraRays::new(&view, 10, 10, &bounds).expect("sees").ray([2.5, 2.5], [0.5; 2]).expect("ray");
+        assert!((bounded.ray.at(bounded.t_min) - DVec3::new(-0.5, 0.5, 0.0)).length() < 1e-12);
+        assert!(bounded.t_max > 9e14);
     }
 
     #[test]
@@ -285,7 +285,7 @@ mod tests {
             for at in [[200.0, 150.0], [30.0, 270.0]] {
                 let [one, two] = [at, [at[0] + 0.5, at[1] + 0.5]].map(|at| eye.ray(at, [0.5; 2]).expect("ray"));
                 for distance in [1.0, 10.0, 1000.0] {
-                    let point = |sight: &BoundedRay| sight.ray.at(distance / sight.ray.direction.length());
+                    let point = |bounded: &BoundedRay| bounded.ray.at(distance / bounded.ray.direction.length());
                     // Half a diagonal of a pixel.
                     let apart = point(&one).distance(point(&two)) * 2.0_f64.sqrt();
                     let part = one.cone.at(distance) / apart;

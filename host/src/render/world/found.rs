@@ -20,7 +20,7 @@ pub(in crate::render) enum RayHit<'a> {
 /// An element of an object.
 pub(in crate::render) struct SurfaceInteraction<'a> {
     pub(in crate::render) element: SurfaceElement,
-    pub(in crate::render) optics: &'a Bsdf,
+    pub(in crate::render) bsdf: &'a Bsdf,
     pub(in crate::render) triangle: u32,
     pub(in crate::render) object: u32,
     /// Number of the material among those of the object.
@@ -32,25 +32,25 @@ pub(in crate::render) struct SurfaceInteraction<'a> {
     /// From where the ray began to the exact surface, in lengths of the ray's direction.
     pub(in crate::render) t: f64,
     /// What the patterns of the material give; nothing for a material that has none.
-    pub(super) painting: TextureValues,
+    pub(super) texture_values: TextureValues,
     /// The direction in which its material is brushed.
-    pub(in crate::render) along: Option<DVec3>,
+    pub(in crate::render) brushed_along: Option<DVec3>,
 }
 
 impl SurfaceInteraction<'_> {
     /// The frame in which its optics has directions.
     pub(in crate::render) fn frame(&self) -> ShadingFrame {
         let normal = self.element.normal;
-        self.along.map_or_else(|| ShadingFrame::from_normal(normal), |along| ShadingFrame::brushed(normal, along))
+        self.brushed_along.map_or_else(|| ShadingFrame::from_normal(normal), |along| ShadingFrame::brushed(normal, along))
     }
 
     /// Whether wavelengths part that go through it.
     pub(in crate::render) fn disperses(&self) -> bool {
-        self.optics.interior.as_ref().is_some_and(|interior| interior.disperses)
+        self.bsdf.interior.as_ref().is_some_and(|interior| interior.disperses)
     }
 
     /// What the patterns of the material give.
     pub(in crate::render) fn texture_values(&self) -> &[Channels] {
-        &self.painting
+        &self.texture_values
     }
 }

@@ -43,10 +43,10 @@ impl<'a> World<'a> {
         let appearance = Appearance::new(prepared, plan)?;
         let light_buffer = acceleration.still.as_ref().filter(|_| plan.needs(Stage::LightBuffer)).map(|still| {
             let is_opaque = |t: u32| {
-                let optics = appearance.bsdf(prepared.object_of[t as usize], prepared.material_number(t));
-                !(optics.is_passable() || appearance.clears && optics.is_clear())
+                let bsdf = appearance.bsdf(prepared.object_of[t as usize], prepared.material_number(t));
+                !(bsdf.is_passable() || appearance.has_clear_shadows && bsdf.is_clear())
             };
-            let has_open = appearance.passing || appearance.clears;
+            let has_open = appearance.has_passable || appearance.has_clear_shadows;
             let opaque = has_open.then(|| still.triangles().map(is_opaque).collect());
             LightBuffer::new(&prepared.bounds, &appearance.sources, opaque)
         });
@@ -87,8 +87,8 @@ impl<'a> World<'a> {
     pub(in crate::render) fn is_opaque(&self, triangle: u32) -> bool {
         let prepared = self.appearance.prepared;
         let object = prepared.object_of[triangle as usize];
-        let optics = self.appearance.bsdf(object, prepared.material_number(triangle));
-        !optics.is_passable() && optics.interior.is_none()
+        let bsdf = self.appearance.bsdf(object, prepared.material_number(triangle));
+        !bsdf.is_passable() && bsdf.interior.is_none()
     }
 
     /// What stands still between a point and a light, if the light buffer knows.
@@ -125,61 +125,61 @@ impl<'a> World<'a> {
     }
 
     /// What is first in sight at a time.
-    pub(in crate::render) fn intersect(&self, sight: &BoundedRay, comb: usize, time: f64) -> RayHit<'_> {
-        let first = self.first(&sight.ray, [sight.t_min, sight.t_max], time);
-        let t_max = first.map_or(sight.t_max, |(hit, ..)| hit.t);
-        if let Some((index, glow)) = self.appearance.intersect_lights(&sight.ray, sight.t_min, t_max, comb) {
-            return RayHit::Light(index, glow);
+    pub(in crate::render) fn intersect(&self, bounded: &BoundedRay, wavelength_set: usize, time: f64) -> RayHit<'_> {
+        let first = self.first(&bounded.ray, [bounded.t_min, bounded.t_max], time);
+        let t_max = first.map_or(bounded.t_max, |(hit, ..)| hit.t);
+        if let Some((index, light_hit)) = self.appearance.intersect_lights(&bounded.ray, bounded.t_min, t_max, wavelength_set) {
+            return RayHit::Light(index, light_hit);
         }
         let Some((hit, triangle, moved)) = first else { return RayHit::Nothing };
         let prepared = self.appearance.prepared;
         let contact =
-            if moved.is_none() && self.points.is_none() { self.contact(&sight.ray, triangle, &hit) } else { None };
+            if moved.is_none() && self.points.is_none() { self.contact(&bounded.ray, triangle, &hit) } else { None };
         let (hit, triangle) = contact.unwrap_or((hit, triangle));
         // What moves is looked at as if it stood still, up to the element.
         let ray = match (moved, &self.points) {
-            (Some(moved), _) => moved.still(&sight.ray),
-            (None, Some(_)) => through(&sight.ray, &hit, prepared.corners(triangle)),
-            (None, None) => sight.ray,
+            (Some(moved), _) => moved.still(&bounded.ray),
+            (None, Some(_)) => through(&bounded.ray, &hit, prepared.corners(triangle)),
+            (None, None) => bounded.ray,
         };
         let Some(mut element) = SurfaceElement::new(prepared, triangle, &ray, &hit, self.appearance.curved) else {
             return RayHit::Nothing;
         };
         let object = prepared.object_of[triangle as usize];
         let material = prepared.material_number(triangle);
-        let optics = self.appearance.bsdf(object, material);
+        let bsdf = self.appearance.bsdf(object, material);
         let length = ray.direction.length();
         let distance = hit.t * length;
         let exact = if self.appearance.exact {
             let on = prepared.on_surface(triangle, &ray, weights(&hit), (element.position, element.outside));
-            on.filter(|on| element.settle(ray.direction, hit.t - sight.t_min, on))
+            on.filter(|on| element.settle(ray.direction, hit.t - bounded.t_min, on))
         } else {
             None
         };
         let depth = distance + exact.map_or(0.0, |on| on.beyond * length);
-        let painting = if optics.is_textured() {
+        let texture_values = if bsdf.is_textured() {
             let towards = ray.direction / length;
-            let sides = footprint(element.face, towards, sight.cone.at(distance));
+            let sides = footprint(element.face, towards, bounded.cone.at(distance));
             let mut place = prepared.texture_place(triangle, weights(&hit), sides);
             if let Some(on) = exact {
                 (place.uv, place.own) = (on.uv, on.own);
             }
-            element.tilt(-towards, |normal| optics.tilted(&place, normal));
-            optics.texture_values(&place, comb)
+            element.tilt(-towards, |normal| bsdf.tilted(&place, normal));
+            bsdf.texture_values(&place, wavelength_set)
         } else {
             TextureValues::new()
         };
-        let mut along = optics.along;
+        let mut along = bsdf.brushed_along;
         if let Some(moved) = moved {
             element.carry(&moved);
             along = along.map(|along| moved.vector(along));
         }
-        RayHit::Surface(SurfaceInteraction { element, optics, triangle, object, material, distance, depth, t: hit.t, painting, along })
+        RayHit::Surface(SurfaceInteraction { element, bsdf, triangle, object, material, distance, depth, t: hit.t, texture_values, brushed_along: along })
     }
 
     /// Where a ray met an element: where a point stands for the surface, not all rays come to one place.
-    pub(in crate::render) fn hit_position(&self, found: &SurfaceInteraction<'_>, ray: &Ray) -> DVec3 {
-        self.points.as_ref().map_or(found.element.position, |_| ray.at(found.t))
+    pub(in crate::render) fn hit_position(&self, interaction: &SurfaceInteraction<'_>, ray: &Ray) -> DVec3 {
+        self.points.as_ref().map_or(interaction.element.position, |_| ray.at(interaction.t))
     }
 
     /// The light that an element emits, and how much of it counts.
@@ -187,16 +187,16 @@ impl<'a> World<'a> {
     /// - `part`: how much a source counts that would have drawn the direction with a density.
     pub(in crate::render) fn emitted(
         &self,
-        found: &SurfaceInteraction<'_>,
+        interaction: &SurfaceInteraction<'_>,
         towards: DVec3,
-        comb: usize,
+        wavelength_set: usize,
         part: impl Fn(&LightSource, f64) -> f64,
     ) -> Option<(Channels, f64)> {
-        let (emission, index) = self.appearance.emission(found.object, found.material, comb)?;
-        let cosine = towards.dot(found.element.face);
+        let (emission, index) = self.appearance.emission(interaction.object, interaction.material, wavelength_set)?;
+        let cosine = towards.dot(interaction.element.face);
         let counted = |index: usize| {
             let source = &self.appearance.sources[index].1;
-            part(source, source.pdf_on_triangle(found.distance, cosine))
+            part(source, source.pdf_on_triangle(interaction.distance, cosine))
         };
         Some((emission, index.map_or(1.0, counted)))
     }
@@ -205,10 +205,10 @@ impl<'a> World<'a> {
     /// of its coordinates. There is no air between the two.
     fn contact(&self, ray: &Ray, triangle: u32, hit: &Hit) -> Option<(Hit, u32)> {
         let prepared = self.appearance.prepared;
-        let optics = |triangle: u32| {
+        let bsdf = |triangle: u32| {
             self.appearance.bsdf(prepared.object_of[triangle as usize], prepared.material_number(triangle))
         };
-        let still = self.still().filter(|_| optics(triangle).interior.is_some())?;
+        let still = self.still().filter(|_| bsdf(triangle).interior.is_some())?;
         let width = clearance(prepared.corners(triangle)) / slope(prepared.corners(triangle), ray.direction).abs();
         if !width.is_finite() {
             return None;
@@ -216,8 +216,8 @@ impl<'a> World<'a> {
         let mut contact = None;
         still.octree.each_hit(ray, hit.t - width, hit.t + width, |other| {
             let triangle = still.triangle(other.triangle);
-            let optics = optics(triangle);
-            let is_opaque = optics.interior.is_none() && !optics.is_passable();
+            let bsdf = bsdf(triangle);
+            let is_opaque = bsdf.interior.is_none() && !bsdf.is_passable();
             if is_opaque {
                 contact = Some((other, triangle));
             }
@@ -232,19 +232,19 @@ impl<'a> World<'a> {
     pub(in crate::render) fn coincident(
         &self,
         ray: &Ray,
-        found: &SurfaceInteraction<'_>,
+        interaction: &SurfaceInteraction<'_>,
         mut give: impl FnMut(f64, u32, u32, bool),
     ) {
         let Some(still) = self.still().filter(|_| self.appearance.has_nested) else { return };
         let prepared = self.appearance.prepared;
-        let height = ray.direction.dot(found.element.face).abs();
-        let width = found.element.clearance / height;
+        let height = ray.direction.dot(interaction.element.face).abs();
+        let width = interaction.element.clearance / height;
         if !width.is_finite() {
             return;
         }
-        let mut seen = [(found.object, found.element.outside); MOST_COINCIDENT];
+        let mut seen = [(interaction.object, interaction.element.outside); MOST_COINCIDENT];
         let mut count = 1;
-        still.octree.each_hit(ray, found.t - width, found.t + width, |hit| {
+        still.octree.each_hit(ray, interaction.t - width, interaction.t + width, |hit| {
             let triangle = still.triangle(hit.triangle);
             let object = prepared.object_of[triangle as usize];
             let material = prepared.material_number(triangle);
@@ -296,27 +296,27 @@ impl<'a> World<'a> {
         &self,
         ray: &Ray,
         t_max: f64,
-        (index, way): (usize, Option<&Occluders>),
-        (comb, time): (usize, f64),
+        (index, occluders): (usize, Option<&Occluders>),
+        (wavelength_set, time): (usize, f64),
     ) -> (Channels, bool) {
         let blocks = |(other, (_, source)): (usize, &(usize, LightSource))| {
-            other != index && source.is_surface() && source.intersect(ray, 0.0, t_max, comb).is_some()
+            other != index && source.is_surface() && source.intersect(ray, 0.0, t_max, wavelength_set).is_some()
         };
         if self.appearance.sources.iter().enumerate().any(blocks) {
             return (Channels::ZERO, false);
         }
-        let shaft = match way {
+        let shaft = match occluders {
             Some(Occluders::Dark) => return (Channels::ZERO, false),
             Some(Occluders::Few(shaft)) => Some(&**shaft),
             _ => None,
         };
         let still = self.still();
         let (mut part, mut is_cleared) =
-            still.map_or((Channels::ONE, false), |still| self.octree_transmittance(still, shaft, ray, t_max, comb));
+            still.map_or((Channels::ONE, false), |still| self.octree_transmittance(still, shaft, ray, t_max, wavelength_set));
         for (motion, carried) in &self.acceleration.moving {
             if part != Channels::ZERO {
-                let (passed, cleared) = self.octree_transmittance(carried, None, &motion.at(time).still(ray), t_max, comb);
-                part *= passed;
+                let (transmittance, cleared) = self.octree_transmittance(carried, None, &motion.at(time).still(ray), t_max, wavelength_set);
+                part *= transmittance;
                 is_cleared |= cleared;
             }
         }
@@ -330,9 +330,9 @@ impl<'a> World<'a> {
         shaft: Option<&Shaft>,
         ray: &Ray,
         t_max: f64,
-        comb: usize,
+        wavelength_set: usize,
     ) -> (Channels, bool) {
-        if !(self.appearance.passing || self.appearance.clears) {
+        if !(self.appearance.has_passable || self.appearance.has_clear_shadows) {
             let occluded = match shaft {
                 Some(shaft) => over.octree.occluded_in(shaft, ray, 0.0, t_max),
                 None => over.octree.occluded(ray, 0.0, t_max),
@@ -341,14 +341,14 @@ impl<'a> World<'a> {
         }
         let prepared = self.appearance.prepared;
         let of = |hit: &Hit| over.triangle(hit.triangle);
-        let optics = |triangle: u32| {
+        let bsdf = |triangle: u32| {
             self.appearance.bsdf(prepared.object_of[triangle as usize], prepared.material_number(triangle))
         };
         let mut hits: Vec<Hit> = Vec::new();
-        let clears = self.appearance.clears;
+        let clears = self.appearance.has_clear_shadows;
         let enough = |hit: Hit| {
-            let optics = optics(of(&hit));
-            let passable = optics.is_passable() || clears && optics.is_clear();
+            let bsdf = bsdf(of(&hit));
+            let passable = bsdf.is_passable() || clears && bsdf.is_clear();
             if passable {
                 hits.push(hit);
             }
@@ -368,20 +368,20 @@ impl<'a> World<'a> {
         // Where the ray is in which body, since when.
         let mut inside: Vec<(u32, f64, &InteriorMedium)> = Vec::new();
         let left =
-            |interior: &InteriorMedium, way: f64| interior.absorption.of(comb).map(|absorption| (-absorption * way).exp());
+            |interior: &InteriorMedium, way: f64| interior.absorption.of(wavelength_set).map(|absorption| (-absorption * way).exp());
         let length = ray.direction.length();
         let mut is_cleared = false;
         let part = hits.iter().fold(Channels::ONE, |part, hit| {
             let triangle = of(hit);
-            let optics = optics(triangle);
+            let bsdf = bsdf(triangle);
             let slope = slope(prepared.corners(triangle), ray.direction) / length;
             let place = || prepared.texture_place(triangle, weights(hit), Default::default());
-            let Some(interior) = optics.interior.as_ref().filter(|_| !optics.is_passable()) else {
-                return part * optics.straight_transmittance(comb, slope.abs(), place);
+            let Some(interior) = bsdf.interior.as_ref().filter(|_| !bsdf.is_passable()) else {
+                return part * bsdf.straight_transmittance(wavelength_set, slope.abs(), place);
             };
             is_cleared = true;
             let object = prepared.object_of[triangle as usize];
-            let mut part = part * optics.clear_transmittance(comb, slope.abs(), place);
+            let mut part = part * bsdf.clear_transmittance(wavelength_set, slope.abs(), place);
             match (slope > 0.0, inside.iter().rposition(|(other, ..)| *other == object)) {
                 // It began within the body, if it did not come into it.
                 (true, entered) => {

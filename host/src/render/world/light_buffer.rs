@@ -42,7 +42,7 @@ pub(in crate::render) enum Occluders {
 #[derive(Default)]
 struct Entry {
     asked: AtomicU8,
-    way: OnceLock<Occluders>,
+    occluders: OnceLock<Occluders>,
 }
 
 /// A light, and which of a voxel's entries is its own.
@@ -125,20 +125,20 @@ impl LightBuffer {
             }
         };
         let entry = &brick[index(voxel.map(|i| i % BRICK), [BRICK; 3]) * self.entries + place.entry];
-        if let Some(way) = entry.way.get() {
-            return Some(way);
+        if let Some(occluders) = entry.occluders.get() {
+            return Some(occluders);
         }
         if entry.asked.fetch_add(1, Ordering::Relaxed) < ASKED {
             return None;
         }
-        Some(entry.way.get_or_init(|| self.find(octree, voxel, place)))
+        Some(entry.occluders.get_or_init(|| self.find(octree, voxel, place)))
     }
 
     /// Finds what stands between a voxel and a light.
-    fn find(&self, octree: &Octree, voxel: [usize; 3], place: &BufferedLight) -> Occluders {
+    fn find(&self, octree: &Octree, voxel: [usize; 3], light: &BufferedLight) -> Occluders {
         let low = self.origin + DVec3::from_array(voxel.map(|i| i as f64)) * self.side;
         let from = Bounds { min: low, max: low + DVec3::splat(self.side) };
-        let to = place.at.unwrap_or_else(|direction| {
+        let to = light.at.unwrap_or_else(|direction| {
             // Far enough to leave the scene from everywhere in it.
             let far = direction * (2.0 * self.side * VOXELS as f64);
             Bounds { min: from.min + far, max: from.max + far }

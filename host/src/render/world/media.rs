@@ -19,8 +19,8 @@ pub(in crate::render) struct MediumId {
 }
 
 impl MediumId {
-    fn of(found: &SurfaceInteraction<'_>) -> MediumId {
-        MediumId { object: found.object, material: found.material }
+    fn of(interaction: &SurfaceInteraction<'_>) -> MediumId {
+        MediumId { object: interaction.object, material: interaction.material }
     }
 
     fn interior<'a>(self, world: &'a World<'_>) -> Option<&'a InteriorMedium> {
@@ -76,21 +76,21 @@ impl Media {
 
     /// The bodies that a ray leaves without having come into them.
     fn left(world: &World<'_>, ray: Ray) -> Media {
-        let mut sight = BoundedRay { ray, t_min: 0.0, t_max: f64::INFINITY, cone: RayCone::default() };
+        let mut bounded = BoundedRay { ray, t_min: 0.0, t_max: f64::INFINITY, cone: RayCone::default() };
         let (mut left, mut entered) = (Media::default(), Media::default());
         loop {
-            let met = world.intersect(&sight, 0, 0.0);
-            let (t, found) = match met {
+            let hit = world.intersect(&bounded, 0, 0.0);
+            let (t, interaction) = match hit {
                 RayHit::Nothing => return left,
-                RayHit::Light(_, glow) => (glow.t, None),
-                RayHit::Surface(found) => (found.t, Some(found)),
+                RayHit::Light(_, light_hit) => (light_hit.t, None),
+                RayHit::Surface(interaction) => (interaction.t, Some(interaction)),
             };
-            sight.t_min = t.next_up();
-            if let Some(found) = found {
-                if found.element.outside || entered.holds(found.object) {
-                    entered.pass(&found);
+            bounded.t_min = t.next_up();
+            if let Some(interaction) = interaction {
+                if interaction.element.outside || entered.holds(interaction.object) {
+                    entered.pass(&interaction);
                 } else {
-                    left.notice(&found);
+                    left.notice(&interaction);
                 }
             }
         }
@@ -111,10 +111,10 @@ impl Media {
     }
 
     /// The part of light that comes through a length of what is here.
-    pub(in crate::render) fn transmittance(&self, world: &World<'_>, length: f64, comb: usize) -> Channels {
+    pub(in crate::render) fn transmittance(&self, world: &World<'_>, length: f64, wavelength_set: usize) -> Channels {
         match self.present(world).and_then(|body| body.interior(world)) {
             Some(interior) if interior.absorption.max() > 0.0 => {
-                interior.absorption.of(comb).map(|absorption| (-absorption * length).exp())
+                interior.absorption.of(wavelength_set).map(|absorption| (-absorption * length).exp())
             }
             _ => Channels::ONE,
         }
@@ -123,47 +123,47 @@ impl Media {
     /// What becomes of it at an element, and at the other surfaces of bodies that lie in the same place.
     ///
     /// - `ray`: that met the element.
-    pub(in crate::render) fn crossing(&self, world: &World<'_>, found: &SurfaceInteraction<'_>, ray: &Ray) -> MediumInterface {
+    pub(in crate::render) fn crossing(&self, world: &World<'_>, interaction: &SurfaceInteraction<'_>, ray: &Ray) -> MediumInterface {
         let mut inside = *self;
-        if found.optics.interior.is_none() {
+        if interaction.bsdf.interior.is_none() {
             let present = inside.present(world);
             return MediumInterface {
                 before: present,
                 behind: present,
                 media: inside,
-                last: found.t,
+                last: interaction.t,
                 inside: false,
                 is_interface: true,
             };
         }
         // The eye or a lamp may have been in the body from the beginning.
-        inside.notice(found);
+        inside.notice(interaction);
         let mut behind = inside;
-        behind.pass(found);
-        let mut last = found.t;
-        world.coincident(ray, found, |t, object, material, outside| {
+        behind.pass(interaction);
+        let mut last = interaction.t;
+        world.coincident(ray, interaction, |t, object, material, outside| {
             let body = MediumId { object, material };
             last = last.max(t);
             if outside { behind.enter(body) } else { behind.leave(object) }
         });
         let [from, to] = [inside, behind].map(|media| media.present(world));
-        let is_inside = !found.element.outside;
+        let is_inside = !interaction.element.outside;
         MediumInterface { before: from, behind: to, media: behind, last, inside: is_inside, is_interface: from != to }
     }
 
     /// Goes through an element, into its body or out of it.
-    fn pass(&mut self, found: &SurfaceInteraction<'_>) {
-        if found.optics.interior.is_none() {
+    fn pass(&mut self, interaction: &SurfaceInteraction<'_>) {
+        if interaction.bsdf.interior.is_none() {
             return;
         }
-        if found.element.outside { self.enter(MediumId::of(found)) } else { self.leave(found.object) }
+        if interaction.element.outside { self.enter(MediumId::of(interaction)) } else { self.leave(interaction.object) }
     }
 
     /// Takes note of the body of an element that is met from inside, if light began there.
-    pub(in crate::render) fn notice(&mut self, found: &SurfaceInteraction<'_>) {
-        let is_inner = found.optics.interior.is_some() && !found.element.outside;
-        if is_inner && !self.holds(found.object) {
-            self.enter(MediumId::of(found));
+    pub(in crate::render) fn notice(&mut self, interaction: &SurfaceInteraction<'_>) {
+        let is_inner = interaction.bsdf.interior.is_some() && !interaction.element.outside;
+        if is_inner && !self.holds(interaction.object) {
+            self.enter(MediumId::of(interaction));
         }
     }
 
@@ -184,10 +184,10 @@ impl Media {
 
 impl MediumInterface {
     /// The refractive indices before and behind the element; 1 where there is no body.
-    pub(in crate::render) fn indices(&self, world: &World<'_>, comb: usize) -> InterfaceIndices {
+    pub(in crate::render) fn indices(&self, world: &World<'_>, wavelength_set: usize) -> InterfaceIndices {
         let [before, behind] = [self.before, self.behind].map(|body| {
             let interior = body.and_then(|body| body.interior(world));
-            interior.map_or(Channels::ONE, |interior| interior.index.of(comb))
+            interior.map_or(Channels::ONE, |interior| interior.index.of(wavelength_set))
         });
         InterfaceIndices { before, behind, inside: self.inside }
     }

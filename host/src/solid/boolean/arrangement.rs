@@ -75,7 +75,7 @@ pub struct Counts {
     /// Rays that were sent to classify them.
     pub rays: u64,
     /// If rounding made the result cross itself: the attempt that made it simple again, the first as 1.
-    pub settled: u64,
+    pub repair_attempt: u64,
 }
 
 /// The points, carriers and contents of the faces near other operands.
@@ -85,7 +85,7 @@ pub struct Arrangement {
     /// The lower triangle, counted over all operands, of each face.
     pub triangles: Vec<u32>,
     /// Contents of each face.
-    pub contents: Vec<FaceArrangement>,
+    pub face_arrangements: Vec<FaceArrangement>,
     /// The points; several may be one, see [`Arrangement::point`].
     pub points: Vec<ImplicitPoint>,
     /// Vertices by point, where the point is one.
@@ -93,7 +93,7 @@ pub struct Arrangement {
     /// Whether something of another operand passes through the point.
     pub on_other: Vec<bool>,
     /// Faces that overlap in one plane, joined.
-    pub sheets: UnionFind,
+    pub coplanar_groups: UnionFind,
     /// For each triangle, counted over all operands, whether it may matter.
     pub is_relevant: Vec<bool>,
     /// Work done.
@@ -103,7 +103,7 @@ pub struct Arrangement {
     carriers: Vec<Carrier>,
     of_edge: FxHashMap<EdgeKey, u32>,
     of_faces: FxHashMap<[u32; 2], u32>,
-    place: FxHashMap<u32, DVec3>,
+    positions: FxHashMap<u32, DVec3>,
     ambiguous: FxHashSet<u32>,
 }
 
@@ -117,9 +117,9 @@ impl Arrangement {
     ///
     /// Those that cannot matter to an expression are left out.
     pub fn new(operands: &Operands, expression: &Expression) -> Arrangement {
-        let standing = PartialEvaluation::outside(expression, operands.meshes().len());
-        let burial = BuriedTriangles::of(operands, &standing);
-        let mut pairs = operands.pairs(|operand| burial.visible(operands, operand));
+        let evaluation = PartialEvaluation::outside(expression, operands.meshes().len());
+        let buried = BuriedTriangles::of(operands, &evaluation);
+        let mut pairs = operands.pairs(|operand| buried.visible(operands, operand));
         let count = pairs.len() as u64;
         if !operands.are_simple {
             (0..operands.meshes().len() as u32).for_each(|operand| pairs.extend(operands.overlaps(operand)));
@@ -127,7 +127,7 @@ impl Arrangement {
         let mut faces = CandidateFaces::default();
         faces.add(operands, pairs.as_flattened());
         let mut contacts = contacts(&faces, &pairs);
-        let is_relevant = relevant(operands, &standing, &burial, &touching(operands, &faces, &contacts));
+        let is_relevant = relevant(operands, &evaluation, &buried, &touching(operands, &faces, &contacts));
         // Names are given to what is left only: a vertex of a face that was left out is no vertex of the others.
         let matters: Vec<bool> = faces
             .triangles
@@ -146,11 +146,11 @@ impl Arrangement {
         // Mostly each contact has an end of its own, and each face a corner.
         let room = contacts.len() + divided;
         let mut arrangement = Arrangement {
-            contents: vec![FaceArrangement::default(); all],
+            face_arrangements: vec![FaceArrangement::default(); all],
             points: Vec::with_capacity(room),
             vertices: Vec::with_capacity(room),
             on_other: Vec::with_capacity(room),
-            sheets: UnionFind::new(all),
+            coplanar_groups: UnionFind::new(all),
             is_relevant,
             counts: Counts { pairs: count, contacts: contacts.len() as u64, ..Counts::default() },
             same: UnionFind::new(0),
@@ -158,7 +158,7 @@ impl Arrangement {
             carriers: Vec::with_capacity(room),
             of_edge: FxHashMap::with_capacity_and_hasher(contacts.len(), Default::default()),
             of_faces: FxHashMap::with_capacity_and_hasher(contacts.len(), Default::default()),
-            place: faces.place,
+            positions: faces.positions,
             ambiguous: faces.ambiguous,
             faces: faces.faces,
             triangles: faces.triangles,
@@ -166,7 +166,7 @@ impl Arrangement {
         for (pair, contact) in &contacts {
             arrangement.take(operands, *pair, contact);
         }
-        arrangement.contents[divided..].iter_mut().for_each(|content| content.is_touched = true);
+        arrangement.face_arrangements[divided..].iter_mut().for_each(|content| content.is_touched = true);
         arrangement.cross();
         arrangement.sort_points();
         arrangement.corners();
@@ -181,7 +181,7 @@ impl Arrangement {
 
     /// Faces that something touches.
     pub fn touched(&self) -> impl Iterator<Item = u32> {
-        (0..self.faces.len() as u32).filter(|&face| self.contents[face as usize].is_touched)
+        (0..self.faces.len() as u32).filter(|&face| self.face_arrangements[face as usize].is_touched)
     }
 
     /// Points inside the edge of a face from corner `k` to the next, in that order.
@@ -235,13 +235,13 @@ impl Arrangement {
     }
 
     fn ends(&self, edge: EdgeKey) -> [DVec3; 2] {
-        edge.map(|vertex| self.place[&vertex])
+        edge.map(|vertex| self.positions[&vertex])
     }
 
     fn definition(&self, key: PointKey) -> PointDefinition {
         let plane = |face: u32| self.faces[face as usize].plane();
         match key {
-            PointKey::Vertex(vertex) => PointDefinition::Given(self.place[&vertex]),
+            PointKey::Vertex(vertex) => PointDefinition::Given(self.positions[&vertex]),
             PointKey::Pierced(edge, face) => PointDefinition::LineAndPlane(self.ends(edge), plane(face)),
             PointKey::Faces(faces) => PointDefinition::Planes(faces.map(plane)),
             PointKey::Edges(one, two) => PointDefinition::crossing(self.ends(one), self.ends(two)),
@@ -285,7 +285,7 @@ impl Arrangement {
             // Lines of one operand that does not cross itself cross no others of it.
             let partner =
                 if operands.are_simple { operands.of_triangle(self.triangles[other as usize]) } else { SEVERAL };
-            let content = &mut self.contents[face as usize];
+            let content = &mut self.face_arrangements[face as usize];
             content.is_touched = true;
             content.partner = match content.partner {
                 Some(known) if known != partner => Some(SEVERAL),
@@ -300,7 +300,7 @@ impl Arrangement {
                         self.add(carrier, id);
                     }
                     Feature::Inside => {
-                        let inner = &mut self.contents[face as usize].inner;
+                        let inner = &mut self.face_arrangements[face as usize].inner;
                         if !inner.contains(&id) {
                             inner.push(id);
                         }
@@ -311,7 +311,7 @@ impl Arrangement {
         if contact.coplanar {
             self.edges_in_plane([a, b], contact, &ids);
             if ids.len() > 2 {
-                self.sheets.join(a, b);
+                self.coplanar_groups.join(a, b);
             }
         } else if let ([p, q], [one, two]) = (&contact.points[..], &ids[..]) {
             self.segment([a, b], [p, q], [*one, *two]);
@@ -341,7 +341,7 @@ impl Arrangement {
     }
 
     fn push_segment(&mut self, face: u32, segment: Segment) {
-        let segments = &mut self.contents[face as usize].segments;
+        let segments = &mut self.face_arrangements[face as usize].segments;
         let swapped = Segment { ends: [segment.ends[1], segment.ends[0]], ..segment };
         if !segments.contains(&segment) && !segments.contains(&swapped) {
             segments.push(segment);
@@ -373,7 +373,7 @@ impl Arrangement {
     /// Where lines of several operands cross in a face: two operands whose own faces do not cross make none.
     fn cross(&mut self) {
         for face in 0..self.faces.len() {
-            if self.contents[face].partner == Some(SEVERAL) {
+            if self.face_arrangements[face].partner == Some(SEVERAL) {
                 self.cross_in(face as u32);
             }
         }
@@ -381,7 +381,7 @@ impl Arrangement {
 
     fn cross_in(&mut self, face: u32) {
         let axis = self.faces[face as usize].axis;
-        let segments = self.contents[face as usize].segments.clone();
+        let segments = self.face_arrangements[face as usize].segments.clone();
         let boxes: Vec<_> = segments
             .iter()
             .map(|s| self.points[s.ends[0] as usize].bounds().union(self.points[s.ends[1] as usize].bounds()))
@@ -398,7 +398,7 @@ impl Arrangement {
             }
         }
         // Points of one operand on lines of another.
-        let inner = self.contents[face as usize].inner.clone();
+        let inner = self.face_arrangements[face as usize].inner.clone();
         for point in inner {
             let at = self.points[point as usize].bounds();
             for (segment, near) in segments.iter().zip(&boxes) {
@@ -498,7 +498,7 @@ impl Arrangement {
         let pairs: Vec<[u32; 2]> = self.carriers.iter().flat_map(neighbours).collect();
         pairs.into_iter().for_each(|pair| self.unite(pair));
         let several = |content: &&FaceArrangement| content.partner == Some(SEVERAL);
-        let pairs: Vec<Vec<[u32; 2]>> = self.contents.par_iter().filter(several).map(|c| self.near_pairs(c)).collect();
+        let pairs: Vec<Vec<[u32; 2]>> = self.face_arrangements.par_iter().filter(several).map(|c| self.near_pairs(c)).collect();
         pairs.into_iter().flatten().for_each(|pair| self.unite(pair));
     }
 
@@ -539,11 +539,11 @@ impl Arrangement {
 
     fn corners(&mut self) {
         for face in 0..self.faces.len() {
-            if self.contents[face].is_touched {
+            if self.face_arrangements[face].is_touched {
                 let shape = self.faces[face];
                 for (k, &vertex) in shape.vertices().iter().enumerate() {
                     let corner = self.id(PointKey::Vertex(vertex));
-                    self.contents[face].corners[k] = self.point(corner);
+                    self.face_arrangements[face].corners[k] = self.point(corner);
                 }
             }
         }

@@ -19,14 +19,14 @@ pub struct BuriedTriangles {
     /// Of each operand with buried triangles, the others by place; empty if there is none.
     visible: Vec<Option<TriangleBvh>>,
     /// Of each operand, its cells, those marked that its buried triangles touch.
-    cores: Vec<Option<InteriorGrid>>,
+    interiors: Vec<Option<InteriorGrid>>,
 }
 
 impl BuriedTriangles {
     /// Finds buried triangles. With two operands there are none.
     ///
     /// - `standing`: of a point outside all operands.
-    pub fn of(operands: &Operands, standing: &PartialEvaluation) -> BuriedTriangles {
+    pub fn of(operands: &Operands, evaluation: &PartialEvaluation) -> BuriedTriangles {
         let count = operands.meshes().len() as u32;
         if count < 3 {
             return BuriedTriangles::default();
@@ -36,9 +36,9 @@ impl BuriedTriangles {
         let is_asked =
             |operand: u32| has_two[operand as usize] || operands.near(operand).any(|other| has_two[other as usize]);
         let core = |operand: u32| is_asked(operand).then(|| InteriorGrid::of(operands, operand)).flatten();
-        let mut cores: Vec<Option<InteriorGrid>> = (0..count).into_par_iter().map(core).collect();
+        let mut interiors: Vec<Option<InteriorGrid>> = (0..count).into_par_iter().map(core).collect();
         let of_operand = |operand: u32| match has_two[operand as usize] {
-            true => buried_of(operands, &cores, standing.clone(), operand),
+            true => buried_of(operands, &interiors, evaluation.clone(), operand),
             false => Vec::new(),
         };
         let found: Vec<Vec<u32>> = (0..count).into_par_iter().map(of_operand).collect();
@@ -52,12 +52,12 @@ impl BuriedTriangles {
             (!found.is_empty()).then(|| operands.sorted(operand).only(is_seen))
         };
         let visible = (0..count).into_par_iter().zip(&found).map(visible).collect();
-        cores.par_iter_mut().zip(found).enumerate().for_each(|(operand, (core, found))| {
+        interiors.par_iter_mut().zip(found).enumerate().for_each(|(operand, (core, found))| {
             let mesh = operands.meshes()[operand];
             core.iter_mut()
                 .for_each(|core| found.iter().for_each(|&t| core.mark(Bounds::of(mesh.corners(t as usize)))));
         });
-        BuriedTriangles { is_buried, visible, cores }
+        BuriedTriangles { is_buried, visible, interiors }
     }
 
     /// Whether a triangle, counted over all operands, is buried.
@@ -73,25 +73,25 @@ impl BuriedTriangles {
 
     /// Whether a box may touch a buried triangle of an operand.
     pub fn is_beside(&self, bounds: Bounds, operand: u32) -> bool {
-        let core = self.cores.get(operand as usize).and_then(|core| core.as_ref());
+        let core = self.interiors.get(operand as usize).and_then(|core| core.as_ref());
         core.is_some_and(|core| core.is_marked(bounds))
     }
 }
 
 /// The buried triangles of an operand. Two that make one face are both buried, or neither.
-fn buried_of(operands: &Operands, cores: &[Option<InteriorGrid>], mut standing: PartialEvaluation, operand: u32) -> Vec<u32> {
+fn buried_of(operands: &Operands, interiors: &[Option<InteriorGrid>], mut evaluation: PartialEvaluation, operand: u32) -> Vec<u32> {
     // Without cells of its own it could not be told who is beside them.
-    if cores[operand as usize].is_none() {
+    if interiors[operand as usize].is_none() {
         return Vec::new();
     }
     let mesh = operands.meshes()[operand as usize];
     let sorted = operands.sorted(operand);
-    standing.set(operand, None);
+    evaluation.set(operand, None);
     // A triangle, and an operand that holds it.
     let mut held: Vec<(u32, u32)> = Vec::new();
     for other in operands.near(operand) {
-        standing.set(other, None);
-        let Some(core) = cores[other as usize].as_ref().filter(|core| !core.bounds().is_empty()) else { continue };
+        evaluation.set(other, None);
+        let Some(core) = interiors[other as usize].as_ref().filter(|core| !core.bounds().is_empty()) else { continue };
         sorted.touching_boxes(core.bounds(), |triangle, bounds| {
             if core.contains(bounds) {
                 held.push((triangle, other));
@@ -101,9 +101,9 @@ fn buried_of(operands: &Operands, cores: &[Option<InteriorGrid>], mut standing: 
     held.sort_unstable();
     let mut is_buried = vec![false; mesh.triangles.len()];
     for group in held.chunk_by(|a, b| a.0 == b.0) {
-        group.iter().for_each(|&(_, other)| standing.set(other, Some(true)));
-        is_buried[group[0].0 as usize] = !standing.depends_on(operand);
-        group.iter().for_each(|&(_, other)| standing.set(other, None));
+        group.iter().for_each(|&(_, other)| evaluation.set(other, Some(true)));
+        is_buried[group[0].0 as usize] = !evaluation.depends_on(operand);
+        group.iter().for_each(|&(_, other)| evaluation.set(other, None));
     }
     let first = operands.first_triangle(operand);
     let whole = |triangle: &u32| operands.halves(first + triangle).all(|half| is_buried[(half - first) as usize]);

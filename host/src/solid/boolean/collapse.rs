@@ -42,12 +42,12 @@ pub fn all_new(operands: &Operands, outcome: &Outcome) -> NewTriangles {
             mesh.triangles[triangle].into_iter().for_each(|vertex| is_free[vertex as usize] = false);
         }
     }
-    NewTriangles { first: 0, first_vertex: 0, is_free, kept: None }
+    NewTriangles { first: 0, first_vertex: 0, is_free, whole: None }
 }
 
 /// Leaves out points of triangles that were made by the operation which no face needs.
-pub fn collapse(operands: &Operands, outcome: &mut Outcome, made: &NewTriangles) {
-    let mut work = Collapsing::new(operands, outcome, made);
+pub fn collapse(operands: &Operands, outcome: &mut Outcome, new_triangles: &NewTriangles) {
+    let mut work = Collapsing::new(operands, outcome, new_triangles);
     let mut open: Vec<u32> = work.candidates();
     for _ in 0..ROUNDS {
         let proposed = work.proposed(&open);
@@ -69,7 +69,7 @@ pub fn collapse(operands: &Operands, outcome: &mut Outcome, made: &NewTriangles)
         }
         next.sort_unstable();
         next.dedup();
-        next.retain(|vertex| made.number(*vertex).is_some());
+        next.retain(|vertex| new_triangles.number(*vertex).is_some());
         open = next;
     }
     work.finish();
@@ -90,7 +90,7 @@ enum State {
 struct Collapsing<'a> {
     operands: &'a Operands<'a>,
     outcome: &'a mut Outcome,
-    made: &'a NewTriangles,
+    new: &'a NewTriangles,
     /// The largest coordinate of the operands.
     largest: f64,
     /// Triangles from the first that was made on; those that were changed before are not where it says.
@@ -98,7 +98,7 @@ struct Collapsing<'a> {
     /// What became of each of them.
     states: Vec<State>,
     /// Those that were changed, in turn.
-    in_turn: Vec<u32>,
+    change_order: Vec<u32>,
     /// By vertex from the first that may go on: the first of its triangles in the list.
     firsts: Vec<u32>,
     /// Triangles by vertex that may go.
@@ -128,11 +128,11 @@ impl<'a> Collapsing<'a> {
         Collapsing {
             operands,
             outcome,
-            made,
+            new: made,
             largest: operands.largest(),
             sorted: OnceLock::new(),
             states,
-            in_turn: Vec::new(),
+            change_order: Vec::new(),
             firsts,
             triangles,
             changed,
@@ -141,14 +141,14 @@ impl<'a> Collapsing<'a> {
     }
 
     fn candidates(&self) -> Vec<u32> {
-        let vertices = self.made.first_vertex..self.outcome.mesh.vertices.len() as u32;
-        vertices.filter(|vertex| self.made.number(*vertex).is_some()).collect()
+        let vertices = self.new.first_vertex..self.outcome.mesh.vertices.len() as u32;
+        vertices.filter(|vertex| self.new.number(*vertex).is_some()).collect()
     }
 
     /// The triangles at a vertex that may go.
     fn around(&self, vertex: u32) -> &[u32] {
         let listed = || {
-            let Some(number) = self.made.number(vertex) else { return &[][..] };
+            let Some(number) = self.new.number(vertex) else { return &[][..] };
             &self.triangles[self.firsts[number] as usize..self.firsts[number + 1] as usize]
         };
         self.changed.get(&vertex).map_or_else(listed, Vec::as_slice)
@@ -156,12 +156,12 @@ impl<'a> Collapsing<'a> {
 
     /// What may be done with some vertices, as far as the places of their neighbours tell.
     fn proposed(&self, vertices: &[u32]) -> Vec<Collapse> {
-        let judge = CollapseCriteria { operands: self.operands, outcome: self.outcome, largest: self.largest };
+        let criteria = CollapseCriteria { operands: self.operands, outcome: self.outcome, largest: self.largest };
         let propose = |&vertex: &u32| {
             let around = self.around(vertex);
-            let fan = judge.may_collapse(vertex, around).then(|| judge.fan(vertex, around))??;
+            let fan = criteria.may_collapse(vertex, around).then(|| criteria.fan(vertex, around))??;
             let refused = self.refused.get(&vertex).map_or(&[][..], Vec::as_slice);
-            judge.collapse(fan, |onto| refused.contains(&onto))
+            criteria.collapse(fan, |onto| refused.contains(&onto))
         };
         vertices.par_iter().with_min_len(256).filter_map(propose).collect()
     }
@@ -189,7 +189,7 @@ impl<'a> Collapsing<'a> {
     /// Whether each collapse leaves the surface simple, others of them done or not.
     fn verdicts(&self, chosen: &[Collapse]) -> Vec<Verdict> {
         let mesh = &self.outcome.mesh;
-        let first = self.made.first;
+        let first = self.new.first;
         let mut new: Vec<New> = Vec::new();
         let mut of_triangle: FxHashMap<u32, u32> = FxHashMap::default();
         for (collapse, number) in chosen.iter().zip(0..) {
@@ -223,10 +223,10 @@ impl<'a> Collapsing<'a> {
         };
         refuse(self.near_still(&sorted, is_met));
         let is_left = |triangle: &u32| self.states[*triangle as usize - first] == State::Changed;
-        let changed: Vec<u32> = self.in_turn.iter().copied().filter(is_left).collect();
+        let changed: Vec<u32> = self.change_order.iter().copied().filter(is_left).collect();
         let of_changed = sorted_boxes(changed.iter().map(|triangle| mesh.corners(*triangle as usize)));
         refuse(sorted.pairs_if(&of_changed.all(), |a, b| is_met(a, changed[b as usize])));
-        let Some(kept) = &self.made.kept else { return verdicts };
+        let Some(kept) = &self.new.whole else { return verdicts };
         for operand in 0..self.operands.meshes().len() as u32 {
             let mesh = self.operands.meshes()[operand as usize];
             let [first_vertex, first] = [self.operands.first_vertex(operand), self.operands.first_triangle(operand)];
@@ -243,11 +243,11 @@ impl<'a> Collapsing<'a> {
 
     /// Pairs of some boxes and triangles that were made and are still as they were, near each other, that `keep` accepts.
     fn near_still(&self, boxes: &TriangleBvh, keep: impl Fn(u32, u32) -> bool + Sync) -> Vec<[u32; 2]> {
-        let first = self.made.first as u32;
+        let first = self.new.first as u32;
         let mesh = &self.outcome.mesh;
         let is_still = |number: u32| self.states[number as usize] == State::Still;
         if boxes.count() > FEW {
-            let all = || sorted_boxes((self.made.first..mesh.triangles.len()).map(|triangle| mesh.corners(triangle)));
+            let all = || sorted_boxes((self.new.first..mesh.triangles.len()).map(|triangle| mesh.corners(triangle)));
             let sorted = self.sorted.get_or_init(all);
             return boxes.pairs_if(&sorted.all(), |a, b| is_still(b) && keep(a, first + b));
         }
@@ -279,17 +279,17 @@ impl<'a> Collapsing<'a> {
                 }
             }
             mesh.triangles[slot][k] = corners[0];
-            if let state @ State::Still = &mut self.states[slot - self.made.first] {
+            if let state @ State::Still = &mut self.states[slot - self.new.first] {
                 *state = State::Changed;
-                self.in_turn.push(triangle);
+                self.change_order.push(triangle);
             }
         }
-        collapse.gone.iter().for_each(|gone| self.states[*gone as usize - self.made.first] = State::Gone);
+        collapse.gone.iter().for_each(|gone| self.states[*gone as usize - self.new.first] = State::Gone);
         let is_left = |triangle: &u32| !collapse.gone.contains(triangle);
         let mut ring: Vec<u32> = collapse.stay.iter().flat_map(|(_, corners)| *corners).collect();
         ring.sort_unstable();
         ring.dedup();
-        for vertex in ring.into_iter().filter(|vertex| self.made.number(*vertex).is_some()) {
+        for vertex in ring.into_iter().filter(|vertex| self.new.number(*vertex).is_some()) {
             let mut around: Vec<u32> = self.around(vertex).iter().copied().filter(is_left).collect();
             if vertex == collapse.onto {
                 around.extend(collapse.stay.iter().map(|(triangle, _)| *triangle));
@@ -305,7 +305,7 @@ impl<'a> Collapsing<'a> {
         if !self.states.contains(&State::Gone) {
             return;
         }
-        let whole = std::iter::repeat_n(true, self.made.first);
+        let whole = std::iter::repeat_n(true, self.new.first);
         let keep: Vec<bool> = whole.chain(self.states.iter().map(|state| *state != State::Gone)).collect();
         retain(&mut self.outcome.mesh, &keep);
         let mut kept = keep.iter();
@@ -476,16 +476,16 @@ mod tests {
             let (meshes, surfaces): (Vec<Mesh>, Vec<_>) = meshes.into_iter().unzip();
             let solids: Vec<Solid> =
                 meshes.iter().zip(&turns).map(|(mesh, by)| Solid::new(mesh.transformed(by)).unwrap()).collect();
-            let mates: Vec<Vec<u32>> = solids.iter().map(|solid| quad_partners(solid.mesh())).collect();
+            let quad_partners: Vec<Vec<u32>> = solids.iter().map(|solid| quad_partners(solid.mesh())).collect();
             let operand = |k: usize| Operand {
                 mesh: solids[k].mesh(),
                 sorted: solids[k].sorted(),
-                mates: &mates[k],
+                quad_partners: &quad_partners[k],
                 overlaps: &[],
             };
             let operands = Operands::new((0..count).map(operand).collect(), true);
             for expression in expressions(count) {
-                let Evaluation { outcome: old, made, must_settle, .. } = evaluate_once(&operands, &expression);
+                let Evaluation { outcome: old, new: made, self_intersects: must_settle, .. } = evaluate_once(&operands, &expression);
                 if must_settle {
                     continue;
                 }

@@ -28,7 +28,7 @@ pub struct ConvexFace {
     /// The axis to leave out, so that an area stays, and which way the corners then turn.
     pub axis: usize,
     /// 1.0 or -1.0.
-    pub turn: f64,
+    pub orientation: f64,
     /// The plane of it.
     plane: Plane,
 }
@@ -39,7 +39,7 @@ impl ConvexFace {
         let (axis, turn) = projection(corners)?;
         let ([u, v, w], [a, b, c]) = (vertices, corners);
         let plane = Plane::through(corners);
-        Some(ConvexFace { id, sides: 3, vertices: [u, v, w, u], corners: [a, b, c, a], axis, turn, plane })
+        Some(ConvexFace { id, sides: 3, vertices: [u, v, w, u], corners: [a, b, c, a], axis, orientation: turn, plane })
     }
 
     /// The face with a corner more, between the last and the first: in its plane, and so that it stays convex.
@@ -52,7 +52,7 @@ impl ConvexFace {
     /// one line.
     pub fn is_convex_with(&self, corner: DVec3) -> bool {
         let [first, second, third] = self.plane();
-        let turns = |a, b, c| planar_orientation(self.axis, a, b, c) == self.turn;
+        let turns = |a, b, c| planar_orientation(self.axis, a, b, c) == self.orientation;
         self.plane.side(corner) == 0.0
             && turns(second, third, corner)
             && turns(third, corner, first)
@@ -313,7 +313,7 @@ fn locate(face: &ConvexFace, point: DVec3) -> Option<Feature> {
     let mut turns = [0.0; 4];
     for (k, turn) in turns[..face.sides].iter_mut().enumerate() {
         let [a, b] = face.ends(k);
-        *turn = planar_orientation(face.axis, a, b, point) * face.turn;
+        *turn = planar_orientation(face.axis, a, b, point) * face.orientation;
         if *turn < 0.0 {
             return None;
         }

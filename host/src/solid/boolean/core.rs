@@ -243,7 +243,7 @@ mod tests {
 
     fn core_of(mesh: &Mesh) -> Option<InteriorGrid> {
         let sorted = TriangleBvh::new(&mesh.vertices, &mesh.triangles);
-        InteriorGrid::of(&Operands::new(vec![Operand { mesh, sorted: &sorted, mates: &[], overlaps: &[] }], true), 0)
+        InteriorGrid::of(&Operands::new(vec![Operand { mesh, sorted: &sorted, quad_partners: &[], overlaps: &[] }], true), 0)
     }
 
     /// A ball of radius 1 with a hollow of radius 0.4, stretched and moved.

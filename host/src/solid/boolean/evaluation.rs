@@ -28,7 +28,7 @@ pub fn evaluate(solids: Vec<Operand<'_>>, expression: &Expression) -> Result<Out
 /// Evaluates an expression over meshes with coordinates that predicates can be exact with.
 fn evaluate_on_lattice(solids: Vec<Operand<'_>>, expression: &Expression) -> Result<Outcome, SolidError> {
     let operands = Operands::new(solids, true);
-    let Evaluation { outcome, made, must_settle, .. } = evaluate_once(&operands, expression);
+    let Evaluation { outcome, new: made, self_intersects: must_settle, .. } = evaluate_once(&operands, expression);
     let (mut outcome, made) = if must_settle {
         let outcome = without_self_intersections(outcome)?;
         let made = all_new(&operands, &outcome);
@@ -67,7 +67,7 @@ impl Lattice {
         let filed = laid.par_iter().map(|(mesh, _)| (TriangleBvh::new(&mesh.vertices, &mesh.triangles), quad_partners(mesh)));
         let filed: Vec<(TriangleBvh, Vec<u32>)> = filed.collect();
         let operands =
-            laid.iter().zip(&filed).map(|((mesh, _), (sorted, mates))| Operand { mesh, sorted, mates, overlaps: &[] });
+            laid.iter().zip(&filed).map(|((mesh, _), (sorted, mates))| Operand { mesh, sorted, quad_partners: mates, overlaps: &[] });
         let mut outcome = evaluate_on_lattice(operands.collect(), expression).map_err(back)?;
         let source = |[operand, triangle]: [u32; 2]| [operand, laid[operand as usize].1[triangle as usize]];
         outcome.sources.iter_mut().for_each(|of| *of = source(*of));

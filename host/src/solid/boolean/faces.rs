@@ -40,7 +40,7 @@ pub struct CandidateFaces {
     /// Face by its lower triangle, or [`NONE`].
     of_triangle: Vec<u32>,
     /// Where the vertices are, by name.
-    pub place: FxHashMap<u32, DVec3>,
+    pub positions: FxHashMap<u32, DVec3>,
     /// The names by place.
     first_at: FxHashMap<[u64; 3], u32>,
     /// Names that several vertices share.
@@ -89,14 +89,14 @@ impl CandidateFaces {
                 face.rename(k, name);
                 changed.push((vertex, name));
             }
-            self.place.insert(name, place);
+            self.positions.insert(name, place);
         }
         changed
     }
 
     /// All triangles around the vertices among some points.
     pub fn around<'a>(&self, operands: &Operands, points: impl Iterator<Item = &'a CommonPoint>) -> Vec<u32> {
-        let place = |point: &CommonPoint| if let PointKey::Vertex(name) = point.key { self.place.get(&name) } else { None };
+        let place = |point: &CommonPoint| if let PointKey::Vertex(name) = point.key { self.positions.get(&name) } else { None };
         let places: FxHashSet<[u64; 3]> = points.filter_map(place).map(|place| crate::mesh::bits(*place)).collect();
         let is_at =
             |triangle: &u32| operands.corners(*triangle).1.iter().any(|c| places.contains(&crate::mesh::bits(*c)));

@@ -39,7 +39,7 @@ pub fn divide(arrangement: &Arrangement) -> Vec<Facet> {
     let mut sheets: FxHashMap<u32, usize> = FxHashMap::default();
     let mut members: Vec<Vec<u32>> = Vec::new();
     for face in arrangement.touched() {
-        let sheet = *sheets.entry(arrangement.sheets.root(face)).or_insert_with(|| {
+        let sheet = *sheets.entry(arrangement.coplanar_groups.root(face)).or_insert_with(|| {
             members.push(Vec::new());
             members.len() - 1
         });
@@ -60,7 +60,7 @@ pub fn divide(arrangement: &Arrangement) -> Vec<Facet> {
 fn border(arrangement: &Arrangement, face: u32) -> Vec<u32> {
     let mut border = Vec::new();
     for k in arrangement.faces[face as usize].numbers() {
-        border.push(arrangement.contents[face as usize].corners[k as usize]);
+        border.push(arrangement.face_arrangements[face as usize].corners[k as usize]);
         border.extend(arrangement.on_edge(face, k));
     }
     border
@@ -110,7 +110,7 @@ impl<'a> NumberedTriangulation<'a> {
 
     /// Puts in lines, and what lies in faces.
     fn fill(&mut self, mut lines: Vec<Vec<u32>>, faces: &[u32]) {
-        let contents = faces.iter().map(|&face| &self.arrangement.contents[face as usize]);
+        let contents = faces.iter().map(|&face| &self.arrangement.face_arrangements[face as usize]);
         lines.extend(contents.clone().flat_map(|content| &content.segments).map(|s| self.arrangement.pieces(s)));
         let inner = contents.flat_map(|content| &content.inner).map(|&point| self.arrangement.point(point));
         let points: Vec<u32> = lines.iter().flatten().copied().chain(inner).collect();
@@ -125,8 +125,8 @@ impl<'a> NumberedTriangulation<'a> {
 }
 
 fn divide_face(arrangement: &Arrangement, face: u32) -> Vec<Facet> {
-    let (content, shape) = (&arrangement.contents[face as usize], &arrangement.faces[face as usize]);
-    let is_turned = shape.turn < 0.0;
+    let (content, shape) = (&arrangement.face_arrangements[face as usize], &arrangement.faces[face as usize]);
+    let is_turned = shape.orientation < 0.0;
     let mut corners = content.corners;
     if is_turned {
         corners[1..shape.sides].reverse();
@@ -151,7 +151,7 @@ fn divide_face(arrangement: &Arrangement, face: u32) -> Vec<Facet> {
         sheet.outside.extend(points);
     }
     sheet.fill(Vec::new(), &[face]);
-    let facet = |triangle| Facet { corners: sheet.facet(triangle, shape.turn), face, others: Vec::new() };
+    let facet = |triangle| Facet { corners: sheet.facet(triangle, shape.orientation), face, others: Vec::new() };
     (0..sheet.triangulation.triangles.len()).map(facet).collect()
 }
 
@@ -213,8 +213,8 @@ impl PlanarRegion<'_> {
         };
         sheet.insert(self.points);
         self.borders.iter().for_each(|&border| sheet.fix(border));
-        let found = inside_of(&sheet, face.turn, self.borders.iter().copied());
-        found.into_iter().map(|triangle| sheet.facet(triangle as usize, face.turn)).collect()
+        let found = inside_of(&sheet, face.orientation, self.borders.iter().copied());
+        found.into_iter().map(|triangle| sheet.facet(triangle as usize, face.orientation)).collect()
     }
 }
 

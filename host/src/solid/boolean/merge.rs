@@ -22,21 +22,21 @@ pub struct ResultTriangle {
     /// The face whose surface it has.
     pub face: u32,
     /// A face of that surface that each corner lies in.
-    pub at: [u32; 3],
+    pub corner_faces: [u32; 3],
     /// [`Fate::Kept`] or [`Fate::Turned`], seen from that face.
-    pub fate: FaceClassification,
+    pub classification: FaceClassification,
 }
 
 /// The facets that stay, in as few pieces as their points and borders allow.
 pub fn result_triangles(operands: &Operands, arrangement: &Arrangement, facets: &[Facet], parts: &Parts) -> Vec<ResultTriangle> {
-    let kept: Vec<ResultTriangle> =
+    let selected: Vec<ResultTriangle> =
         facets.iter().enumerate().filter_map(|(index, facet)| result_triangle(facet, parts.of_facet(index))).collect();
-    let plan = MergePlan::new(operands, arrangement, &kept);
-    let mut members: Vec<(u32, u32)> = (0..kept.len() as u32).map(|index| (plan.regions.root(index), index)).collect();
+    let plan = MergePlan::new(operands, arrangement, &selected);
+    let mut members: Vec<(u32, u32)> = (0..selected.len() as u32).map(|index| (plan.regions.root(index), index)).collect();
     members.par_sort_unstable();
     let regions: Vec<&[(u32, u32)]> = members.chunk_by(|a, b| a.0 == b.0).collect();
     let merged = regions.par_iter().with_min_len(64).fold(Vec::new, |mut merged, members| {
-        plan.merge(arrangement, &kept, members, &mut merged);
+        plan.merge(arrangement, &selected, members, &mut merged);
         merged
     });
     let merged: Vec<Vec<ResultTriangle>> = merged.collect();
@@ -57,7 +57,7 @@ fn result_triangle(facet: &Facet, fate: FaceClassification) -> Option<ResultTria
         Some(cover) => ([a, b, c], cover.face, fate),
         None => ([a, b, c], facet.face, fate),
     };
-    Some(ResultTriangle { corners, face, at: [face; 3], fate })
+    Some(ResultTriangle { corners, face, corner_faces: [face; 3], classification: fate })
 }
 
 /// The pieces that belong together, and the points that are not needed.
@@ -68,13 +68,13 @@ struct MergePlan {
 }
 
 impl MergePlan {
-    fn new(operands: &Operands, arrangement: &Arrangement, kept: &[ResultTriangle]) -> MergePlan {
-        let corners = kept.iter().map(|piece| piece.corners);
+    fn new(operands: &Operands, arrangement: &Arrangement, selected: &[ResultTriangle]) -> MergePlan {
+        let corners = selected.iter().map(|piece| piece.corners);
         let sides = HalfEdges::new(arrangement.points.len(), of_triangles(corners, 0));
-        let mut regions = UnionFind::new(kept.len());
+        let mut regions = UnionFind::new(selected.len());
         for (_, beside) in sides.edges() {
             if let [one, two] = beside
-                && are_one(operands, arrangement, &kept[one.1 as usize], &kept[two.1 as usize])
+                && are_one(operands, arrangement, &selected[one.1 as usize], &selected[two.1 as usize])
             {
                 regions.join(one.1, two.1);
             }
@@ -82,7 +82,7 @@ impl MergePlan {
         // Of each point that was made here: the regions around it, three at most, and the borders that end there.
         let is_new = |point: u32| arrangement.vertices[point as usize].is_none();
         let mut around: FxHashMap<u32, ([u32; 2], u32, u32)> = FxHashMap::default();
-        for (piece, index) in kept.iter().zip(0..) {
+        for (piece, index) in selected.iter().zip(0..) {
             let region = regions.find(index);
             for point in piece.corners.into_iter().filter(|&point| is_new(point)) {
                 let (known, count, _) = around.entry(point).or_insert(([u32::MAX; 2], 0, 0));
@@ -104,7 +104,7 @@ impl MergePlan {
                 }
             }
         }
-        let plane = |region: u32| arrangement.faces[kept[region as usize].face as usize].plane();
+        let plane = |region: u32| arrangement.faces[selected[region as usize].face as usize].plane();
         let is_needless = |(regions, count, borders): ([u32; 2], u32, u32)| match (count, borders) {
             (1, 0) => true,
             (2, 2) => !are_coplanar(plane(regions[0]), plane(regions[1])),
@@ -117,8 +117,8 @@ impl MergePlan {
     /// Adds the pieces of a region, made anew if a point is not needed.
     ///
     /// - `members`: the old pieces, each after the number of the region.
-    fn merge(&self, arrangement: &Arrangement, kept: &[ResultTriangle], members: &[(u32, u32)], merged: &mut Vec<ResultTriangle>) {
-        let old = members.iter().map(|&(_, member)| kept[member as usize]);
+    fn merge(&self, arrangement: &Arrangement, selected: &[ResultTriangle], members: &[(u32, u32)], merged: &mut Vec<ResultTriangle>) {
+        let old = members.iter().map(|&(_, member)| selected[member as usize]);
         let is_needed = |point: u32| !self.needless.contains(&point);
         if self.needless.is_empty() || old.clone().flat_map(|piece| piece.corners).all(is_needed) {
             merged.extend(old);
@@ -133,12 +133,12 @@ impl MergePlan {
         let sides = |piece: &ResultTriangle| [0, 1, 2].map(|k| [piece.corners[k], piece.corners[(k + 1) % 3]]);
         let all: FxHashSet<[u32; 2]> = old.iter().flat_map(sides).collect();
         let borders: Vec<[u32; 2]> = old.iter().flat_map(sides).filter(|[a, b]| !all.contains(&[*b, *a])).collect();
-        let onward: FxHashMap<u32, u32> = borders.iter().map(|&[a, b]| (a, b)).collect();
+        let next_vertex: FxHashMap<u32, u32> = borders.iter().map(|&[a, b]| (a, b)).collect();
         let mut straight = Vec::new();
         for &[from, mut to] in borders.iter().filter(|[from, _]| !self.needless.contains(from)) {
             // A needless point of a border has one way in and one way out.
             while self.needless.contains(&to) {
-                to = *onward.get(&to)?;
+                to = *next_vertex.get(&to)?;
             }
             straight.push([from, to]);
         }
@@ -151,14 +151,14 @@ impl MergePlan {
         let face_at = |point: u32| at[at.partition_point(|(other, _)| *other < point)].1;
         let first = old[0];
         let triangles = PlanarRegion { face: first.face, points: &points, borders: &straight }.triangles(arrangement);
-        Some(triangles.into_iter().map(|corners| ResultTriangle { corners, at: corners.map(face_at), ..first }).collect())
+        Some(triangles.into_iter().map(|corners| ResultTriangle { corners, corner_faces: corners.map(face_at), ..first }).collect())
     }
 }
 
 /// Whether two pieces beside each other are of one surface and in one plane.
 fn are_one(operands: &Operands, arrangement: &Arrangement, one: &ResultTriangle, two: &ResultTriangle) -> bool {
     if one.face == two.face {
-        return one.fate == two.fate;
+        return one.classification == two.classification;
     }
     let [a, b] = [one, two].map(|piece| arrangement.triangles[piece.face as usize]);
     let operand = operands.of_triangle(a);
@@ -167,13 +167,13 @@ fn are_one(operands: &Operands, arrangement: &Arrangement, one: &ResultTriangle,
         mesh.surfaces.get((triangle - operands.first_triangle(operand)) as usize)
     };
     let plane = |piece: &ResultTriangle| arrangement.faces[piece.face as usize].plane();
-    one.fate == two.fate
+    one.classification == two.classification
         && operands.of_triangle(b) == operand
         && surface(a) == surface(b)
         && are_coplanar(plane(one), plane(two))
         // Not folded back onto each other.
         && arrangement.faces[one.face as usize].axis == arrangement.faces[two.face as usize].axis
-        && arrangement.faces[one.face as usize].turn == arrangement.faces[two.face as usize].turn
+        && arrangement.faces[one.face as usize].orientation == arrangement.faces[two.face as usize].orientation
 }
 
 fn are_coplanar([a, b, c]: [glam::DVec3; 3], other: [glam::DVec3; 3]) -> bool {

@@ -48,11 +48,11 @@ struct Search<'a> {
     /// The triangles by the places that they had first.
     sorted: TriangleBvh,
     /// The triangles at each vertex.
-    at: FxHashMap<u32, Vec<u32>>,
+    triangles_at: FxHashMap<u32, Vec<u32>>,
     /// The triangles near some.
-    near: FxHashMap<u32, Vec<u32>>,
+    triangles_near: FxHashMap<u32, Vec<u32>>,
     /// Where vertices were first.
-    home: FxHashMap<u32, DVec3>,
+    original: FxHashMap<u32, DVec3>,
     /// How far vertices move, as a part of their largest coordinate.
     most: f64,
 }
@@ -64,7 +64,7 @@ impl<'a> Search<'a> {
         for (corners, triangle) in mesh.triangles.iter().zip(0..) {
             corners.iter().for_each(|&vertex| at.entry(vertex).or_default().push(triangle));
         }
-        Search { mesh, sorted, at, near: FxHashMap::default(), home: FxHashMap::default(), most }
+        Search { mesh, sorted, triangles_at: at, triangles_near: FxHashMap::default(), original: FxHashMap::default(), most }
     }
 
     fn named_triangle(&self, triangle: u32) -> NamedTriangle {
@@ -78,7 +78,7 @@ impl<'a> Search<'a> {
 
     /// Tries places for a vertex, and leaves it at the best.
     fn place_vertex(&mut self, vertex: u32, round: usize) {
-        let home = *self.home.entry(vertex).or_insert(self.mesh.vertices[vertex as usize]);
+        let home = *self.original.entry(vertex).or_insert(self.mesh.vertices[vertex as usize]);
         let size = 2.0 * self.most * home.abs().max_element();
         let mut least = self.overlaps(vertex, usize::MAX);
         for place in 0..CANDIDATES {
@@ -101,8 +101,8 @@ impl<'a> Search<'a> {
     /// has no area.
     fn overlaps(&mut self, vertex: u32, limit: usize) -> usize {
         let mut count = 0;
-        for place in 0..self.at[&vertex].len() {
-            let triangle = self.at[&vertex][place];
+        for place in 0..self.triangles_at[&vertex].len() {
+            let triangle = self.triangles_at[&vertex][place];
             self.find_near(triangle);
             let one = self.named_triangle(triangle).with_plane();
             if one.is_flat() {
@@ -111,7 +111,7 @@ impl<'a> Search<'a> {
             let bounds = Bounds::of(one.triangle().corners);
             // Two at the vertex are counted once.
             let is_counted = |other: u32| other < triangle && self.mesh.triangles[other as usize].contains(&vertex);
-            for other in self.near[&triangle].iter().filter(|other| !is_counted(**other)) {
+            for other in self.triangles_near[&triangle].iter().filter(|other| !is_counted(**other)) {
                 let two = self.named_triangle(*other);
                 if Bounds::of(two.corners).touches(bounds) && overlap(&one, &two, || two.with_plane()) {
                     count += 1;
@@ -126,7 +126,7 @@ impl<'a> Search<'a> {
 
     /// Finds the triangles that may touch one, wherever the points of both are moved.
     fn find_near(&mut self, triangle: u32) {
-        let Search { mesh, sorted, near, most, .. } = self;
+        let Search { mesh, sorted, triangles_near: near, most, .. } = self;
         near.entry(triangle).or_insert_with(|| {
             let Bounds { min, max } = Bounds::of(mesh.corners(triangle as usize));
             let margin = 4.0 * *most * min.abs().max(max.abs()).max_element();

@@ -16,7 +16,7 @@ pub struct Operand<'a> {
     /// The triangles of it by place.
     pub sorted: &'a TriangleBvh,
     /// For each triangle the one with which it makes one face, or [`NONE`]; empty if all are on their own.
-    pub mates: &'a [u32],
+    pub quad_partners: &'a [u32],
     /// Pairs of its triangles that overlap, the lower first; none if its surface is simple.
     pub overlaps: &'a [[u32; 2]],
 }
@@ -24,7 +24,7 @@ pub struct Operand<'a> {
 impl Operand<'_> {
     /// The triangle with which another makes one face.
     fn quad_partner(&self, triangle: u32) -> Option<u32> {
-        self.mates.get(triangle as usize).copied().filter(|mate| *mate != NONE)
+        self.quad_partners.get(triangle as usize).copied().filter(|mate| *mate != NONE)
     }
 
     /// The lower triangle of the face that a triangle belongs to.
@@ -168,7 +168,7 @@ impl<'a> Operands<'a> {
             .map(|(i, j)| {
                 let mut pairs = sorted(i).pairs(sorted(j));
                 let [one, two] = [i, j].map(|k| &self.operands[k as usize]);
-                if !(one.mates.is_empty() && two.mates.is_empty()) {
+                if !(one.quad_partners.is_empty() && two.quad_partners.is_empty()) {
                     pairs.iter_mut().for_each(|pair| *pair = [one.first_half(pair[0]), two.first_half(pair[1])]);
                     pairs.sort_unstable();
                     pairs.dedup();

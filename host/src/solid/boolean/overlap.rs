@@ -26,14 +26,14 @@ pub struct NamedTriangle {
 /// A triangle of a surface with its plane.
 #[derive(Clone, Copy, Debug)]
 pub struct PlaneTriangle {
-    tile: NamedTriangle,
+    triangle: NamedTriangle,
     plane: Plane,
 }
 
 impl NamedTriangle {
     /// The triangle with its plane.
     pub fn with_plane(self) -> PlaneTriangle {
-        PlaneTriangle { tile: self, plane: Plane::through(self.corners) }
+        PlaneTriangle { triangle: self, plane: Plane::through(self.corners) }
     }
 
     /// Which corners of another triangle are none of this one, a bit for each.
@@ -48,23 +48,23 @@ impl NamedTriangle {
 impl PlaneTriangle {
     /// The triangle.
     pub fn triangle(&self) -> &NamedTriangle {
-        &self.tile
+        &self.triangle
     }
 
     /// Whether its corners are on one line.
     pub fn is_flat(&self) -> bool {
-        (0..3).all(|axis| self.plane.facing(axis) == 0.0) && projection(self.tile.corners).is_none()
+        (0..3).all(|axis| self.plane.facing(axis) == 0.0) && projection(self.triangle.corners).is_none()
     }
 
     /// What is near here.
     fn near(&self) -> f64 {
-        let [a, b, c] = self.tile.corners.map(DVec3::abs);
+        let [a, b, c] = self.triangle.corners.map(DVec3::abs);
         ROUNDINGS * f64::EPSILON * a.max(b).max(c).max_element()
     }
 
     /// Whether a corner is near the side opposite to it, but for roundings.
     pub fn is_thin(&self) -> bool {
-        let [a, b, c] = self.tile.corners;
+        let [a, b, c] = self.triangle.corners;
         let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
         let near = self.near();
         self.plane.normal.length_squared() <= near * near * longest
@@ -74,12 +74,12 @@ impl PlaneTriangle {
     /// side of the edge where this one is.
     #[inline]
     fn is_folded_onto(&self, other: &NamedTriangle) -> bool {
-        let corners = &self.tile.corners;
-        let third = self.tile.others_in(other).trailing_zeros() as usize;
+        let corners = &self.triangle.corners;
+        let third = self.triangle.others_in(other).trailing_zeros() as usize;
         let height = self.plane.normal.dot(other.corners[third] - corners[0]);
         let near = self.near();
         height * height <= near * near * self.plane.normal.length_squared() && {
-            let apex = other.others_in(&self.tile).trailing_zeros() as usize;
+            let apex = other.others_in(&self.triangle).trailing_zeros() as usize;
             let [from, to] = [corners[(apex + 1) % 3], corners[(apex + 2) % 3]];
             (to - from).cross(other.corners[third] - from).dot(self.plane.normal) > 0.0
         }
@@ -101,7 +101,7 @@ impl PlaneTriangle {
 
     /// Whether another with a common edge lies beyond that in some view, and so has no more in common with it.
     fn is_hinged(&self, other: &PlaneTriangle) -> bool {
-        let (names, beyond) = (self.tile.names, other.tile.names);
+        let (names, beyond) = (self.triangle.names, other.triangle.names);
         let runs_back = |k: usize| {
             let edge = [names[(k + 1) % 3], names[k]];
             [[0, 1], [1, 2], [2, 0]].into_iter().any(|[p, q]| edge == [beyond[p], beyond[q]])
@@ -112,7 +112,7 @@ impl PlaneTriangle {
 
     /// Whether an edge of this triangle parts it from another where both are seen along an axis.
     fn separates(&self, other: &NamedTriangle, axis: usize) -> bool {
-        let NamedTriangle { names, corners } = self.tile;
+        let NamedTriangle { names, corners } = self.triangle;
         let mut facing = self.plane.facing(axis);
         if facing == 0.0 {
             facing = planar_orientation(axis, corners[0], corners[1], corners[2]);
@@ -131,7 +131,7 @@ impl PlaneTriangle {
 ///
 /// - `plane_two`: gives the second with its plane, where it is needed.
 pub fn overlap<P: Borrow<PlaneTriangle>>(one: &PlaneTriangle, two: &NamedTriangle, plane_two: impl FnOnce() -> P) -> bool {
-    overlap_of(one, two, one.tile.others_in(two), plane_two)
+    overlap_of(one, two, one.triangle.others_in(two), plane_two)
 }
 
 /// Whether two triangles with an area overlap, or the second is folded back onto the first, but for roundings.
@@ -139,7 +139,7 @@ pub fn overlap<P: Borrow<PlaneTriangle>>(one: &PlaneTriangle, two: &NamedTriangl
 /// - `plane_two`: gives the second with its plane, where it is needed.
 #[inline(always)]
 pub fn nearly_overlap<P: Borrow<PlaneTriangle>>(one: &PlaneTriangle, two: &NamedTriangle, plane_two: impl FnOnce() -> P) -> bool {
-    let own = one.tile.others_in(two);
+    let own = one.triangle.others_in(two);
     own.count_ones() == 1 && one.is_folded_onto(two) || overlap_of(one, two, own, plane_two)
 }
 
@@ -157,16 +157,16 @@ fn overlap_of<P: Borrow<PlaneTriangle>>(one: &PlaneTriangle, two: &NamedTriangle
     let plane_two = plane_two();
     let two = plane_two.borrow();
     let is_neighbour = own.count_ones() == 1;
-    if is_neighbour && one.is_hinged(two) || two.is_beside(&one.tile, two.tile.others_in(&one.tile)) {
+    if is_neighbour && one.is_hinged(two) || two.is_beside(&one.triangle, two.triangle.others_in(&one.triangle)) {
         return false;
     }
     // Neighbours in one plane or nearly so, of which a division is full, are mostly parted where they are seen best.
     let normal = one.plane.normal.abs();
     let axis = if normal.max_element() == normal.x { 0 } else { if normal.y >= normal.z { 1 } else { 2 } };
-    if (axis..axis + 3).any(|axis| one.separates(&two.tile, axis % 3) || two.separates(&one.tile, axis % 3)) {
+    if (axis..axis + 3).any(|axis| one.separates(&two.triangle, axis % 3) || two.separates(&one.triangle, axis % 3)) {
         return false;
     }
-    overlap_exactly(one.tile.corners, two.tile.corners)
+    overlap_exactly(one.triangle.corners, two.triangle.corners)
 }
 
 #[cold]

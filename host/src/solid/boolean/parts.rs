@@ -26,13 +26,13 @@ pub enum FaceClassification {
 pub struct Parts {
     nodes: UnionFind,
     vertices: usize,
-    fates: FxHashMap<u32, FaceClassification>,
+    classifications: FxHashMap<u32, FaceClassification>,
     /// Number of parts.
     pub count: u64,
     /// Rays that were sent.
     pub rays: u64,
     /// Where an operand winds less than not at all around what is beside it, or else more than once, and how often.
-    pub odd: Option<(i32, DVec3)>,
+    pub improper_winding: Option<(i32, DVec3)>,
 }
 
 /// Something of a part where it can be classified.
@@ -102,12 +102,12 @@ impl Parts {
         let odd = all_odd.min_by_key(|(_, (_, odd, _))| *odd > 0);
         let odd = odd.map(|(sample, (_, odd, _))| (*odd, sample.position(operands, arrangement, facets)));
         let fates = samples.iter().zip(&judged).map(|(sample, (fate, ..))| (sample.root, *fate)).collect();
-        Parts { nodes, vertices, fates, count, rays, odd }
+        Parts { nodes, vertices, classifications: fates, count, rays, improper_winding: odd }
     }
 
     /// Whether all are borders of the result, with the result behind them.
     pub fn keep_everything(&self) -> bool {
-        self.fates.values().all(|fate| *fate == FaceClassification::Kept)
+        self.classifications.values().all(|fate| *fate == FaceClassification::Kept)
     }
 
     /// What becomes of each triangle, counted over all operands; those that are not whole are dropped.
@@ -136,7 +136,7 @@ impl Parts {
     }
 
     fn of_root(&self, root: u32) -> FaceClassification {
-        self.fates.get(&root).copied().unwrap_or(FaceClassification::Discarded)
+        self.classifications.get(&root).copied().unwrap_or(FaceClassification::Discarded)
     }
 }
 

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 ///
 /// - `standing`: of a point outside all operands.
 /// - `touching`: pairs of triangles of different operands that have a point in common, none of them buried.
-pub fn relevant(operands: &Operands, standing: &PartialEvaluation, burial: &BuriedTriangles, touching: &[[u32; 2]]) -> Vec<bool> {
+pub fn relevant(operands: &Operands, evaluation: &PartialEvaluation, buried: &BuriedTriangles, touching: &[[u32; 2]]) -> Vec<bool> {
     let count = operands.meshes().len();
     if count < 3 {
         return vec![true; operands.triangle_count()];
@@ -33,7 +33,7 @@ pub fn relevant(operands: &Operands, standing: &PartialEvaluation, burial: &Buri
     let of_operand = |operand: u32| {
         let begin = touched.partition_point(|t| t.0 < operand);
         let end = touched.partition_point(|t| t.0 <= operand);
-        relevant_of(operands, standing.clone(), burial, operand, &touched[begin..end])
+        relevant_of(operands, evaluation.clone(), buried, operand, &touched[begin..end])
     };
     let found: Vec<Vec<bool>> = (0..count as u32).into_par_iter().map(of_operand).collect();
     found.concat()
@@ -44,31 +44,31 @@ type Classification = (u32, u32, Option<bool>);
 
 fn relevant_of(
     operands: &Operands,
-    mut standing: PartialEvaluation,
-    burial: &BuriedTriangles,
+    mut evaluation: PartialEvaluation,
+    buried: &BuriedTriangles,
     operand: u32,
     touched: &[(u32, u32, u32)],
 ) -> Vec<bool> {
     let mesh = operands.meshes()[operand as usize];
     // By triangle, the partners that it may lie in; it is outside of all others.
-    let mut places: Vec<Classification> = Vec::new();
+    let mut classifications: Vec<Classification> = Vec::new();
     for partner in operands.near(operand) {
         let begin = touched.partition_point(|t| t.1 < partner);
         let end = touched.partition_point(|t| t.1 <= partner);
         let touched = touched[begin..end].iter().map(|t| t.2);
-        let tell = |triangle, place| places.push((triangle, partner, place));
-        known_classifications(operands, burial, operand, partner, touched, tell);
+        let emit = |triangle, place| classifications.push((triangle, partner, place));
+        known_classifications(operands, buried, operand, partner, touched, emit);
     }
-    places.par_sort_unstable_by_key(|&(triangle, partner, _)| (triangle, partner));
-    standing.set(operand, None);
+    classifications.par_sort_unstable_by_key(|&(triangle, partner, _)| (triangle, partner));
+    evaluation.set(operand, None);
     let first = operands.first_triangle(operand);
-    let is_seen = |triangle: u32| !burial.is_buried(first + triangle);
-    let depends = standing.depends_on(operand);
-    let mut answers: Vec<bool> = (0..mesh.triangles.len() as u32).map(|t| depends && is_seen(t)).collect();
-    for group in places.chunk_by(|a, b| a.0 == b.0) {
-        group.iter().for_each(|&(_, partner, place)| standing.set(partner, place));
-        answers[group[0].0 as usize] = standing.depends_on(operand);
-        group.iter().for_each(|&(_, partner, _)| standing.set(partner, Some(false)));
+    let is_visible = |triangle: u32| !buried.is_buried(first + triangle);
+    let depends = evaluation.depends_on(operand);
+    let mut answers: Vec<bool> = (0..mesh.triangles.len() as u32).map(|t| depends && is_visible(t)).collect();
+    for group in classifications.chunk_by(|a, b| a.0 == b.0) {
+        group.iter().for_each(|&(_, partner, place)| evaluation.set(partner, place));
+        answers[group[0].0 as usize] = evaluation.depends_on(operand);
+        group.iter().for_each(|&(_, partner, _)| evaluation.set(partner, Some(false)));
     }
     answers
 }
@@ -77,20 +77,20 @@ fn relevant_of(
 /// those that it touches, or that may touch what is buried of it.
 fn known_classifications(
     operands: &Operands,
-    burial: &BuriedTriangles,
+    buried: &BuriedTriangles,
     operand: u32,
     other: u32,
     touched: impl Iterator<Item = u32>,
-    mut tell: impl FnMut(u32, Option<bool>),
+    mut emit: impl FnMut(u32, Option<bool>),
 ) {
     let mesh = operands.meshes()[operand as usize];
     let mut near = Vec::new();
     let mut is_touched = vec![false; mesh.triangles.len()];
     touched.for_each(|triangle| is_touched[triangle as usize] = true);
-    burial.visible(operands, operand).touching_boxes(operands.bounds(other), |triangle, bounds| {
+    buried.visible(operands, operand).touching_boxes(operands.bounds(other), |triangle, bounds| {
         near.push(triangle);
         let is_touched = &mut is_touched[triangle as usize];
-        *is_touched = *is_touched || burial.is_beside(bounds, other);
+        *is_touched = *is_touched || buried.is_beside(bounds, other);
     });
     let mut parts = UnionFind::new(mesh.vertices.len());
     for &triangle in near.iter().filter(|&&triangle| !is_touched[triangle as usize]) {
@@ -101,7 +101,7 @@ fn known_classifications(
     let mut inside: Vec<Option<bool>> = vec![None; mesh.vertices.len()];
     for triangle in near {
         if is_touched[triangle as usize] {
-            tell(triangle, None);
+            emit(triangle, None);
             continue;
         }
         let root = parts.find(mesh.triangles[triangle as usize][0]);
@@ -110,7 +110,7 @@ fn known_classifications(
             winding(operands, other, &point, &mut 0) > 0
         });
         if is_inside {
-            tell(triangle, Some(true));
+            emit(triangle, Some(true));
         }
     }
 }

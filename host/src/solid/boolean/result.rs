@@ -81,16 +81,16 @@ pub fn assemble(
             quad_half_at(operands, arrangement.triangles[face as usize], place) - operands.first_triangle(operand)
         };
         let source = triangle_at(piece.face, (place[0] + place[1] + place[2]) / 3.0);
-        let at = [0, 1, 2].map(|k| triangle_at(piece.at[k], place[k]) as usize);
-        outcome.push(corners, piece.fate, [operand, source]);
-        let at = if piece.fate == FaceClassification::Reversed { [at[0], at[2], at[1]] } else { at };
+        let at = [0, 1, 2].map(|k| triangle_at(piece.corner_faces[k], place[k]) as usize);
+        outcome.push(corners, piece.classification, [operand, source]);
+        let at = if piece.classification == FaceClassification::Reversed { [at[0], at[2], at[1]] } else { at };
         let mesh = operands.meshes()[operand as usize];
         tables.interpolate(&mut outcome.mesh, mesh, operand, source as usize, at);
     }
-    let kept = WholeTriangles { fates, of_vertex };
+    let kept = WholeTriangles { classifications: fates, of_vertex };
     let crosses = rounding::crosses(operands, &outcome.mesh, first_facet, &is_moved, &kept);
     let is_free = vec![true; is_moved.len() - first_vertex as usize];
-    (outcome, NewTriangles { first: first_facet, first_vertex, is_free, kept: Some(kept) }, crosses)
+    (outcome, NewTriangles { first: first_facet, first_vertex, is_free, whole: Some(kept) }, crosses)
 }
 
 /// The triangle of a face that a point lies in; the face is given by its lower triangle.

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 /// What stayed whole.
 pub struct WholeTriangles {
     /// What became of each triangle of the operands, counted through; those that did not stay whole are dropped.
-    pub fates: Vec<FaceClassification>,
+    pub classifications: Vec<FaceClassification>,
     /// By vertex of the operands, counted through, its number in the result.
     pub of_vertex: Vec<u32>,
 }
@@ -19,7 +19,7 @@ impl WholeTriangles {
     /// Whether a triangle of the operands, counted through, is in the result as it is.
     #[inline]
     pub fn contains(&self, triangle: u32) -> bool {
-        self.fates[triangle as usize] != FaceClassification::Discarded
+        self.classifications[triangle as usize] != FaceClassification::Discarded
     }
 }
 
@@ -32,7 +32,7 @@ pub struct NewTriangles {
     /// For each vertex from that on, whether it may go, since none of its triangles stayed whole.
     pub is_free: Vec<bool>,
     /// What stayed whole before the first triangle.
-    pub kept: Option<WholeTriangles>,
+    pub whole: Option<WholeTriangles>,
 }
 
 impl NewTriangles {
@@ -48,7 +48,7 @@ impl NewTriangles {
 ///
 /// - `first`: the first triangle of the result that was made anew.
 /// - `is_moved`: whether rounding moved a vertex of the result.
-pub fn crosses(operands: &Operands, result: &Mesh, first: usize, is_moved: &[bool], kept: &WholeTriangles) -> bool {
+pub fn crosses(operands: &Operands, result: &Mesh, first: usize, is_moved: &[bool], whole: &WholeTriangles) -> bool {
     if !is_moved.contains(&true) {
         return false;
     }
@@ -76,10 +76,10 @@ pub fn crosses(operands: &Operands, result: &Mesh, first: usize, is_moved: &[boo
         let mesh = operands.meshes()[operand as usize];
         let [first_vertex, first] = [operands.first_vertex(operand), operands.first_triangle(operand)];
         let of_kept = |triangle: u32| NamedTriangle {
-            names: mesh.triangles[triangle as usize].map(|vertex| kept.of_vertex[(first_vertex + vertex) as usize]),
+            names: mesh.triangles[triangle as usize].map(|vertex| whole.of_vertex[(first_vertex + vertex) as usize]),
             corners: mesh.corners(triangle as usize),
         };
-        let is_kept = |triangle: u32| kept.contains(first + triangle);
+        let is_kept = |triangle: u32| whole.contains(first + triangle);
         let sorted_operand = operands.sorted(operand);
         // To find all that were kept pays only where more than a few are asked for.
         let is_large = mesh.triangles.len() > 64 * moved.len();

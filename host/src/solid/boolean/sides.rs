@@ -5,7 +5,7 @@ pub struct HalfEdges {
     /// By lower end: the first of its sides.
     firsts: Vec<u32>,
     /// The upper end of each side, and what is beside it.
-    sides: Vec<(u32, u32)>,
+    half_edges: Vec<(u32, u32)>,
 }
 
 impl HalfEdges {
@@ -34,13 +34,13 @@ impl HalfEdges {
         for range in firsts.windows(2) {
             sorted[range[0] as usize..range[1] as usize].sort_by_key(|side| side.0);
         }
-        HalfEdges { firsts, sides: sorted }
+        HalfEdges { firsts, half_edges: sorted }
     }
 
     /// Each edge: its ends, the lower first, and by its upper end again what is beside it.
     pub fn edges(&self) -> impl Iterator<Item = ([u32; 2], &[(u32, u32)])> {
         self.firsts.windows(2).zip(0..).flat_map(|(range, low)| {
-            let sides = &self.sides[range[0] as usize..range[1] as usize];
+            let sides = &self.half_edges[range[0] as usize..range[1] as usize];
             sides.chunk_by(|a, b| a.0 == b.0).map(move |edge| ([low, edge[0].0], edge))
         })
     }

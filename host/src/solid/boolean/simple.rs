@@ -28,19 +28,19 @@ struct Attempt {
     /// What is drawn together within that distance.
     scope: Scope,
     /// Whether it begins with the attempt that left the fewest pairs of triangles that overlap, and not from the first.
-    goes_on: bool,
+    from_best: bool,
 }
 
 /// Attempts, one after the other until one succeeds. To draw together all that is near triangles that overlap serves where
 /// sheets nearly coincide; only these, where they cross at small angles; and only what the best attempt left, where that is
 /// little.
 const ATTEMPTS: [Attempt; 6] = [
-    Attempt { most: 4.0, scope: Scope::Near, goes_on: false },
-    Attempt { most: 4.0, scope: Scope::Overlapping, goes_on: false },
-    Attempt { most: 16.0, scope: Scope::Overlapping, goes_on: true },
-    Attempt { most: 32.0, scope: Scope::Near, goes_on: false },
-    Attempt { most: 32.0, scope: Scope::Overlapping, goes_on: false },
-    Attempt { most: 32.0, scope: Scope::Near, goes_on: true },
+    Attempt { most: 4.0, scope: Scope::Near, from_best: false },
+    Attempt { most: 4.0, scope: Scope::Overlapping, from_best: false },
+    Attempt { most: 16.0, scope: Scope::Overlapping, from_best: true },
+    Attempt { most: 32.0, scope: Scope::Near, from_best: false },
+    Attempt { most: 32.0, scope: Scope::Overlapping, from_best: false },
+    Attempt { most: 32.0, scope: Scope::Near, from_best: true },
 ];
 /// How far points of a settled surface may be from the rounded one, in units in the last place of the largest coordinate.
 const MOST: f64 = 64.0;
@@ -56,7 +56,7 @@ pub struct Resolution {
     /// Whether it is the same surface, but for how it is divided.
     pub is_same: bool,
     /// Where the given one winds less than not at all, or else more than once, and how often.
-    pub odd: Option<(i32, DVec3)>,
+    pub improper_winding: Option<(i32, DVec3)>,
 }
 
 /// Makes a closed surface simple.
@@ -67,9 +67,9 @@ pub struct Resolution {
 /// [`SolidError::Unsettled`].
 pub fn resolve(mesh: &Mesh, overlaps: &[[u32; 2]]) -> Result<Resolution, SolidError> {
     let mesh = separated(mesh);
-    let Evaluation { mut outcome, is_all_kept, odd, .. } = divided(&mesh, overlaps);
+    let Evaluation { mut outcome, is_unchanged: is_all_kept, improper_winding: odd, .. } = divided(&mesh, overlaps);
     outcome.clean();
-    Ok(Resolution { outcome: without_self_intersections(outcome)?, is_same: is_all_kept, odd })
+    Ok(Resolution { outcome: without_self_intersections(outcome)?, is_same: is_all_kept, improper_winding: odd })
 }
 
 /// The outcome made simple where rounding made it cross itself or turned parts of it inside out.
@@ -101,7 +101,7 @@ pub fn without_self_intersections(mut outcome: Outcome) -> Result<Outcome, Solid
                 && is_near(&settled.mesh, &outcome.mesh)
         };
         let from =
-            if attempt.goes_on { best.clone() } else { Trial { outcome: outcome.clone(), pairs: first.clone() } };
+            if attempt.from_best { best.clone() } else { Trial { outcome: outcome.clone(), pairs: first.clone() } };
         let trial = from.apply(attempt);
         if trial.pairs.is_empty() {
             // What was turned inside out goes now. All that stays is whole; that is looked at all the same.
@@ -113,7 +113,7 @@ pub fn without_self_intersections(mut outcome: Outcome) -> Result<Outcome, Solid
                 None => (trial.outcome, true),
             };
             if is_simple && is_right(&settled) {
-                settled.counts.settled = number;
+                settled.counts.repair_attempt = number;
                 return Ok(settled);
             }
         } else if trial.pairs.len() < best.pairs.len() {
@@ -161,7 +161,7 @@ impl Trial {
 /// it.
 fn right_side_out(outcome: &Outcome) -> Option<Outcome> {
     let mesh = separated(&outcome.mesh);
-    let Evaluation { outcome: mut next, is_all_kept, .. } = divided(&mesh, &[]);
+    let Evaluation { outcome: mut next, is_unchanged: is_all_kept, .. } = divided(&mesh, &[]);
     if is_all_kept {
         return None;
     }
@@ -206,7 +206,7 @@ fn is_near(settled: &Mesh, rounded: &Mesh) -> bool {
 /// What a mesh bounds, with its surface divided where it crosses itself: where triangles overlap.
 fn divided(mesh: &Mesh, overlaps: &[[u32; 2]]) -> Evaluation {
     let sorted = TriangleBvh::new(&mesh.vertices, &mesh.triangles);
-    let operand = Operand { mesh, sorted: &sorted, mates: &[], overlaps };
+    let operand = Operand { mesh, sorted: &sorted, quad_partners: &[], overlaps };
     evaluate_once(&Operands::new(vec![operand], false), &Expression::Operand(0))
 }
 

@@ -59,17 +59,17 @@ impl ExpressionNode {
 /// An expression with what is known of a point. Each change takes time as the expression is deep, not as it is wide.
 #[derive(Clone, Debug)]
 pub struct PartialEvaluation {
-    parts: Vec<ExpressionNode>,
+    nodes: Vec<ExpressionNode>,
     /// Where each operand is in the expression.
-    places: Vec<Vec<u32>>,
+    leaves_of: Vec<Vec<u32>>,
 }
 
 impl PartialEvaluation {
     /// A point outside of all operands.
     pub fn outside(expression: &Expression, operands: usize) -> PartialEvaluation {
-        let mut standing = PartialEvaluation { parts: Vec::new(), places: vec![Vec::new(); operands] };
-        standing.add(expression, None, false);
-        standing
+        let mut evaluation = PartialEvaluation { nodes: Vec::new(), leaves_of: vec![Vec::new(); operands] };
+        evaluation.add(expression, None, false);
+        evaluation
     }
 
     fn add(&mut self, expression: &Expression, parent: Option<u32>, is_negated: bool) {
@@ -80,38 +80,38 @@ impl PartialEvaluation {
             Expression::Difference(both) => (Rule::Absorbing(false), &both[..]),
             Expression::SymmetricDifference(all) => (Rule::Parity, all),
         };
-        let place = self.parts.len();
+        let place = self.nodes.len();
         let value = (rule == Rule::Operand).then_some(false);
         let count = children.len() as u32;
-        self.parts.push(ExpressionNode { rule, parent, is_negated, value, unknown: 0, truths: 0, children: count });
+        self.nodes.push(ExpressionNode { rule, parent, is_negated, value, unknown: 0, truths: 0, children: count });
         if let Expression::Operand(index) = expression
-            && let Some(places) = self.places.get_mut(*index)
+            && let Some(places) = self.leaves_of.get_mut(*index)
         {
             places.push(place as u32);
         }
         for (k, child) in children.iter().enumerate() {
             let is_negated = k == 1 && matches!(expression, Expression::Difference(_));
-            let number = self.parts.len();
+            let number = self.nodes.len();
             self.add(child, Some(place as u32), is_negated);
-            let value = self.parts[number].for_parent();
-            self.parts[place].unknown += u32::from(value.is_none());
-            self.parts[place].truths += u32::from(value == Some(true));
+            let value = self.nodes[number].for_parent();
+            self.nodes[place].unknown += u32::from(value.is_none());
+            self.nodes[place].truths += u32::from(value == Some(true));
         }
-        self.parts[place].value = self.parts[place].among_children();
+        self.nodes[place].value = self.nodes[place].among_children();
     }
 
     /// Notes whether the point is in an operand, if that is known.
     pub fn set(&mut self, operand: u32, value: Option<bool>) {
-        for k in 0..self.places[operand as usize].len() {
-            let mut part = self.places[operand as usize][k] as usize;
+        for k in 0..self.leaves_of[operand as usize].len() {
+            let mut part = self.leaves_of[operand as usize][k] as usize;
             let mut value = value;
             loop {
-                let before = self.parts[part].for_parent();
-                self.parts[part].value = value;
-                let after = self.parts[part].for_parent();
-                let Some(parent) = self.parts[part].parent.filter(|_| before != after) else { break };
+                let before = self.nodes[part].for_parent();
+                self.nodes[part].value = value;
+                let after = self.nodes[part].for_parent();
+                let Some(parent) = self.nodes[part].parent.filter(|_| before != after) else { break };
                 part = parent as usize;
-                let above = &mut self.parts[part];
+                let above = &mut self.nodes[part];
                 above.unknown = above.unknown + u32::from(after.is_none()) - u32::from(before.is_none());
                 above.truths = above.truths + u32::from(after == Some(true)) - u32::from(before == Some(true));
                 value = above.among_children();
@@ -121,14 +121,14 @@ impl PartialEvaluation {
 
     /// Whether the set may still depend on an operand of which nothing is known.
     pub fn depends_on(&self, operand: u32) -> bool {
-        self.places[operand as usize].iter().any(|&place| self.decides(place as usize))
+        self.leaves_of[operand as usize].iter().any(|&place| self.decides(place as usize))
     }
 
     /// Whether the set may still depend on a part: no other child of a part around it settles that.
     fn decides(&self, place: usize) -> bool {
-        let part = &self.parts[place];
+        let part = &self.nodes[place];
         let Some(parent) = part.parent else { return true };
-        let above = &self.parts[parent as usize];
+        let above = &self.nodes[parent as usize];
         let own = part.for_parent();
         let settling = match above.rule {
             Rule::Absorbing(true) => above.truths - u32::from(own == Some(true)),
@@ -178,19 +178,19 @@ mod tests {
         let mut settled = [0; 2];
         for _ in 0..2000 {
             let expression = some(&mut random, 3);
-            let mut standing = PartialEvaluation::outside(&expression, 4);
+            let mut evaluation = PartialEvaluation::outside(&expression, 4);
             let mut known = [Some(false); 4];
             for _ in 0..12 {
                 let (operand, value) =
                     (random.random_range(0..4), [None, Some(false), Some(true)][random.random_range(0..3)]);
-                standing.set(operand as u32, value);
+                evaluation.set(operand as u32, value);
                 known[operand] = value;
                 for own in 0..4 {
                     let mut others = known;
                     others[own] = None;
-                    standing.set(own as u32, None);
-                    let (depends, is_settled) = (standing.depends_on(own as u32), is_settled(&expression, own, others));
-                    standing.set(own as u32, known[own]);
+                    evaluation.set(own as u32, None);
+                    let (depends, is_settled) = (evaluation.depends_on(own as u32), is_settled(&expression, own, others));
+                    evaluation.set(own as u32, known[own]);
                     assert!(depends || is_settled, "{expression:?} {known:?} {own}");
                     // The opposite holds where each operand occurs once, as mostly.
                     settled[usize::from(depends == is_settled)] += 1;

@@ -204,12 +204,12 @@ impl<'a> IncrementalTriangulation<'a> {
     /// Exchanges diagonals opposite to a new point until all are as Delaunay wants them.
     fn legalize(&mut self, p: u32) {
         // Rounded places may disagree with each other; a bound makes that harmless.
-        let mut patience = 16 * self.changed.len() + 4 * self.triangles.len();
+        let mut steps_left = 16 * self.changed.len() + 4 * self.triangles.len();
         while let Some(triangle) = self.changed.pop() {
             let k = self.side(triangle, p);
             let (opposite, across) = ((k + 1) % 3, self.beyond[triangle as usize][(k + 1) % 3]);
             let [_, a, b] = [0, 1, 2].map(|i| self.triangles[triangle as usize][(k + i) % 3]);
-            if across == NONE || self.is_fixed(a, b) || patience == 0 {
+            if across == NONE || self.is_fixed(a, b) || steps_left == 0 {
                 continue;
             }
             let j = self.side(across, b);
@@ -217,7 +217,7 @@ impl<'a> IncrementalTriangulation<'a> {
             if self.is_in_circle([p, a, b], d) && self.turn(p, a, d) > 0.0 && self.turn(p, d, b) > 0.0 {
                 self.exchange(triangle, opposite);
                 self.changed.extend([triangle, across]);
-                patience -= 1;
+                steps_left -= 1;
             }
         }
     }
@@ -345,15 +345,15 @@ impl<'a> IncrementalTriangulation<'a> {
     /// Exchanges diagonals until none crosses the line.
     fn uncross(&mut self, from: u32, to: u32, mut crossed: VecDeque<[u32; 2]>) {
         // Each turn through the queue removes a crossing at least; the square bounds all.
-        let mut patience = 4 * (crossed.len() + 2) * (crossed.len() + 2);
+        let mut steps_left = 4 * (crossed.len() + 2) * (crossed.len() + 2);
         while let Some([a, b]) = crossed.pop_front() {
             let Some((triangle, k)) = self.along(a, b) else { continue };
             let c = self.triangles[triangle as usize][(k + 2) % 3];
             let across = self.beyond[triangle as usize][k];
-            if across == NONE || patience == 0 {
+            if across == NONE || steps_left == 0 {
                 continue;
             }
-            patience -= 1;
+            steps_left -= 1;
             let j = self.side(across, b);
             let d = self.triangles[across as usize][(j + 2) % 3];
             // The diagonal becomes d c: both new triangles must turn the right way.

@@ -13,13 +13,13 @@ pub struct Evaluation {
     /// What comes out, before it is made simple.
     pub outcome: Outcome,
     /// What of it was made.
-    pub made: NewTriangles,
+    pub new: NewTriangles,
     /// Whether rounding made the result cross itself, as far as could be seen.
-    pub must_settle: bool,
+    pub self_intersects: bool,
     /// Whether all parts of the surfaces are borders of the result.
-    pub is_all_kept: bool,
+    pub is_unchanged: bool,
     /// Where an operand that is not simple winds oddly, and how often.
-    pub odd: Option<(i32, glam::DVec3)>,
+    pub improper_winding: Option<(i32, glam::DVec3)>,
 }
 
 /// Evaluates an expression once.
@@ -39,5 +39,5 @@ pub fn evaluate_once(operands: &Operands, expression: &Expression) -> Evaluation
     let (outcome, made, must_settle) = result::assemble(operands, &arrangement, &facets, &is_whole, &parts, counts);
     // Of those that lie on each other, one is kept.
     let is_all_kept = parts.keep_everything() && facets.iter().all(|facet| facet.others.is_empty());
-    Evaluation { outcome, made, must_settle, is_all_kept, odd: parts.odd }
+    Evaluation { outcome, new: made, self_intersects: must_settle, is_unchanged: is_all_kept, improper_winding: parts.improper_winding }
 }

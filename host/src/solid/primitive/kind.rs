@@ -73,6 +73,7 @@ pub enum Primitive {
         height: f64,
     },
     /// A hyperboloid of one sheet; see [`hyperboloid`].
+    #[serde(rename = "hyperboloid")]
     HyperboloidOfOneSheet {
         /// Its least radius.
         waist: f64,
@@ -82,6 +83,7 @@ pub enum Primitive {
         height: f64,
     },
     /// A hyperboloid of two sheets; see [`bowls`].
+    #[serde(rename = "bowls")]
     HyperboloidOfTwoSheets {
         /// Between the tips.
         gap: f64,
@@ -103,11 +105,13 @@ pub enum Primitive {
         profile: Vec<DVec3>,
     },
     /// A smooth profile that turned about the y axis; see [`smooth_revolution`].
+    #[serde(rename = "lathe")]
     SmoothRevolution {
         /// Control points (r, y).
         profile: Vec<DVec2>,
     },
     /// A polygon that turned about the y axis; see [`turned_polygon`].
+    #[serde(rename = "turning")]
     RevolvedPolygon {
         /// Corners of the polygon.
         contours: Vec<Vec<DVec2>>,
@@ -172,7 +176,7 @@ impl Primitive {
             Primitive::SmoothRevolution { profile } => smooth_revolution(profile),
             Primitive::RevolvedPolygon { contours, turn } => revolved_polygon(contours, *turn),
             Primitive::Sweep { contours, path, twist, taper } => {
-                sweep(contours, SplineCurve::clone(path), TwistAndTaper { turns: *twist, scale: *taper })
+                sweep(contours, SplineCurve::clone(path), TwistAndTaper { twist_turns: *twist, scale: *taper })
             }
         }
     }

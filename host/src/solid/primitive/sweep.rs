@@ -38,7 +38,7 @@ pub fn sweep<C: AsRef<[DVec2]>>(
     curve: SplineCurve,
     widening: TwistAndTaper,
 ) -> Result<Body, PrimitiveError> {
-    let TwistAndTaper { turns, scale } = widening;
+    let TwistAndTaper { twist_turns: turns, scale } = widening;
     let is_closed = curve.basis().is_closed();
     let refused = |what, value, range| Err(PrimitiveError::Measure { what, value, range });
     if !(0.0..=1e6).contains(&scale) {

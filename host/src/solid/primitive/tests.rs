@@ -117,7 +117,7 @@ fn exact_measures_are_those_of_the_book() {
 fn solid(body: &Body, chord: f64) -> Solid {
     let mesh = body.tessellate(Tolerance::new(chord, 30.0)).unwrap();
     let report = mesh.edge_report();
-    assert!(report.is_closed() && report.collapsed + report.slivers == 0, "{report:?}");
+    assert!(report.is_closed() && report.collapsed + report.degenerate == 0, "{report:?}");
     Solid::new(mesh).unwrap()
 }
 
@@ -234,7 +234,7 @@ fn sweeps_have_the_volume_of_pappus_whatever_the_curve_and_the_twist() {
         .sum();
     let contours = [square(0.5), square(0.3)];
     for turns in [0.0, 0.25, -1.0] {
-        let body = sweep(&contours, curve.clone(), TwistAndTaper { turns, scale: 1.0 }).unwrap();
+        let body = sweep(&contours, curve.clone(), TwistAndTaper { twist_turns: turns, scale: 1.0 }).unwrap();
         let exact = body.measures().mass.volume;
         assert!((exact / (0.16 * length) - 1.0).abs() < 1e-7, "{turns}: {exact} {}", 0.16 * length);
         let mesh = solid(&body, 2e-3).mass().volume;
@@ -244,7 +244,7 @@ fn sweeps_have_the_volume_of_pappus_whatever_the_curve_and_the_twist() {
     let body = sweep(
         &[square(2.0)],
         path(&[DVec3::ZERO, DVec3::Y * 3.0], false).unwrap(),
-        TwistAndTaper { turns: 0.0, scale: 0.0 },
+        TwistAndTaper { twist_turns: 0.0, scale: 0.0 },
     );
     assert!((body.unwrap().measures().mass.volume - 4.0).abs() < 1e-13);
 }
@@ -258,11 +258,11 @@ fn closed_sweeps_come_back_to_where_they_began() {
         })
         .collect();
     for turns in [0.0, 2.0] {
-        let body = sweep(&[square(0.5)], path(&control, true).unwrap(), TwistAndTaper { turns, scale: 1.0 }).unwrap();
+        let body = sweep(&[square(0.5)], path(&control, true).unwrap(), TwistAndTaper { twist_turns: turns, scale: 1.0 }).unwrap();
         let solid = solid(&body, 0.02);
         assert_eq!(solid.mesh().edge_report().euler_characteristic(), 0);
     }
-    let widening = TwistAndTaper { turns: 0.3, scale: 1.0 };
+    let widening = TwistAndTaper { twist_turns: 0.3, scale: 1.0 };
     assert!(sweep(&[square(0.5)], path(&control, true).unwrap(), widening).is_err());
 }
 
@@ -270,7 +270,7 @@ fn closed_sweeps_come_back_to_where_they_began() {
 fn sweeps_that_fold_are_refused_with_the_place() {
     let bent = [DVec3::ZERO, DVec3::new(1.0, 0.0, 0.0), DVec3::new(1.0, 1.0, 0.0)];
     let words = |size: f64, scale: f64| {
-        let widening = TwistAndTaper { turns: 0.0, scale };
+        let widening = TwistAndTaper { twist_turns: 0.0, scale };
         sweep(&[square(size)], path(&bent, false).unwrap(), widening).err().map(|error| error.to_string())
     };
     assert_eq!(words(0.5, 1.0), None);
@@ -279,11 +279,11 @@ fn sweeps_that_fold_are_refused_with_the_place() {
     assert!(path(&[DVec3::ZERO], false).is_err());
     // Control points that coincide at an end do no harm.
     let slow = path(&[DVec3::ZERO, DVec3::ZERO, DVec3::Y, DVec3::Y * 3.0], false).unwrap();
-    let body = sweep(&[square(0.2)], slow, TwistAndTaper { turns: 0.1, scale: 1.0 }).unwrap();
+    let body = sweep(&[square(0.2)], slow, TwistAndTaper { twist_turns: 0.1, scale: 1.0 }).unwrap();
     let slow = solid(&body, 1e-3);
     assert!(slow.mesh().corner_normals.as_flattened().iter().all(|normal| (normal.length() - 1.0).abs() < 1e-12));
     let still = path(&[DVec3::ONE, DVec3::ONE], false).unwrap();
-    assert!(sweep(&[square(1.0)], still, TwistAndTaper { turns: 0.0, scale: 1.0 }).is_err());
+    assert!(sweep(&[square(1.0)], still, TwistAndTaper { twist_turns: 0.0, scale: 1.0 }).is_err());
 }
 
 #[test]

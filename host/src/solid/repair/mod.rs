@@ -34,9 +34,11 @@ pub struct Repair {
     /// Triangles left out because another has the same corners and the surface was not closed there.
     pub duplicates: usize,
     /// Triangles left out because they are walls within a body, or open sheets that stick out of one.
-    pub fins: usize,
+    #[serde(rename = "fins")]
+    pub dangling: usize,
     /// Triangles turned round to agree with their neighbours.
-    pub turned: usize,
+    #[serde(rename = "turned")]
+    pub reoriented: usize,
     /// Boundary loops closed.
     pub loops: usize,
     /// Triangles added to close them.
@@ -58,7 +60,7 @@ impl Repair {
 impl fmt::Display for Repair {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let s = |count: usize| if count == 1 { "" } else { "s" };
-        let Repair { joined, collapsed, duplicates, fins, turned, loops, added, bodies, is_resolved } = *self;
+        let Repair { joined, collapsed, duplicates, dangling: fins, reoriented: turned, loops, added, bodies, is_resolved } = *self;
         let (vertices, triangles) = (if joined == 1 { "vertex" } else { "vertices" }, s(collapsed));
         let done = [
             (joined, format!("{joined} {vertices} joined at boundaries that were apart by rounding")),
@@ -126,8 +128,8 @@ fn repaired_on_lattice(mesh: Mesh, is_two_sided: bool) -> Result<(Solid, Repair)
     repair.collapsed = before - mesh.triangles.len();
     if is_two_sided || check_edges(&mesh).is_err() {
         repair.duplicates = remove_duplicates(&mut mesh, is_two_sided);
-        repair.turned = turn_alike(&mut mesh);
-        repair.fins = remove_dangling(&mut mesh);
+        repair.reoriented = turn_alike(&mut mesh);
+        repair.dangling = remove_dangling(&mut mesh);
         refuse_one_sided(&mesh)?;
         let closed = closing::close(&mut mesh);
         (repair.loops, repair.added) = (closed.loops, closed.triangles);

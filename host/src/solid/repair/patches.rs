@@ -49,13 +49,13 @@ impl LoopPlane {
     ///
     /// # Source
     /// The method of Newell, in Sutherland, Sproull and Schumacker 1974.
-    pub(super) fn of(boundary: &BoundaryLoop, places: &[DVec3]) -> LoopPlane {
+    pub(super) fn of(boundary: &BoundaryLoop, positions: &[DVec3]) -> LoopPlane {
         let BoundaryLoop(points) = boundary;
-        let at = |point: &u32| places[*point as usize];
+        let at = |point: &u32| positions[*point as usize];
         let mean = points.iter().map(at).sum::<DVec3>() / points.len() as f64;
         let normal: DVec3 = boundary.edges().map(|[p, q]| (at(&p) - mean).cross(at(&q) - mean)).sum();
         let unit = normal.normalize_or_zero();
-        let near = FLAT * boundary.length(places);
+        let near = FLAT * boundary.length(positions);
         let is_flat = unit != DVec3::ZERO && points.iter().all(|point| (at(point) - mean).dot(unit).abs() <= near);
         LoopPlane { normal, mean, is_flat }
     }
@@ -93,22 +93,22 @@ impl Method {
         self,
         loops: &[&BoundaryLoop],
         plane: &LoopPlane,
-        places: &[DVec3],
-        beside: &ThirdCorners,
+        positions: &[DVec3],
+        third_corners: &ThirdCorners,
     ) -> Option<ClosingPatch> {
         let points: Vec<&[u32]> = loops.iter().map(|BoundaryLoop(points)| points.as_slice()).collect();
         match (self, &points[..]) {
             (Method::Projected, _) => {
-                let triangles = filled(plane.axis(), places, &points)?;
+                let triangles = filled(plane.axis(), positions, &points)?;
                 Some(ClosingPatch { triangles, vertex: None })
             }
             (Method::LeastArea, [points]) if points.len() <= MOST_POINTS => {
-                Some(ClosingPatch { triangles: least_area(points, places, beside), vertex: None })
+                Some(ClosingPatch { triangles: least_area(points, positions, third_corners), vertex: None })
             }
             (Method::Fan, [points]) => {
-                let center = places.len() as u32;
+                let center = positions.len() as u32;
                 let triangles = loops[0].edges().map(|[from, to]| [from, to, center]).collect();
-                let mean = points.iter().map(|&point| places[point as usize]).sum::<DVec3>() / points.len() as f64;
+                let mean = points.iter().map(|&point| positions[point as usize]).sum::<DVec3>() / points.len() as f64;
                 Some(ClosingPatch { triangles, vertex: Some(mean) })
             }
             _ => None,
@@ -124,15 +124,15 @@ pub(super) type ThirdCorners = HashMap<[u32; 2], u32>;
 ///
 /// # Source
 /// Barequet and Sharir 1995, by the recursion of Klincsek 1980.
-fn least_area(points: &[u32], places: &[DVec3], beside: &ThirdCorners) -> Vec<[u32; 3]> {
+fn least_area(points: &[u32], positions: &[DVec3], third_corners: &ThirdCorners) -> Vec<[u32; 3]> {
     let count = points.len();
-    let at = |k: usize| places[points[k] as usize];
+    let at = |k: usize| positions[points[k] as usize];
     // The unit normal of the triangle beside each edge of the loop.
     let normal_beside: Vec<DVec3> = (0..count)
         .map(|k| {
             let (from, to) = (points[k], points[(k + 1) % count]);
-            let Some(&third) = beside.get(&[from, to]) else { return DVec3::ZERO };
-            let [p, q, r] = [to, from, third].map(|point| places[point as usize]);
+            let Some(&third) = third_corners.get(&[from, to]) else { return DVec3::ZERO };
+            let [p, q, r] = [to, from, third].map(|point| positions[point as usize]);
             (q - p).cross(r - p).normalize_or_zero()
         })
         .collect();
@@ -207,15 +207,15 @@ mod tests {
     fn every_method_closes_the_loop_that_it_is_given() {
         for (height, is_flat) in [(0.0, true), (0.3, false)] {
             for back in [false, true] {
-                let (mut boundary, places) = ring(40, |angle| height * (2.0 * angle).sin());
+                let (mut boundary, positions) = ring(40, |angle| height * (2.0 * angle).sin());
                 if back {
                     boundary.0.reverse();
                 }
-                let plane = LoopPlane::of(&boundary, &places);
+                let plane = LoopPlane::of(&boundary, &positions);
                 assert_eq!(plane.is_flat, is_flat);
                 assert_eq!(plane.normal.z > 0.0, !back);
                 for method in Method::of(&boundary, &plane) {
-                    let patch = method.patch(&[&boundary], &plane, &places, &ThirdCorners::new()).expect("the loop is plain");
+                    let patch = method.patch(&[&boundary], &plane, &positions, &ThirdCorners::new()).expect("the loop is plain");
                     assert!(closes(&boundary, &patch), "{method:?}");
                     assert_eq!(patch.triangles.len(), if *method == Method::Fan { 40 } else { 38 });
                 }
@@ -226,13 +226,13 @@ mod tests {
     #[test]
     fn of_the_patches_of_a_bent_loop_the_least_has_the_least_area() {
         // Two unit squares at a right angle, with a common side that the loop leaves out.
-        let places: Vec<DVec3> = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 1, 1], [0, 1, 1], [0, 1, 0]]
+        let positions: Vec<DVec3> = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 1, 1], [0, 1, 1], [0, 1, 0]]
             .map(|[x, y, z]: [i32; 3]| glam::IVec3::new(x, y, z).as_dvec3())
             .to_vec();
         let boundary = BoundaryLoop((0..6).collect());
-        let triangles = least_area(&boundary.0, &places, &ThirdCorners::new());
+        let triangles = least_area(&boundary.0, &positions, &ThirdCorners::new());
         let area = |[a, b, c]: [u32; 3]| {
-            let [a, b, c] = [a, b, c].map(|p| places[p as usize]);
+            let [a, b, c] = [a, b, c].map(|p| positions[p as usize]);
             0.5 * (b - a).cross(c - a).length()
         };
         let sum: f64 = triangles.iter().map(|corners| area(*corners)).sum();
@@ -241,24 +241,24 @@ mod tests {
 
     #[test]
     fn a_loop_that_is_long_has_no_patch_of_least_area() {
-        let (boundary, places) = ring(2 * MOST_POINTS as u32, |angle| angle.sin());
-        let plane = LoopPlane::of(&boundary, &places);
-        assert!(Method::LeastArea.patch(&[&boundary], &plane, &places, &ThirdCorners::new()).is_none());
-        assert!(Method::Projected.patch(&[&boundary], &plane, &places, &ThirdCorners::new()).is_some());
+        let (boundary, positions) = ring(2 * MOST_POINTS as u32, |angle| angle.sin());
+        let plane = LoopPlane::of(&boundary, &positions);
+        assert!(Method::LeastArea.patch(&[&boundary], &plane, &positions, &ThirdCorners::new()).is_none());
+        assert!(Method::Projected.patch(&[&boundary], &plane, &positions, &ThirdCorners::new()).is_some());
     }
 
     #[test]
     fn a_patch_is_not_folded_back_onto_the_triangle_beside_it() {
         // A loop around a unit square, but that a point above one side is between its ends.
-        let places = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
-        let places = [&places[..], &[DVec3::new(-0.1, 0.5, 0.5)]].concat();
+        let positions = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
+        let positions = [&positions[..], &[DVec3::new(-0.1, 0.5, 0.5)]].concat();
         let boundary = BoundaryLoop(vec![0, 1, 2, 3, 4]);
         let is_ear = |corners: &&[u32; 3]| [3, 4, 0].iter().all(|corner| corners.contains(corner));
-        let free = least_area(&boundary.0, &places, &ThirdCorners::new());
+        let free = least_area(&boundary.0, &positions, &ThirdCorners::new());
         assert_eq!(free.iter().filter(is_ear).count(), 1);
         // The triangle of the surface that has two sides of the loop and lies where that ear would.
-        let beside = ThirdCorners::from([([3, 4], 0), ([4, 0], 3)]);
-        let bound = least_area(&boundary.0, &places, &beside);
+        let third_corners = ThirdCorners::from([([3, 4], 0), ([4, 0], 3)]);
+        let bound = least_area(&boundary.0, &positions, &third_corners);
         assert_eq!((bound.len(), bound.iter().filter(is_ear).count()), (3, 0));
     }
 }

@@ -48,7 +48,7 @@ fn holes_turned_and_double_triangles_are_put_right() {
     broken.triangles.push(broken.triangles[5]);
     let (found, repair) = repaired(&broken);
     assert!((found - volume).abs() < 1e-14);
-    assert_eq!(repair, Repair { duplicates: 1, turned: 13, loops: 1, added: 1, ..Repair::default() });
+    assert_eq!(repair, Repair { duplicates: 1, reoriented: 13, loops: 1, added: 1, ..Repair::default() });
     assert_eq!(repaired(&ball.clone().reversed()), (volume, Repair { bodies: 1, ..Repair::default() }));
 }
 
@@ -137,11 +137,11 @@ fn walls_within_a_body_and_fins_are_left_out() {
         .collect();
     super::super::cleaning::retain(&mut walled, &keep);
     let (volume, repair) = repaired(&walled.welded());
-    assert_eq!((volume, repair), (2.0, Repair { fins: 2, ..Repair::default() }));
+    assert_eq!((volume, repair), (2.0, Repair { dangling: 2, ..Repair::default() }));
     let mut finned = cube(0.0, 1.0);
     finned.vertices.push(DVec3::splat(3.0));
     finned.triangles.push([finned.triangles[0][0], finned.triangles[0][1], finned.vertices.len() as u32 - 1]);
-    assert_eq!(repaired(&finned), (1.0, Repair { fins: 1, ..Repair::default() }));
+    assert_eq!(repaired(&finned), (1.0, Repair { dangling: 1, ..Repair::default() }));
 }
 
 #[test]

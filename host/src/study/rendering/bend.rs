@@ -28,6 +28,7 @@ pub enum ErrorFloor {
     ///
     /// From the setting up to the last, the squared bias is less than a tenth of the squared error or less than three of
     /// its standard errors, and the last squared error is more than 0.6 of the first.
+    #[serde(rename = "chance")]
     Noise {
         /// The first such setting, by its number.
         from: usize,

@@ -35,8 +35,8 @@ const COARSEST_VOXELS: i32 = 6;
 const ALL: fn(&RendererRow) -> bool = |renderer| renderer.is_studied;
 const RAYS: fn(&RendererRow) -> bool = |renderer| renderer.is_studied && renderer.adds_samples;
 /// Rays from the eye alone.
-const EYE: fn(&RendererRow) -> bool = |renderer| RAYS(renderer) && !renderer.sends_photons;
-const LAMPS: fn(&RendererRow) -> bool = |renderer| renderer.is_studied && renderer.sends_photons;
+const EYE: fn(&RendererRow) -> bool = |renderer| RAYS(renderer) && !renderer.always_maps_photons;
+const LAMPS: fn(&RendererRow) -> bool = |renderer| renderer.is_studied && renderer.always_maps_photons;
 
 /// A quality setting of a renderer.
 pub struct RenderKnob {

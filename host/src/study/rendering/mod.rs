@@ -108,7 +108,7 @@ impl Bench<'_> {
             reference_error: 0.0,
             reference_seconds: 0.0,
             rows: Vec::new(),
-            bend: None,
+            error_floor: None,
             verdict: String::new(),
         }
     }
@@ -139,8 +139,8 @@ impl Bench<'_> {
             (self.watch.progress)(Progress::of(self.done, self.steps, "measurements"));
         }
         let measured: Vec<ErrorMeasures> = found.rows.iter().map(|row| row.measures).collect();
-        found.bend = error_floor(&measured, found.reference_error);
-        if let Some(ErrorFloor::Bias { causes, .. }) = &mut found.bend {
+        found.error_floor = error_floor(&measured, found.reference_error);
+        if let Some(ErrorFloor::Bias { causes, .. }) = &mut found.error_floor {
             *causes = self.causes(technique, knob, reference)?;
         }
         let apart = match is_whole {

@@ -29,7 +29,7 @@ const COLUMNS: [Column; 10] = [
 /// - `apart`: how far a reference of scan line is from one of ray tracing, and what it leaves out.
 pub(super) fn verdict(study: &KnobStudy, changes: bool, apart: Option<(f64, Vec<&'static str>)>) -> String {
     let at = |from: usize| format!("{} {}", study.name, short(study.rows[from].setting));
-    let mut text = match &study.bend {
+    let mut text = match &study.error_floor {
         _ if !changes => "changes nothing: all settings give the same picture".to_owned(),
         None if study.rows.len() < 3 => String::new(),
         None => "the error still falls at the finest setting".to_owned(),

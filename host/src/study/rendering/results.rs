@@ -36,7 +36,8 @@ pub struct KnobStudy {
     /// Its settings, from the coarsest to the finest.
     pub rows: Vec<RenderRow>,
     /// Where its error bends, if it does.
-    pub bend: Option<ErrorFloor>,
+    #[serde(rename = "bend")]
+    pub error_floor: Option<ErrorFloor>,
     /// What the rows tell, in words.
     pub verdict: String,
 }

@@ -98,7 +98,7 @@ impl StudiedScene {
         if settings.light.caustics == Caustics::PhotonMapped {
             settings.light.caustics = Caustics::LeftOut;
         }
-        if technique.row().sends_photons {
+        if technique.row().always_maps_photons {
             (technique.row().require)(&mut settings);
         }
         settings.photons.radius = Some(settings.photons.radius.unwrap_or_else(|| greatest_gather_radius(&self.prepared)));
@@ -184,7 +184,7 @@ impl StudiedScene {
             order
         };
         let quiet = watch.quiet();
-        let is_followed = setup.technique.row().sends_photons;
+        let is_followed = setup.technique.row().always_maps_photons;
         let mut shots = Vec::new();
         while !is_enough(&shots) {
             if is_followed {

@@ -172,7 +172,7 @@ fn a_coarse_tessellation_bends_the_curve_of_the_samples_and_is_named() {
     let mut scene = ball();
     scene.settings.geometry.tolerance = Some(0.08);
     let [found] = study(&scene, &["samples"], Options { settings: 7, ..SMALL }).try_into().expect("one knob");
-    let Some(ErrorFloor::Bias { from, causes }) = &found.bend else { panic!("{}", found.table()) };
+    let Some(ErrorFloor::Bias { from, causes }) = &found.error_floor else { panic!("{}", found.table()) };
     assert!(*from < 4 && causes[0].0 == "tolerance" && causes[0].1 > 0.9, "{}", found.table());
     assert!(found.verdict.contains("the error is bias") && found.table().contains("tolerance ("), "{}", found.verdict);
 }

@@ -108,7 +108,7 @@ struct Spoke {
     /// The derivatives where it leaves the rim and where it arrives.
     ends: [DVec3; 2],
     /// The derivative at the vertex, a quarter turn ahead of the way outwards.
-    turned: DVec3,
+    quarter_turned: DVec3,
 }
 
 /// Fills a hole by patches that meet at a vertex, each with two sides of the hole.
@@ -174,7 +174,7 @@ fn spokes(sides: &[HoleSide]) -> Result<Vec<Spoke>, HoleError> {
         let (direction, start) = (angle(k), starts[k]);
         let out = x * direction.x + y * direction.y;
         let bezier = [start, start + leaving[k] / 3.0, vertex + out / 3.0, vertex];
-        Spoke { bezier, ends: [leaving[k], -out], turned: y * direction.x - x * direction.y }
+        Spoke { bezier, ends: [leaving[k], -out], quarter_turned: y * direction.x - x * direction.y }
     };
     Ok((0..valence).map(spoke).collect())
 }
@@ -192,7 +192,7 @@ impl Spoke {
         if parts.x * sin <= 0.0 {
             return Err(HoleError::Flat);
         }
-        let ahead = Polynomial::line(reference, self.turned);
+        let ahead = Polynomial::line(reference, self.quarter_turned);
         let across = ahead.times([parts.x, sin]).plus(&curve.derivative().times([parts.y, cos]));
         Ok(Ribbon { curve, across })
     }

@@ -23,7 +23,7 @@ use crate::surface::{Surface, nearest_from};
 /// Charrot and Gregory 1984, with variable twists after Gregory 1974.
 #[derive(Clone, Debug)]
 pub struct NSidedPatch {
-    whole: Arc<PolygonPatch>,
+    patch: Arc<PolygonPatch>,
     sector: usize,
 }
 
@@ -65,7 +65,7 @@ pub fn n_sided_patch(sides: &[HoleSide]) -> Result<Vec<NSidedPatch>, HoleError> 
     };
     whole.middle = whole.at([Jet::parameter(0.0, 0), Jet::parameter(0.0, 1)]).value;
     let whole = Arc::new(whole);
-    Ok((0..count).map(|sector| NSidedPatch { whole: whole.clone(), sector }).collect())
+    Ok((0..count).map(|sector| NSidedPatch { patch: whole.clone(), sector }).collect())
 }
 
 impl PolygonPatch {
@@ -140,7 +140,7 @@ pub(super) fn twist([at_v0, at_u0]: [DVec3; 2], u: Jet<f64>, v: Jet<f64>) -> Jet
 impl NSidedPatch {
     /// A point of the polygon, as it depends on itself.
     fn domain_point(&self, uv: DVec2) -> DVec2 {
-        let count = self.whole.normals.len() as f64;
+        let count = self.patch.normals.len() as f64;
         let corner = |k: usize| DVec2::from_angle(k as f64 / count * TAU) / (0.5 * TAU / count).cos();
         (corner(self.sector) * (1.0 - uv.x) + corner(self.sector + 1) * uv.x) * (1.0 - uv.y)
     }
@@ -154,8 +154,8 @@ impl NSidedPatch {
             (from + (to - from) * u) * (Jet::constant(1.0) - v)
         };
         let place = self.domain_point(uv);
-        let by_uv = self.whole.at([blend(0), blend(1)]);
-        [by_uv, self.whole.at([Jet::parameter(place.x, 0), Jet::parameter(place.y, 1)])]
+        let by_uv = self.patch.at([blend(0), blend(1)]);
+        [by_uv, self.patch.at([Jet::parameter(place.x, 0), Jet::parameter(place.y, 1)])]
     }
 }
 
@@ -166,16 +166,16 @@ impl Surface for NSidedPatch {
 
     /// On the side that of the curve, to the bit; between sectors the same from both.
     fn point(&self, uv: DVec2) -> DVec3 {
-        let count = self.whole.normals.len();
+        let count = self.patch.normals.len();
         if uv.y == 0.0 {
-            return casteljau(self.whole.curves[self.sector], uv.x);
+            return casteljau(self.patch.curves[self.sector], uv.x);
         }
         if uv.y == 1.0 {
-            return self.whole.middle;
+            return self.patch.middle;
         }
         // The last side of a sector is looked at as the first of the next.
         if uv.x == 1.0 {
-            let next = NSidedPatch { whole: self.whole.clone(), sector: (self.sector + 1) % count };
+            let next = NSidedPatch { patch: self.patch.clone(), sector: (self.sector + 1) % count };
             return next.jets(DVec2::new(0.0, uv.y))[0].value;
         }
         self.jets(uv)[0].value

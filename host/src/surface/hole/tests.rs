@@ -106,7 +106,7 @@ fn assert_smooth<A: Curved, B: Curved>(a: &A, b: &B, sides: [SurfaceSide; 2], wh
 /// Whether a mesh is open in one loop of so many corners at least, and has no other open edge.
 fn assert_open_only_around(mesh: &Mesh, rim: usize) {
     let report = mesh.edge_report();
-    assert!(report.boundary >= rim && report.crowded == 0 && report.misoriented == 0, "{report:?}");
+    assert!(report.boundary >= rim && report.non_manifold == 0 && report.misoriented == 0, "{report:?}");
     assert_eq!(report.euler_characteristic(), 1);
 }
 

@@ -51,7 +51,7 @@ fn a_disc_in_a_plate_has_its_area_and_the_hole_lacks_it() {
         assert!(area(1) < exact && area(1) > exact - 2.0 * PI * 0.7 * chord, "{} {exact}", area(1));
         assert!((area(0) + area(1) - 8.0).abs() < 1e-13);
         let report = both.edge_report();
-        assert_eq!((report.crowded, report.misoriented, report.slivers), (0, 0, 0));
+        assert_eq!((report.non_manifold, report.misoriented, report.degenerate), (0, 0, 0));
         assert_eq!(report.euler_characteristic(), 1);
         // Flat: no more triangles than the outline asks for.
         assert_eq!(both.vertices.len(), 4 + disc_corners(&both));
@@ -171,7 +171,7 @@ fn a_trimmed_torus_stays_within_the_tolerance_and_angle() {
     for (chord, angle) in [(0.05, 180.0), (0.01, 180.0), (10.0, 12.0)] {
         let mesh = tessellate_trimmed(&trimmed, Tolerance::new(chord, angle)).unwrap();
         let report = mesh.edge_report();
-        assert_eq!((report.crowded, report.misoriented, report.euler_characteristic()), (0, 0, -1));
+        assert_eq!((report.non_manifold, report.misoriented, report.euler_characteristic()), (0, 0, -1));
         let error = chord_error(&mesh, std::slice::from_ref(&torus), 6).unwrap().maximum;
         assert!(error <= chord, "{error} for {chord}");
         let turns =

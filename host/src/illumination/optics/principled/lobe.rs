@@ -30,38 +30,38 @@ impl Lobe for PrincipledLobe {
             | Flags::PANE.when(*part == PrincipledPart::Facets && surface.is_pane())
     }
 
-    fn value(&self, sighting: &ShadingContext, light: DVec3) -> Channels {
-        self.surface.value(self.part, sighting, light)
+    fn value(&self, context: &ShadingContext, light: DVec3) -> Channels {
+        self.surface.value(self.part, context, light)
     }
 
-    fn pdf(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
-        self.surface.pdf(self.part, sighting, light)
+    fn pdf(&self, context: &ShadingContext, light: DVec3) -> f64 {
+        self.surface.pdf(self.part, context, light)
     }
 
-    fn sample(&self, sighting: &ShadingContext, choice: f64, point: [f64; 2]) -> Option<BsdfSample> {
+    fn sample(&self, context: &ShadingContext, choice: f64, point: [f64; 2]) -> Option<BsdfSample> {
         match self.surface.is_mirror(self.part) {
-            true => self.surface.specular_sample(self.part, sighting, choice),
-            false => self.surface.sample(self.part, sighting, choice, point).map(BsdfSample::unweighted),
+            true => self.surface.specular_sample(self.part, context, choice),
+            false => self.surface.sample(self.part, context, choice, point).map(BsdfSample::unweighted),
         }
     }
 
-    fn strength(&self, sighting: &ShadingContext) -> f64 {
-        self.surface.strength(self.part, sighting)
+    fn strength(&self, context: &ShadingContext) -> f64 {
+        self.surface.strength(self.part, context)
     }
 
-    fn specular_samples(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
-        self.surface.specular_samples(self.part, sighting)
+    fn specular_samples(&self, context: &ShadingContext) -> [Option<BsdfSample>; 2] {
+        self.surface.specular_samples(self.part, context)
     }
 
-    fn diffuse_albedo(&self, sighting: &ShadingContext) -> Channels {
-        self.surface.diffuse_albedo(self.part, sighting)
+    fn diffuse_albedo(&self, context: &ShadingContext) -> Channels {
+        self.surface.diffuse_albedo(self.part, context)
     }
 
-    fn glossy_albedo(&self, sighting: &ShadingContext) -> Channels {
-        self.surface.glossy_albedo(self.part, sighting)
+    fn glossy_albedo(&self, context: &ShadingContext) -> Channels {
+        self.surface.glossy_albedo(self.part, context)
     }
 
-    fn clear_transmittance(&self, sighting: &ShadingContext) -> Channels {
-        if self.is_clear() { self.surface.straight_transmittance(sighting) } else { Channels::ZERO }
+    fn clear_transmittance(&self, context: &ShadingContext) -> Channels {
+        if self.is_clear() { self.surface.straight_transmittance(context) } else { Channels::ZERO }
     }
 }

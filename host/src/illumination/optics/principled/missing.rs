@@ -44,8 +44,8 @@ impl PrincipledSurface {
     }
 
     /// Whether the media on both sides are those for which the tables were made.
-    pub(super) fn is_alone(&self, sighting: &ShadingContext, seen: InterfaceSide) -> bool {
-        let [before, behind] = [sighting.side.before.0[0], sighting.side.behind.0[0]];
+    pub(super) fn is_alone(&self, context: &ShadingContext, seen: InterfaceSide) -> bool {
+        let [before, behind] = [context.indices.before.0[0], context.indices.behind.0[0]];
         match seen {
             _ if self.thin => true,
             InterfaceSide::Outside => before == 1.0 && behind == self.index,
@@ -55,7 +55,7 @@ impl PrincipledSurface {
 
     /// The other side.
     pub(super) fn beyond(&self, at: &PrincipledValues) -> InterfaceSide {
-        match at.seen {
+        match at.side {
             InterfaceSide::Outside if !self.thin => InterfaceSide::Inside,
             _ => InterfaceSide::Outside,
         }
@@ -68,7 +68,7 @@ impl PrincipledSurface {
     ///
     /// - `own`: the mean of what is missing on the side of the viewer.
     pub(super) fn division(&self, at: &PrincipledValues, own: f64) -> [f64; 2] {
-        let fresnel = self.albedo.fresnel(at.seen, self.thin);
+        let fresnel = self.albedo.fresnel(at.side, self.thin);
         let other = self.mean_missing(at, self.beyond(at)).clear;
         let goes = if own > 0.0 { (1.0 - fresnel) * (other / own).min(1.0) } else { 0.0 };
         [1.0 - goes, goes]

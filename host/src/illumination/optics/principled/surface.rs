@@ -53,7 +53,7 @@ pub(in crate::illumination::optics) enum PrincipledPart {
 
 /// The numbers of it at a place.
 pub(super) struct PrincipledValues {
-    pub(super) seen: InterfaceSide,
+    pub(super) side: InterfaceSide,
     pub(super) metallic: f64,
     pub(super) specular: f64,
     pub(super) transmission: f64,
@@ -143,17 +143,17 @@ impl PrincipledSurface {
         })
     }
 
-    pub(super) fn at(&self, sighting: &ShadingContext) -> PrincipledValues {
-        let is_inside = sighting.side.inside && !self.thin;
-        let part = |quantity: PreparedNumber| quantity.of(sighting).clamp(0.0, 1.0);
+    pub(super) fn at(&self, context: &ShadingContext) -> PrincipledValues {
+        let is_inside = context.indices.inside && !self.thin;
+        let part = |quantity: PreparedNumber| quantity.of(context).clamp(0.0, 1.0);
         PrincipledValues {
-            seen: if is_inside { InterfaceSide::Inside } else { InterfaceSide::Outside },
+            side: if is_inside { InterfaceSide::Inside } else { InterfaceSide::Outside },
             metallic: part(self.metallic),
             specular: part(self.specular),
             transmission: part(self.transmission),
             coat: part(self.coat),
-            base: self.base.of(sighting),
-            cloth: if is_inside { Channels::ZERO } else { self.sheen.of(sighting) },
+            base: self.base.of(context),
+            cloth: if is_inside { Channels::ZERO } else { self.sheen.of(context) },
             rim: Sheen::new(part(self.sheen_roughness)),
         }
     }
@@ -171,12 +171,12 @@ impl PrincipledSurface {
     ///
     /// - `narrow`: the density from straight above from which on it is a beam, 1/sr.
     pub(super) fn is_broad(&self, part: PrincipledPart, narrow: f64) -> bool {
-        let density = |facets: &Option<Microfacet>| {
+        let pdf = |facets: &Option<Microfacet>| {
             facets.as_ref().map_or(f64::INFINITY, |facets| facets.pdf(DVec3::Z, DVec3::Z))
         };
         match part {
-            PrincipledPart::Coat => density(&self.coat_facets) < narrow,
-            PrincipledPart::Facets => density(&self.facets.map(|(facets, _)| facets)) < narrow,
+            PrincipledPart::Coat => pdf(&self.coat_facets) < narrow,
+            PrincipledPart::Facets => pdf(&self.facets.map(|(facets, _)| facets)) < narrow,
             PrincipledPart::Sheen | PrincipledPart::Spread => true,
         }
     }
@@ -192,7 +192,7 @@ impl PrincipledSurface {
     }
 
     /// What a facet sends on at a cosine.
-    pub(super) fn fresnel(&self, at: &PrincipledValues, sighting: &ShadingContext, cosine: f64) -> FacetFresnel {
+    pub(super) fn fresnel(&self, at: &PrincipledValues, context: &ShadingContext, cosine: f64) -> FacetFresnel {
         let grazing = (1.0 - cosine.clamp(0.0, 1.0)).powi(5);
         let own = self.surface.reflectance(cosine).mean();
         let dielectric = at.opaque() * at.specular * own;
@@ -204,7 +204,7 @@ impl PrincipledSurface {
         let (clear, tint) = match self.thin {
             true => (Channels::splat(pane(own)), at.base),
             // Light comes through twice, on its way in and out.
-            false => (reflected(sighting, cosine), at.base.map(f64::sqrt)),
+            false => (reflected(context, cosine), at.base.map(f64::sqrt)),
         };
         FacetFresnel { ground, clear: clear * part, through: clear.map(|clear| part * (1.0 - clear)) * tint }
     }
@@ -227,15 +227,15 @@ impl PrincipledSurface {
     }
 
     /// Where a facet would have to look to send light to the viewer, through or not.
-    pub(super) fn facet(&self, sighting: &ShadingContext, light: DVec3) -> Option<DVec3> {
-        let view = sighting.view;
+    pub(super) fn facet(&self, context: &ShadingContext, light: DVec3) -> Option<DVec3> {
+        let view = context.view;
         let facet = if light.z > 0.0 {
             light + view
         } else if self.thin {
             DVec3::new(light.x, light.y, -light.z) + view
         } else {
-            let lane = sighting.lane;
-            let facet = -(view * sighting.side.before.0[lane] + light * sighting.side.behind.0[lane]);
+            let lane = context.lane;
+            let facet = -(view * context.indices.before.0[lane] + light * context.indices.behind.0[lane]);
             if facet.z < 0.0 { -facet } else { facet }
         };
         let facet = facet.try_normalize()?;
@@ -244,30 +244,30 @@ impl PrincipledSurface {
     }
 
     /// How much of the directions around a facet goes to one solid angle of light.
-    fn jacobian(&self, sighting: &ShadingContext, light: DVec3, facet: DVec3) -> f64 {
-        let to_view = facet.dot(sighting.view);
+    fn jacobian(&self, context: &ShadingContext, light: DVec3, facet: DVec3) -> f64 {
+        let to_view = facet.dot(context.view);
         if light.z > 0.0 || self.thin {
             return 0.25 / to_view;
         }
-        let lane = sighting.lane;
-        let ratio = sighting.side.before.0[lane] / sighting.side.behind.0[lane];
+        let lane = context.lane;
+        let ratio = context.indices.before.0[lane] / context.indices.behind.0[lane];
         let to_light = facet.dot(light);
         let sum = to_light + ratio * to_view;
         to_light.abs() / (sum * sum)
     }
 
     /// Radiance towards the viewer for a unit of flux density, 1/sr.
-    pub(super) fn value(&self, part: PrincipledPart, sighting: &ShadingContext, light: DVec3) -> Channels {
-        let view = sighting.view;
+    pub(super) fn value(&self, part: PrincipledPart, context: &ShadingContext, light: DVec3) -> Channels {
+        let view = context.view;
         if view.z <= 0.0 || light.z == 0.0 {
             return Channels::ZERO;
         }
-        let at = self.at(sighting);
+        let at = self.at(context);
         let value = match part {
-            PrincipledPart::Facets => self.once(&at, sighting, light),
-            PrincipledPart::Spread if light.z < 0.0 => self.spread_through(&at, sighting, light),
-            PrincipledPart::Spread => self.spread(&at, sighting, light),
-            _ if light.z < 0.0 || at.seen == InterfaceSide::Inside => Channels::ZERO,
+            PrincipledPart::Facets => self.once(&at, context, light),
+            PrincipledPart::Spread if light.z < 0.0 => self.spread_through(&at, context, light),
+            PrincipledPart::Spread => self.spread(&at, context, light),
+            _ if light.z < 0.0 || at.side == InterfaceSide::Inside => Channels::ZERO,
             PrincipledPart::Sheen => at.cloth * ((1.0 - at.clear()) * at.rim.value(view.z, light.z)),
             PrincipledPart::Coat => match self.coat_facets.as_ref().zip((light + view).try_normalize()) {
                 Some((facets, half)) => {
@@ -286,15 +286,15 @@ impl PrincipledSurface {
     }
 
     /// What facets send to the viewer by one reflection or refraction.
-    fn once(&self, at: &PrincipledValues, sighting: &ShadingContext, light: DVec3) -> Channels {
-        let view = sighting.view;
-        let Some(((facets, m), facet)) = self.facets.as_ref().zip(self.facet(sighting, light)) else {
+    fn once(&self, at: &PrincipledValues, context: &ShadingContext, light: DVec3) -> Channels {
+        let view = context.view;
+        let Some(((facets, m), facet)) = self.facets.as_ref().zip(self.facet(context, light)) else {
             return Channels::ZERO;
         };
-        let FacetFresnel { ground, clear, through } = self.fresnel(at, sighting, facet.dot(view));
+        let FacetFresnel { ground, clear, through } = self.fresnel(at, context, facet.dot(view));
         let above = DVec3::new(light.x, light.y, light.z.abs());
         if light.z > 0.0 || self.thin {
-            let is_inside = at.seen == InterfaceSide::Inside;
+            let is_inside = at.side == InterfaceSide::Inside;
             let under = if is_inside { 1.0 } else { self.under(at, view.z.min(above.z)) };
             let sent = if light.z > 0.0 { ground * (Channels::ONE - at.cloth) + clear } else { through };
             return sent * (under * facets.density(above, view) / view.z);
@@ -302,23 +302,23 @@ impl PrincipledSurface {
         let [l, v] = [above, view].map(|towards| SlopeDistribution::Ggx.projected(towards, *m) / towards.z);
         // Above and below, one hides what the other does not.
         let masking = beta(v, l) / (view.z * above.z);
-        let under = self.under(at, if at.seen == InterfaceSide::Outside { view.z } else { above.z });
-        let density = SlopeDistribution::Ggx.area(facet, *m) * facet.dot(view) * self.jacobian(sighting, light, facet);
-        through * (density * masking * radiance_scale(sighting) * under)
+        let under = self.under(at, if at.side == InterfaceSide::Outside { view.z } else { above.z });
+        let pdf = SlopeDistribution::Ggx.area(facet, *m) * facet.dot(view) * self.jacobian(context, light, facet);
+        through * (pdf * masking * radiance_scale(context) * under)
     }
 
     /// What is spread alike on the side of the viewer: colors, and what is missing.
-    fn spread(&self, at: &PrincipledValues, sighting: &ShadingContext, light: DVec3) -> Channels {
-        let [from, to] = [sighting.view.z, light.z].map(|cosine| self.missing(at, at.seen, cosine));
-        let mean = self.mean_missing(at, at.seen);
+    fn spread(&self, at: &PrincipledValues, context: &ShadingContext, light: DVec3) -> Channels {
+        let [from, to] = [context.view.z, light.z].map(|cosine| self.missing(at, at.side, cosine));
+        let mean = self.mean_missing(at, at.side);
         let mut value = at.base * (at.opaque() * over(from.opaque * to.opaque, mean.opaque));
         if at.metallic > 0.0 {
             let further = at.further(self.albedo.mean(InterfaceSide::Outside).all);
             value += further * (at.metallic * over(from.metal * to.metal, mean.metal));
         }
-        let ground = at.rim.ground(sighting.view.z, light.z);
+        let ground = at.rim.ground(context.view.z, light.z);
         value = value * (Channels::ONE - at.cloth) + at.cloth * at.base * ((1.0 - at.clear()) * ground);
-        if at.clear() > 0.0 && self.is_alone(sighting, at.seen) {
+        if at.clear() > 0.0 && self.is_alone(context, at.side) {
             let [stays, _] = self.division(at, mean.clear);
             value += Channels::splat(at.clear() * stays * over(from.clear * to.clear, mean.clear));
         }
@@ -326,48 +326,48 @@ impl PrincipledSurface {
     }
 
     /// What is missing and comes from the other side, spread alike.
-    fn spread_through(&self, at: &PrincipledValues, sighting: &ShadingContext, light: DVec3) -> Channels {
-        if at.clear() == 0.0 || !self.is_alone(sighting, at.seen) {
+    fn spread_through(&self, at: &PrincipledValues, context: &ShadingContext, light: DVec3) -> Channels {
+        if at.clear() == 0.0 || !self.is_alone(context, at.side) {
             return Channels::ZERO;
         }
         let beyond = self.beyond(at);
-        let [_, goes] = self.division(at, self.mean_missing(at, at.seen).clear);
-        let from = self.missing(at, at.seen, sighting.view.z).clear;
+        let [_, goes] = self.division(at, self.mean_missing(at, at.side).clear);
+        let from = self.missing(at, at.side, context.view.z).clear;
         let to = self.missing(at, beyond, -light.z).clear;
         let part = at.clear() * goes * over(from * to, self.mean_missing(at, beyond).clear);
-        if self.thin { at.base * part } else { at.base.map(f64::sqrt) * (part * radiance_scale(sighting)) }
+        if self.thin { at.base * part } else { at.base.map(f64::sqrt) * (part * radiance_scale(context)) }
     }
 
     /// The density of samples, 1/sr.
-    pub(super) fn pdf(&self, part: PrincipledPart, sighting: &ShadingContext, light: DVec3) -> f64 {
-        let view = sighting.view;
+    pub(super) fn pdf(&self, part: PrincipledPart, context: &ShadingContext, light: DVec3) -> f64 {
+        let view = context.view;
         if view.z <= 0.0 || light.z == 0.0 {
             return 0.0;
         }
-        let density = match part {
+        let pdf = match part {
             PrincipledPart::Facets => {
-                let Some(((_, m), facet)) = self.facets.as_ref().zip(self.facet(sighting, light)) else { return 0.0 };
-                let at = self.at(sighting);
-                let chance = self.chance(&self.fresnel(&at, sighting, facet.dot(view)));
+                let Some(((_, m), facet)) = self.facets.as_ref().zip(self.facet(context, light)) else { return 0.0 };
+                let at = self.at(context);
+                let chance = self.chance(&self.fresnel(&at, context, facet.dot(view)));
                 let chance = if light.z > 0.0 { chance } else { 1.0 - chance };
                 let seen = facet.dot(view) * SlopeDistribution::Ggx.area(facet, *m) / SlopeDistribution::Ggx.projected(view, *m);
-                chance * seen * self.jacobian(sighting, light, facet)
+                chance * seen * self.jacobian(context, light, facet)
             }
             PrincipledPart::Spread => {
-                let [above, below] = self.spread_shares(&self.at(sighting), sighting);
+                let [above, below] = self.spread_shares(&self.at(context), context);
                 let share = if light.z > 0.0 { above } else { below };
                 if share > 0.0 { share / (above + below) * light.z.abs() * FRAC_1_PI } else { 0.0 }
             }
             _ if light.z < 0.0 => 0.0,
-            PrincipledPart::Sheen => self.at(sighting).rim.pdf(light.z),
+            PrincipledPart::Sheen => self.at(context).rim.pdf(light.z),
             PrincipledPart::Coat => self.coat_facets.as_ref().map_or(0.0, |facets| facets.pdf(view, light)),
         };
-        if density.is_finite() { density } else { 0.0 }
+        if pdf.is_finite() { pdf } else { 0.0 }
     }
 
     /// Draws a direction of light.
-    pub(super) fn sample(&self, part: PrincipledPart, sighting: &ShadingContext, choice: f64, point: [f64; 2]) -> Option<DVec3> {
-        let view = sighting.view;
+    pub(super) fn sample(&self, part: PrincipledPart, context: &ShadingContext, choice: f64, point: [f64; 2]) -> Option<DVec3> {
+        let view = context.view;
         match part {
             PrincipledPart::Facets => {
                 let (_, m) = self.facets.as_ref()?;
@@ -376,96 +376,96 @@ impl PrincipledSurface {
                 if cosine <= 0.0 {
                     return None;
                 }
-                let at = self.at(sighting);
+                let at = self.at(context);
                 let mirrored = (facet * (2.0 * cosine) - view).try_normalize().filter(|light| light.z > 0.0);
-                if choice < self.chance(&self.fresnel(&at, sighting, cosine)) {
+                if choice < self.chance(&self.fresnel(&at, context, cosine)) {
                     mirrored
                 } else if self.thin {
                     mirrored.map(|light| DVec3::new(light.x, light.y, -light.z))
                 } else {
-                    interface(sighting, sighting.lane)?.refracted(view, facet).filter(|light| light.z < 0.0)
+                    interface(context, context.lane)?.refracted(view, facet).filter(|light| light.z < 0.0)
                 }
             }
             PrincipledPart::Spread => {
-                let [above, below] = self.spread_shares(&self.at(sighting), sighting);
+                let [above, below] = self.spread_shares(&self.at(context), context);
                 let light = cosine_hemisphere(point, DVec3::Z);
                 let is_above = choice * (above + below) < above;
                 Some(if is_above { light } else { -light }).filter(|light| light.z != 0.0)
             }
-            PrincipledPart::Sheen => Some(self.at(sighting).rim.sample(point)).filter(|light| light.z > 0.0),
+            PrincipledPart::Sheen => Some(self.at(context).rim.sample(point)).filter(|light| light.z > 0.0),
             PrincipledPart::Coat => self.coat_facets.as_ref()?.sample(view, point),
         }
     }
 
     /// How much is spread alike to the viewer from above, and from below.
-    pub(super) fn spread_shares(&self, at: &PrincipledValues, sighting: &ShadingContext) -> [f64; 2] {
-        let missing = self.missing(at, at.seen, sighting.view.z);
+    pub(super) fn spread_shares(&self, at: &PrincipledValues, context: &ShadingContext) -> [f64; 2] {
+        let missing = self.missing(at, at.side, context.view.z);
         let further = if at.metallic > 0.0 { at.further(self.albedo.mean(InterfaceSide::Outside).all).max() } else { 0.0 };
         let color = at.base.max();
-        let cloth = at.cloth.max() * (1.0 - at.clear()) * (1.0 - at.rim.albedo(sighting.view.z));
+        let cloth = at.cloth.max() * (1.0 - at.clear()) * (1.0 - at.rim.albedo(context.view.z));
         let above = at.opaque() * color * missing.opaque + at.metallic * further * missing.metal + cloth * color;
-        if at.clear() == 0.0 || !self.is_alone(sighting, at.seen) {
+        if at.clear() == 0.0 || !self.is_alone(context, at.side) {
             return [above, 0.0];
         }
-        let [stays, goes] = self.division(at, self.mean_missing(at, at.seen).clear);
+        let [stays, goes] = self.division(at, self.mean_missing(at, at.side).clear);
         [above + at.clear() * stays * missing.clear, at.clear() * goes * missing.clear * color.sqrt()]
     }
 
     /// Single directions of a part: what is reflected, and what comes through.
-    pub(super) fn specular_samples(&self, part: PrincipledPart, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
+    pub(super) fn specular_samples(&self, part: PrincipledPart, context: &ShadingContext) -> [Option<BsdfSample>; 2] {
         if !self.is_mirror(part) {
             return [None, None];
         }
-        let view = sighting.view;
-        let at = self.at(sighting);
+        let view = context.view;
+        let at = self.at(context);
         let light = DVec3::new(-view.x, -view.y, view.z);
         if part == PrincipledPart::Coat {
-            let part = if at.seen == InterfaceSide::Inside { 0.0 } else { at.coat };
+            let part = if at.side == InterfaceSide::Inside { 0.0 } else { at.coat };
             let fresnel = self.coat_surface.reflectance(view.z).mean();
             return [Some(BsdfSample::specular(light, self.beside_cloth(&at) * (part * fresnel))), None];
         }
-        let FacetFresnel { ground, clear, through } = self.fresnel(&at, sighting, view.z);
-        let under = if at.seen == InterfaceSide::Inside { 1.0 } else { self.under(&at, view.z) };
+        let FacetFresnel { ground, clear, through } = self.fresnel(&at, context, view.z);
+        let under = if at.side == InterfaceSide::Inside { 1.0 } else { self.under(&at, view.z) };
         let reflects = (ground * (Channels::ONE - at.cloth) + clear) * under;
-        let reflection = Some(BsdfSample::specular(light, reflects)).filter(|onward| onward.weight.max() > 0.0);
+        let reflection = Some(BsdfSample::specular(light, reflects)).filter(|sample| sample.weight.max() > 0.0);
         if self.thin {
             let straight = BsdfSample { is_straight: true, ..BsdfSample::specular(-view, through * under) };
-            return [reflection, Some(straight).filter(|onward| onward.weight.max() > 0.0)];
+            return [reflection, Some(straight).filter(|sample| sample.weight.max() > 0.0)];
         }
-        let refracted = interface(sighting, sighting.lane).and_then(|surface| surface.refracted(view, DVec3::Z));
+        let refracted = interface(context, context.lane).and_then(|surface| surface.refracted(view, DVec3::Z));
         let refraction = refracted.filter(|light| light.z < 0.0).map(|light| {
-            let outside = if at.seen == InterfaceSide::Outside { view.z } else { -light.z };
-            BsdfSample::specular(light, through * (self.under(&at, outside) * radiance_scale(sighting)))
+            let outside = if at.side == InterfaceSide::Outside { view.z } else { -light.z };
+            BsdfSample::specular(light, through * (self.under(&at, outside) * radiance_scale(context)))
         });
-        [reflection, refraction.filter(|onward| onward.weight.max() > 0.0)]
+        [reflection, refraction.filter(|sample| sample.weight.max() > 0.0)]
     }
 
     /// What comes through a polished surface, as if it were not bent.
-    pub(in crate::illumination::optics) fn straight_transmittance(&self, sighting: &ShadingContext) -> Channels {
-        let at = self.at(sighting);
-        self.fresnel(&at, sighting, sighting.view.z).through * self.under(&at, sighting.view.z)
+    pub(in crate::illumination::optics) fn straight_transmittance(&self, context: &ShadingContext) -> Channels {
+        let at = self.at(context);
+        self.fresnel(&at, context, context.view.z).through * self.under(&at, context.view.z)
     }
 
     /// One of the single directions, by its part.
-    pub(super) fn specular_sample(&self, part: PrincipledPart, sighting: &ShadingContext, choice: f64) -> Option<BsdfSample> {
-        let [reflection, through] = self.specular_samples(part, sighting);
+    pub(super) fn specular_sample(&self, part: PrincipledPart, context: &ShadingContext, choice: f64) -> Option<BsdfSample> {
+        let [reflection, through] = self.specular_samples(part, context);
         let (Some(reflection), Some(through)) = (reflection, through) else { return reflection.or(through) };
         let chance = reflection.weight.max() / (reflection.weight.max() + through.weight.max());
         let chance = chance.clamp(LEAST_CHANCE, 1.0 - LEAST_CHANCE);
-        let (onward, chance) = if choice < chance { (reflection, chance) } else { (through, 1.0 - chance) };
-        Some(BsdfSample { weight: onward.weight * chance.recip(), ..onward })
+        let (sample, chance) = if choice < chance { (reflection, chance) } else { (through, 1.0 - chance) };
+        Some(BsdfSample { weight: sample.weight * chance.recip(), ..sample })
     }
 
     /// About what a part sends to the viewer of all the light; more than 0 where it sends anything.
-    pub(super) fn strength(&self, part: PrincipledPart, sighting: &ShadingContext) -> f64 {
-        let at = self.at(sighting);
-        let cosine = sighting.view.z.clamp(0.0, 1.0);
-        let is_inside = at.seen == InterfaceSide::Inside;
+    pub(super) fn strength(&self, part: PrincipledPart, context: &ShadingContext) -> f64 {
+        let at = self.at(context);
+        let cosine = context.view.z.clamp(0.0, 1.0);
+        let is_inside = at.side == InterfaceSide::Inside;
         match part {
             PrincipledPart::Sheen => at.cloth.max() * (1.0 - at.clear()) * at.rim.albedo(cosine),
             PrincipledPart::Coat if is_inside => 0.0,
             PrincipledPart::Coat => at.coat * self.albedo.coat(cosine),
-            PrincipledPart::Spread => self.spread_shares(&at, sighting).into_iter().sum(),
+            PrincipledPart::Spread => self.spread_shares(&at, context).into_iter().sum(),
             PrincipledPart::Facets => {
                 let outside = self.albedo.at(InterfaceSide::Outside, cosine);
                 let base = at.base.max();
@@ -480,13 +480,13 @@ impl PrincipledSurface {
     }
 
     /// About what a part shows of what is around.
-    pub(super) fn glossy_albedo(&self, part: PrincipledPart, sighting: &ShadingContext) -> Channels {
-        let at = self.at(sighting);
-        let cosine = sighting.view.z.clamp(0.0, 1.0);
+    pub(super) fn glossy_albedo(&self, part: PrincipledPart, context: &ShadingContext) -> Channels {
+        let at = self.at(context);
+        let cosine = context.view.z.clamp(0.0, 1.0);
         match part {
-            PrincipledPart::Coat if at.seen == InterfaceSide::Outside => self.beside_cloth(&at) * (at.coat * self.albedo.coat(cosine)),
+            PrincipledPart::Coat if at.side == InterfaceSide::Outside => self.beside_cloth(&at) * (at.coat * self.albedo.coat(cosine)),
             PrincipledPart::Facets => {
-                let FacetFresnel { ground, clear, .. } = self.fresnel(&at, sighting, cosine);
+                let FacetFresnel { ground, clear, .. } = self.fresnel(&at, context, cosine);
                 (ground * (Channels::ONE - at.cloth) + clear) * self.under(&at, cosine)
             }
             _ => Channels::ZERO,
@@ -494,12 +494,12 @@ impl PrincipledSurface {
     }
 
     /// The part of light from all around that is reflected alike to everywhere.
-    pub(super) fn diffuse_albedo(&self, part: PrincipledPart, sighting: &ShadingContext) -> Channels {
+    pub(super) fn diffuse_albedo(&self, part: PrincipledPart, context: &ShadingContext) -> Channels {
         if part != PrincipledPart::Spread {
             return Channels::ZERO;
         }
-        let at = self.at(sighting);
-        let mean = self.mean_missing(&at, at.seen);
+        let at = self.at(context);
+        let mean = self.mean_missing(&at, at.side);
         let mut diffuse = at.base * (at.opaque() * mean.opaque);
         if at.metallic > 0.0 {
             diffuse += at.further(self.albedo.mean(InterfaceSide::Outside).all) * (at.metallic * mean.metal);
@@ -515,6 +515,6 @@ fn over(value: f64, mean: f64) -> f64 {
 }
 
 /// By how much radiance falls as it leaves what is behind.
-fn radiance_scale(sighting: &ShadingContext) -> f64 {
-    (sighting.side.before.0[sighting.lane] / sighting.side.behind.0[sighting.lane]).powi(2)
+fn radiance_scale(context: &ShadingContext) -> f64 {
+    (context.indices.before.0[context.lane] / context.indices.behind.0[context.lane]).powi(2)
 }

@@ -64,7 +64,7 @@ fn context(numbers: &Numbers, view: DVec3, inside: bool) -> ShadingContext<'stat
         false => InterfaceIndices { before: air, behind: body, inside },
         true => InterfaceIndices { before: body, behind: air, inside },
     };
-    ShadingContext { view, comb: 0, side, lane: 0, painted: &[] }
+    ShadingContext { view, wavelength_set: 0, indices: side, lane: 0, texture_values: &[] }
 }
 
 fn at(degrees: f64) -> DVec3 {
@@ -73,17 +73,17 @@ fn at(degrees: f64) -> DVec3 {
 }
 
 /// Light that comes to the viewer of a radiance of 1 from all around, times the square of the index where it is.
-fn furnace(surface: &PrincipledSurface, sighting: &ShadingContext) -> f64 {
-    let grown = (sighting.side.behind.0[0] / sighting.side.before.0[0]).powi(2);
+fn furnace(surface: &PrincipledSurface, context: &ShadingContext) -> f64 {
+    let grown = (context.indices.behind.0[0] / context.indices.before.0[0]).powi(2);
     let counted =
         |light: DVec3, weight: f64, straight: bool| if light.z < 0.0 && !straight { weight * grown } else { weight };
     let mut sum = 0.0;
     for part in [PrincipledPart::Coat, PrincipledPart::Facets] {
-        for onward in surface.specular_samples(part, sighting).into_iter().flatten() {
-            sum += counted(onward.light, onward.weight.0[0], onward.is_straight);
+        for sample in surface.specular_samples(part, context).into_iter().flatten() {
+            sum += counted(sample.light, sample.weight.0[0], sample.is_straight);
         }
     }
-    let at = surface.at(sighting);
+    let at = surface.at(context);
     for part in [PrincipledPart::Sheen, PrincipledPart::Coat, PrincipledPart::Facets, PrincipledPart::Spread] {
         if surface.is_mirror(part) {
             continue;
@@ -91,28 +91,28 @@ fn furnace(surface: &PrincipledSurface, sighting: &ShadingContext) -> f64 {
         // Both ways of a part that goes two ways: each is drawn for one of the choices.
         for choice in [0.0, 1.0_f64.next_down()] {
             let term = |point: [f64; 2]| {
-                let Some(light) = surface.sample(part, sighting, choice, point) else { return 0.0 };
+                let Some(light) = surface.sample(part, context, choice, point) else { return 0.0 };
                 let is_asked = match part {
                     PrincipledPart::Facets | PrincipledPart::Spread => (light.z > 0.0) == (choice == 0.0),
                     _ => choice == 0.0,
                 };
-                let density = surface.pdf(part, sighting, light);
-                if !is_asked || density <= 0.0 {
+                let pdf = surface.pdf(part, context, light);
+                if !is_asked || pdf <= 0.0 {
                     return 0.0;
                 }
                 let chance = match part {
                     PrincipledPart::Facets => {
-                        let facet = surface.facet(sighting, light).map_or(1.0, |facet| facet.dot(sighting.view));
-                        let above = surface.chance(&surface.fresnel(&at, sighting, facet));
+                        let facet = surface.facet(context, light).map_or(1.0, |facet| facet.dot(context.view));
+                        let above = surface.chance(&surface.fresnel(&at, context, facet));
                         if light.z > 0.0 { above } else { 1.0 - above }
                     }
                     PrincipledPart::Spread => {
-                        let [above, below] = surface.spread_shares(&at, sighting);
+                        let [above, below] = surface.spread_shares(&at, context);
                         if light.z > 0.0 { above / (above + below) } else { below / (above + below) }
                     }
                     _ => 1.0,
                 };
-                let weight = surface.value(part, sighting, light).0[0] * light.z.abs() / density * chance;
+                let weight = surface.value(part, context, light).0[0] * light.z.abs() / pdf * chance;
                 counted(light, weight, false)
             };
             sum += unit_square(term, 2e-5, 30_000).value;
@@ -201,7 +201,7 @@ fn light_to_and_fro_is_the_same() {
             for part in [PrincipledPart::Sheen, PrincipledPart::Coat, PrincipledPart::Facets, PrincipledPart::Spread] {
                 let of = context(&numbers, view, false);
                 there +=
-                    surface.value(part, &of, light).0[0] * of.side.behind.0[0].powi(if light.z < 0.0 { 2 } else { 0 });
+                    surface.value(part, &of, light).0[0] * of.indices.behind.0[0].powi(if light.z < 0.0 { 2 } else { 0 });
                 back += if light.z > 0.0 {
                     surface.value(part, &context(&numbers, light, false), view).0[0]
                 } else {
