@@ -1,6 +1,6 @@
 //! `peris boolean`: solids from solids.
 
-use super::{Exit, CommandFailure, SubcommandRow, formula, say};
+use super::{CommandFailure, Exit, SubcommandRow, formula, output};
 use crate::mesh::{self, Grouped, MetallicRoughness};
 use crate::solid::Solid;
 use anyhow::Context;
@@ -50,7 +50,7 @@ fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let evaluated = Solid::evaluate(&solids.iter().collect::<Vec<_>>(), &expression);
     let (result, outcome) = evaluated.map_err(|error| {
         if *json {
-            say::report(serde_json::json!({ "problem": error.to_string() }));
+            output::report(serde_json::json!({ "problem": error.to_string() }));
         }
         CommandFailure::new(Exit::Failed, error)
     })?;
@@ -67,7 +67,7 @@ fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
             "points": counts.points, "divided": counts.divided, "facets": counts.facets, "parts": counts.parts,
             "rays": counts.rays,
         });
-        say::report(known);
+        output::report(known);
     } else {
         let empty = if mesh.triangles.is_empty() { "; the result is empty" } else { "" };
         say!(

@@ -1,6 +1,6 @@
 //! `peris check`: whether a mesh bounds a solid.
 
-use super::{Exit, CommandFailure, SubcommandRow, say};
+use super::{CommandFailure, Exit, SubcommandRow, output};
 use crate::mesh::{self, BoundaryLoop, Format, Grouped, Mesh};
 use crate::solid::{self, Repair, Solid, SolidError};
 use anyhow::Context;
@@ -43,7 +43,7 @@ fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
         Err(problem) => Solid::repaired_of(mesh.clone(), problem),
     });
     if arguments.json {
-        say::report(as_json(mesh, &loops, &verdict, repaired.as_ref()));
+        output::report(as_json(mesh, &loops, &verdict, repaired.as_ref()));
     } else {
         report(mesh, &loops);
         if verdict.is_ok() {

@@ -1,7 +1,7 @@
 //! `peris compose`: two pictures made one.
 
-use super::say::warn;
-use super::{Exit, CommandFailure, SubcommandRow, say};
+use super::output::warn;
+use super::{CommandFailure, Exit, SubcommandRow, output};
 use crate::picture::{self, Deep, Operator, Picture};
 use clap::{Args, FromArgMatches};
 use files::Destination;
@@ -56,7 +56,7 @@ fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let (width, height, coverage) = (picture.width(), picture.height(), covered / picture.pixels().len() as f64);
     if *json {
         let known = serde_json::json!({ "file": output, "width": width, "height": height, "coverage": coverage });
-        say::report(known);
+        output::report(known);
     } else {
         say!("{}: {width} x {height} pixels, {:.1}% covered", output.display(), 100.0 * coverage);
     }

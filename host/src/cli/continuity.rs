@@ -1,6 +1,6 @@
 //! `peris continuity`: how smoothly the sculptured surfaces of a scene meet.
 
-use super::{ScriptArguments, Exit, CommandFailure, SubcommandRow, SCRIPT_HELP, load};
+use super::{CommandFailure, Exit, SCRIPT_HELP, ScriptArguments, SubcommandRow, load};
 use crate::scene::{Object, Sculpture, Shape};
 use clap::{Args, FromArgMatches};
 use glam::{DAffine3, DMat4};

@@ -1,13 +1,13 @@
 //! `peris convert`: meshes, pictures and scenes from one file format to another.
 
 use super::display::DisplayArguments;
-use super::{ScriptArguments, Exit, CommandFailure, SubcommandRow, load, say};
+use super::{CommandFailure, Exit, ScriptArguments, SubcommandRow, load, output};
 use crate::mesh::{self, Grouped};
 use crate::picture::Picture;
 use crate::picture::display::{DisplayTransform, Exposure};
 use crate::render::metering::stops_of_picture;
 use crate::scene::{Prepared, View};
-use crate::workstation::{Drawing, InitialView, DrawnEdges, structure};
+use crate::workstation::{Drawing, DrawnEdges, InitialView, structure};
 use clap::{Args, FromArgMatches};
 use files::Destination;
 use glam::{DAffine3, DVec3};
@@ -74,7 +74,7 @@ fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
         picture.write(&destination)?;
         if *json {
             let known = serde_json::json!({ "file": output, "width": picture.width(), "height": picture.height() });
-            say::report(known);
+            output::report(known);
         } else {
             say!("{}: {} x {} pixels", output.display(), picture.width(), picture.height());
         }
@@ -95,7 +95,7 @@ fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let mesh = grouped.mesh;
     let (vertices, triangles) = (mesh.vertices.len(), mesh.triangles.len());
     if *json {
-        say::report(serde_json::json!({ "file": output, "vertices": vertices, "triangles": triangles }));
+        output::report(serde_json::json!({ "file": output, "vertices": vertices, "triangles": triangles }));
     } else {
         say!("{}: {vertices} vertices, {triangles} triangles", output.display());
     }
@@ -120,7 +120,7 @@ fn commands(arguments: &Arguments) -> Result<(), CommandFailure> {
     destination.write_or_keep(|file| file.write_all(&text))?;
     let polygons = shown.points / 3;
     if *json {
-        say::report(serde_json::json!({ "file": output, "polygons": polygons, "bytes": text.len() }));
+        output::report(serde_json::json!({ "file": output, "polygons": polygons, "bytes": text.len() }));
     } else {
         say!("{}: {polygons} polygons, {} bytes", output.display(), text.len());
     }

@@ -1,6 +1,6 @@
 //! `peris diff`: how far a picture is from a reference.
 
-use super::{Exit, CommandFailure, SubcommandRow, say};
+use super::{CommandFailure, Exit, SubcommandRow, output};
 use crate::picture::{self, Difference, Flip, PIXELS_PER_DEGREE, PIXELS_PER_DEGREE_RANGE, Picture};
 use clap::{Args, FromArgMatches};
 use std::path::PathBuf;
@@ -56,7 +56,7 @@ fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
             "pixels_per_degree": ppd, "largest": largest, "percentile_99": percentile_99, "coverage": coverage,
             "silhouette": silhouette, "tolerance": tolerance, "within": is_within,
         });
-        say::report(known);
+        output::report(known);
     } else {
         say!("RMSE                {rmse:.6}");
         say!("relative MSE        {relative_mse:.6}");

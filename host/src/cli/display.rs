@@ -1,6 +1,6 @@
 //! Arguments of commands that show pictures: exposure, tone curve, white balance and bloom.
 
-use super::{Exit, CommandFailure};
+use super::{CommandFailure, Exit};
 use crate::color::{light_of_temperature, shipped};
 use crate::picture::display::{DisplayTransform, Exposure, Tone, neutral};
 use clap::Args;

@@ -1,6 +1,6 @@
 //! `peris functions`: what a scene script may call.
 
-use super::{Exit, CommandFailure, SubcommandRow};
+use super::{CommandFailure, Exit, SubcommandRow};
 use crate::script::{self, functions};
 use crate::spelling;
 use clap::{Args, FromArgMatches};

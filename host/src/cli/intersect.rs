@@ -1,7 +1,7 @@
 //! `peris intersect`: accurate curves in which the objects of a scene meet.
 
-use super::{ScriptArguments, Exit, CommandFailure, SubcommandRow, SCRIPT_HELP, load, say};
-use crate::intersection::{Branch, Intersection, Mark, CurvePrecision, csv, obj};
+use super::{CommandFailure, Exit, SCRIPT_HELP, ScriptArguments, SubcommandRow, load, output};
+use crate::intersection::{Branch, CurvePrecision, Intersection, Mark, csv, obj};
 use crate::scene::object_intersections;
 use clap::{Args, FromArgMatches};
 use files::Destination;
@@ -40,7 +40,10 @@ struct Arguments {
 fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let is_unknown = |path: &&PathBuf| !path.extension().is_some_and(|e| e == "csv" || e == "obj");
     if let Some(path) = arguments.output.iter().find(is_unknown) {
-        return Err(CommandFailure::new(Exit::Usage, anyhow::anyhow!("{} ends neither in .csv nor in .obj", path.display())));
+        return Err(CommandFailure::new(
+            Exit::Usage,
+            anyhow::anyhow!("{} ends neither in .csv nor in .obj", path.display()),
+        ));
     }
     let destinations: Vec<Destination> = arguments.output.iter().map(Destination::of).collect::<Result<_, _>>()?;
     let scene = load(&arguments.script, &arguments.definitions)?.scene;
@@ -60,7 +63,7 @@ fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     }
     if arguments.json {
         let all: Vec<Value> = named.iter().map(|(names, intersection)| described(names, intersection)).collect();
-        say::report(json!({ "seconds": seconds, "meetings": all }));
+        output::report(json!({ "seconds": seconds, "meetings": all }));
     } else {
         named.iter().for_each(|(names, intersection)| report(names, intersection));
         say!("{} pairs of objects meet, found in {:.1} ms", named.len(), seconds * 1e3);

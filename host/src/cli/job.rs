@@ -1,8 +1,8 @@
 //! `peris run` and `peris demo`: the main job from a scene to the image on the raster screen.
 
 use super::source::{load_lit, stem, warn_of_emptiness};
-use super::waits::TimeoutArguments;
-use super::{ScriptArguments, CommandFailure, SubcommandRow, SCRIPT_HELP, interrupts, load, progress};
+use super::timeouts::TimeoutArguments;
+use super::{CommandFailure, SCRIPT_HELP, ScriptArguments, SubcommandRow, interrupts, load, progress};
 use crate::{
     picture::Picture,
     production::{Production, Sent, difference, view_of_dials},

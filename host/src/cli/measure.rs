@@ -1,7 +1,7 @@
 //! `peris measure`: size, volume, centre and inertia of solids.
 
 use super::boolean::solid;
-use super::{CommandFailure, SubcommandRow, say};
+use super::{CommandFailure, SubcommandRow, output};
 use crate::solid::Mass;
 use clap::{Args, FromArgMatches};
 use std::path::PathBuf;
@@ -34,7 +34,7 @@ fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
             "vertices": mesh.vertices.len(), "triangles": mesh.triangles.len(), "volume": volume, "area": mesh.area(),
             "centroid": centroid.to_array(), "inertia": rows, "low": low.to_array(), "high": high.to_array(),
         });
-        say::report(known);
+        output::report(known);
     } else {
         say!("vertices   {}\ntriangles  {}", mesh.vertices.len(), mesh.triangles.len());
         say!("volume     {volume}\narea       {}\ncentroid   {centroid}", mesh.area());

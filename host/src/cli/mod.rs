@@ -4,11 +4,11 @@ mod cancelled;
 mod exit;
 mod progress;
 #[macro_use]
-mod say;
+mod output;
 mod interrupts;
-mod row;
+mod subcommand;
 mod values;
-mod waits;
+mod timeouts;
 mod source;
 mod display;
 mod formula;
@@ -33,7 +33,7 @@ mod continuity;
 mod functions;
 mod program;
 
-pub use exit::{Exit, CommandFailure};
+pub use exit::{CommandFailure, Exit};
 pub use program::{COMMANDS, command, main};
-pub use row::SubcommandRow;
-pub use source::{ScriptArguments, SCRIPT_HELP, load};
+pub use source::{SCRIPT_HELP, ScriptArguments, load};
+pub use subcommand::SubcommandRow;

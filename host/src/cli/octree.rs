@@ -1,6 +1,6 @@
 //! `peris octree`: the linear octree of a scene, or one from a file.
 
-use super::{ScriptArguments, Exit, CommandFailure, SubcommandRow, load, say};
+use super::{CommandFailure, Exit, ScriptArguments, SubcommandRow, load, output};
 use crate::memory;
 use crate::octree::{ENDING, MAX_BYTES, MAX_DEPTH, Octree, OctreeSettings, Statistics};
 use crate::scene::Prepared;
@@ -57,7 +57,7 @@ fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     if arguments.json {
         let mut json = serde_json::to_value(&statistics)?;
         json["build_seconds"] = seconds.into();
-        say::report(json);
+        output::report(json);
     } else {
         say!(
             "{} triangles in {} terminal nodes, {} in {seconds:.3} s, {:.1} bytes a triangle",

@@ -1,7 +1,7 @@
 //! `peris plan`: what a scene needs, and why.
 
 use super::source::load_lit;
-use super::{ScriptArguments, CommandFailure, SubcommandRow, SCRIPT_HELP};
+use super::{CommandFailure, SCRIPT_HELP, ScriptArguments, SubcommandRow};
 use crate::plan::Plan;
 use crate::scene::Prepared;
 use clap::{Args, FromArgMatches};

@@ -1,11 +1,11 @@
 //! The program: one row for each sub-command, from which help and dispatch are derived.
 
 use super::exit::{self, Exit, story};
-use super::row::SubcommandRow;
+use super::subcommand::SubcommandRow;
 use super::values::bytes;
 use super::{
     boolean, check, compose, continuity, convert, database, diff, functions, interrupts, intersect, job, measure,
-    octree, plan, progress, render, say, show, study, tessellate,
+    octree, output, plan, progress, render, show, study, tessellate,
 };
 use crate::memory;
 use clap::{Arg, Command};
@@ -82,7 +82,7 @@ pub fn main() -> ExitCode {
     match ended {
         Ok(()) => Exit::Done.into(),
         Err(failure) => {
-            say::write_error(&format!("peris {name}: {}", story(&failure.error)));
+            output::write_error(&format!("peris {name}: {}", story(&failure.error)));
             failure.exit.into()
         }
     }

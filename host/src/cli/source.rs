@@ -1,10 +1,10 @@
 //! Where a scene comes from: a script file, or a name.
 
-use super::{Exit, CommandFailure, progress, say};
+use super::{CommandFailure, Exit, output, progress};
 use crate::mesh;
 use crate::octree::Octree;
 use crate::scene::{Scene, Studio};
-use crate::script::{self, ParameterAssignment, Evaluated, Inputs};
+use crate::script::{self, Evaluated, Inputs, ParameterAssignment};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -58,7 +58,7 @@ pub(super) fn lit(evaluated: Evaluated) -> Result<Evaluated, CommandFailure> {
     let is_lit_by_studio = evaluated.scene.studio == Some(Studio::Lit);
     let scene = evaluated.scene.lit()?;
     if scene.lights.len() > count && !is_lit_by_studio {
-        say::write_error("the scene has no light of its own: it is lit as in a studio");
+        output::write_error("the scene has no light of its own: it is lit as in a studio");
     }
     Ok(Evaluated { scene, ..evaluated })
 }
@@ -66,7 +66,7 @@ pub(super) fn lit(evaluated: Evaluated) -> Result<Evaluated, CommandFailure> {
 /// Says on standard error that a picture will be empty.
 pub(super) fn warn_of_emptiness(scene: &Scene) {
     if scene.objects.is_empty() {
-        say::warn("the scene has no objects; only its background will be seen");
+        output::warn("the scene has no objects; only its background will be seen");
     }
 }
 
@@ -92,7 +92,7 @@ pub fn load(name: &str, definitions: &ScriptArguments) -> Result<Evaluated, Comm
     let inputs = Inputs { definitions: definitions.given.clone(), allowed: definitions.allow.clone() };
     let evaluated = script::load(name, &inputs)?;
     progress::clear();
-    evaluated.printed.iter().for_each(|line| say::write_error(line));
+    evaluated.printed.iter().for_each(|line| output::write_error(line));
     Ok(evaluated)
 }
 

@@ -2,7 +2,7 @@
 
 use super::source::{load_lit, stem};
 use super::study_memo::memo;
-use super::{ScriptArguments, CommandFailure, SubcommandRow, SCRIPT_HELP, progress, study_render};
+use super::{CommandFailure, SCRIPT_HELP, ScriptArguments, SubcommandRow, progress, study_render};
 use crate::render::Watch;
 use crate::study::{KNOBS, KnobRow, illumination};
 use clap::{ArgMatches, Args, Command, FromArgMatches};

@@ -1,6 +1,6 @@
 //! What a study has done, kept so that it can go on after an interruption.
 
-use super::{Exit, CommandFailure, interrupts};
+use super::{CommandFailure, Exit, interrupts};
 use crate::render::Memo;
 use files::Folder;
 

@@ -2,7 +2,7 @@
 
 use super::source::{load_lit, stem};
 use super::study_memo::memo;
-use super::{ScriptArguments, CommandFailure, SCRIPT_HELP, progress};
+use super::{CommandFailure, SCRIPT_HELP, ScriptArguments, progress};
 use crate::render::Watch;
 use crate::render::{RENDERERS, Technique};
 use crate::study::{Options, RENDER_KNOBS, RENDER_OPTIONS, RenderKnob, renderers, studied, usual};

@@ -1,6 +1,6 @@
 //! `peris tessellate`: the triangles of a scene, to a tolerance.
 
-use super::{ScriptArguments, CommandFailure, SubcommandRow, load, say};
+use super::{CommandFailure, ScriptArguments, SubcommandRow, load, output};
 use crate::mesh;
 use clap::{Args, FromArgMatches};
 use std::path::PathBuf;
@@ -54,7 +54,7 @@ fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
             "file": output, "objects": objects, "surfaces": surfaces, "vertices": vertices, "triangles": triangles,
             "seconds": seconds, "chord_error": error,
         });
-        say::report(known);
+        output::report(known);
     } else {
         say!(
             "{}: {objects} objects, {surfaces} surfaces, {vertices} vertices, {triangles} triangles in {seconds:.3} s; \

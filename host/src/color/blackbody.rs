@@ -1,6 +1,6 @@
 //! Light of a black body.
 
-use super::{Extrapolation, ColorError, Spectrum};
+use super::{ColorError, Extrapolation, Spectrum};
 
 /// Planck's constant, J s; exact in the SI of 2019.
 pub const PLANCK: f64 = 6.626_070_15e-34;

@@ -72,7 +72,9 @@ impl Color {
     pub fn bands_of_reflectance(&self) -> DVec3 {
         match self {
             Color::Bands(bands) => *bands,
-            Color::Spectrum(spectrum) => observer::surface_tristimulus(spectrum, &shipped::D65).map_or(DVec3::ZERO, srgb::from_xyz),
+            Color::Spectrum(spectrum) => {
+                observer::surface_tristimulus(spectrum, &shipped::D65).map_or(DVec3::ZERO, srgb::from_xyz)
+            }
         }
     }
 
@@ -110,7 +112,8 @@ mod tests {
 
     #[test]
     fn a_perfect_reflector_is_white_and_a_color_keeps_its_bands() {
-        let grey = Spectrum::regular(300.0, 600.0, vec![0.25; 2], super::super::Extrapolation::Held).expect("a spectrum");
+        let grey =
+            Spectrum::regular(300.0, 600.0, vec![0.25; 2], super::super::Extrapolation::Held).expect("a spectrum");
         let grey = Color::Spectrum(grey);
         assert!((grey.bands_of_reflectance() - DVec3::splat(0.25)).length() < 1e-9);
         assert_eq!(grey.range(), [0.25, 0.25]);

@@ -10,7 +10,7 @@
 //! 410 0.033 0.091
 //! ```
 
-use super::{Extrapolation, ColorError, Spectrum};
+use super::{ColorError, Extrapolation, Spectrum};
 
 /// Lines of numbers under a line of names; lines that begin with `#` are comments.
 ///

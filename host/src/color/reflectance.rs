@@ -4,7 +4,7 @@
 //! iteration, damped, along a path of colours from grey to the one that is asked for.
 
 use super::observer::{VISIBLE, functions};
-use super::{Extrapolation, ColorError, Spectrum, integral, shipped, srgb};
+use super::{ColorError, Extrapolation, Spectrum, integral, shipped, srgb};
 use glam::{DMat3, DVec3};
 use std::sync::LazyLock;
 
@@ -44,7 +44,8 @@ static WEIGHTS: LazyLock<Vec<(f64, DVec3)>> = LazyLock::new(|| {
     let white = integral(&[&shipped::D65, &functions()[1]], VISIBLE.0, VISIBLE.1);
     let weight = |index: usize| {
         let at = VISIBLE.0 + STEP * index as f64;
-        let hat = Spectrum::regular(at - STEP, STEP, vec![0.0, 1.0, 0.0], Extrapolation::Zero).expect("three samples rise");
+        let hat =
+            Spectrum::regular(at - STEP, STEP, vec![0.0, 1.0, 0.0], Extrapolation::Zero).expect("three samples rise");
         let sum = |f: &Spectrum| integral(&[&hat, &shipped::D65, f], VISIBLE.0, VISIBLE.1) / white;
         (place(at), srgb::from_xyz(DVec3::from_array(functions().each_ref().map(sum))))
     };
@@ -198,7 +199,8 @@ mod tests {
     fn colours_of_the_checker_get_reflectances_like_theirs() {
         for name in ["dark_skin", "foliage", "blue_sky", "neutral_5"] {
             let patch = shipped::reflectance(name).expect("a patch");
-            let fit = SmoothReflectance::from_xyz(surface_tristimulus(&patch, &shipped::D65).expect("light")).expect("a fit");
+            let fit =
+                SmoothReflectance::from_xyz(surface_tristimulus(&patch, &shipped::D65).expect("light")).expect("a fit");
             let squares = (420..=680).map(|w| (fit.reflectance.at(f64::from(w)) - patch.at(f64::from(w))).powi(2));
             assert!((squares.sum::<f64>() / 261.0).sqrt() < 0.06, "{name}");
         }

@@ -2,7 +2,7 @@
 //!
 //! The files lie in `data/color`; each states its source and its terms in its head.
 
-use super::{Extrapolation, ColorError, Glass, Origin, Spectrum, columns};
+use super::{ColorError, Extrapolation, Glass, Origin, Spectrum, columns};
 use crate::spelling;
 use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
@@ -69,7 +69,8 @@ pub fn lights() -> Vec<&'static str> {
 /// [`ColorError::Unknown`].
 pub fn light(name: &str) -> Result<Spectrum, ColorError> {
     for text in LIGHTS {
-        if let Some((_, spectrum)) = columns::spectra(text, Extrapolation::Zero)?.into_iter().find(|(known, _)| *known == name)
+        if let Some((_, spectrum)) =
+            columns::spectra(text, Extrapolation::Zero)?.into_iter().find(|(known, _)| *known == name)
         {
             return Ok(spectrum);
         }
@@ -250,7 +251,8 @@ mod tests {
     /// Chroma and hue, degrees, of CIE L*a*b* under D65.
     fn chroma_and_hue(name: &str) -> (f64, f64) {
         let white = observer::tristimulus(&D65);
-        let seen = observer::surface_tristimulus(&reflectance(name).expect("a reflectance"), &D65).expect("D65 is seen");
+        let seen =
+            observer::surface_tristimulus(&reflectance(name).expect("a reflectance"), &D65).expect("D65 is seen");
         // X, Y and Z over those of white, as their cube roots; all here are above the linear part of L*a*b* but black.
         let root = |seen: f64, white: f64| (seen / (white / white_y(&D65))).cbrt();
         let (x, y, z) = (root(seen.x, white.x), root(seen.y, white.y), root(seen.z, white.z));
@@ -296,7 +298,9 @@ mod tests {
 
     #[test]
     fn white_things_are_brighter_than_grey_ones_and_those_than_black_ones() {
-        let y = |name| observer::surface_tristimulus(&reflectance(name).expect("a reflectance"), &D65).map_or(DVec3::ZERO, |s| s).y;
+        let y = |name| {
+            observer::surface_tristimulus(&reflectance(name).expect("a reflectance"), &D65).map_or(DVec3::ZERO, |s| s).y
+        };
         let known = [
             "calcite",
             "zinc_white",

@@ -218,7 +218,8 @@ mod tests {
     fn values_are_linear_between_samples_and_held_or_zero_beyond() {
         let held = ramp();
         assert_eq!([450.0, 500.0, 599.0, 700.0].map(|w| held.at(w)), [0.5, 1.0, 1.0, 1.0]);
-        let light = Spectrum::irregular(&[(400.0, 2.0), (450.0, 4.0), (600.0, 1.0)], Extrapolation::Zero).expect("a spectrum");
+        let light =
+            Spectrum::irregular(&[(400.0, 2.0), (450.0, 4.0), (600.0, 1.0)], Extrapolation::Zero).expect("a spectrum");
         assert_eq!([399.9, 400.0, 425.0, 525.0, 600.0, 600.1].map(|w| light.at(w)), [0.0, 2.0, 3.0, 2.5, 1.0, 0.0]);
         assert_eq!(light.at(f64::NAN), 0.0);
     }

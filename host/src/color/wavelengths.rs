@@ -60,7 +60,11 @@ impl WavelengthSets {
     pub fn bands() -> WavelengthSets {
         let lane = |lane: usize| OF_BANDS.get(lane).copied().unwrap_or(0.0);
         let unit = |lane: usize| if lane < 3 { DVec3::AXES[lane] } else { DVec3::ZERO };
-        WavelengthSets { at: vec![std::array::from_fn(lane)], srgb_weights: vec![std::array::from_fn(unit)], spectral: false }
+        WavelengthSets {
+            at: vec![std::array::from_fn(lane)],
+            srgb_weights: vec![std::array::from_fn(unit)],
+            spectral: false,
+        }
     }
 
     /// Eight wavelengths from 360 to 830 nm.
@@ -150,7 +154,9 @@ impl WavelengthSets {
         }
         let [red, blue] = [DVec3::X, DVec3::Z].map(|axis| self.reflectance(&Color::Bands(axis)));
         // Where the other two overlap they share.
-        let shared = |wavelength_set: usize| red.of(wavelength_set).0.iter().zip(blue.of(wavelength_set).0).map(|(r, b)| (r + b).max(1.0)).collect();
+        let shared = |wavelength_set: usize| {
+            red.of(wavelength_set).0.iter().zip(blue.of(wavelength_set).0).map(|(r, b)| (r + b).max(1.0)).collect()
+        };
         let shares: Vec<Vec<f64>> = (0..self.count()).map(shared).collect();
         let part = |curve: &SpectralTable| {
             SpectralTable::each(self.count(), |wavelength_set| {
@@ -159,8 +165,9 @@ impl WavelengthSets {
             })
         };
         let [red, blue] = [part(&red), part(&blue)];
-        let green =
-            SpectralTable::each(self.count(), |wavelength_set| (Channels::ONE - red.of(wavelength_set) - blue.of(wavelength_set)).map(|g| g.max(0.0)));
+        let green = SpectralTable::each(self.count(), |wavelength_set| {
+            (Channels::ONE - red.of(wavelength_set) - blue.of(wavelength_set)).map(|g| g.max(0.0))
+        });
         [red, green, blue]
     }
 
@@ -207,7 +214,11 @@ impl WavelengthSets {
     /// Means over the bins.
     fn means(&self, spectrum: &Spectrum) -> SpectralTable {
         let means = bins().means(spectrum);
-        SpectralTable((0..SETS).map(|wavelength_set| Channels(std::array::from_fn(|lane| means[lane * SETS + wavelength_set]))).collect())
+        SpectralTable(
+            (0..SETS)
+                .map(|wavelength_set| Channels(std::array::from_fn(|lane| means[lane * SETS + wavelength_set])))
+                .collect(),
+        )
     }
 }
 

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::SplineError;
 use super::bbb::Bbb;
 use super::bezier::check_degree;
-use super::control::{ControlPoint, ControlCombination};
+use super::control::{ControlCombination, ControlPoint};
 use super::form::{BezierForm, apply};
 use super::knots::Knots;
 

@@ -1,7 +1,7 @@
 //! The Bezier form of a spline: how the Bezier points of its spans come from its control points.
 
 use super::SplineError;
-use super::control::{ControlPoint, ControlCombination};
+use super::control::{ControlCombination, ControlPoint};
 
 /// The shortest span, as a part of the domain: below it, parameters are mostly rounding.
 const SHORTEST: f64 = 1e-13;

@@ -1,6 +1,6 @@
 //! What can be said of a whole database: which of its records are whole.
 
-use super::{DatabaseError, RecordKind, Record, Store};
+use super::{DatabaseError, Record, RecordKind, Store};
 use serde::Serialize;
 use std::path::Path;
 

@@ -1,6 +1,6 @@
 //! What can be wrong with a database, and where.
 
-use super::{RecordKind, LONGEST_NAME, MAX_RECORD};
+use super::{LONGEST_NAME, MAX_RECORD, RecordKind};
 use crate::mesh::MeshError;
 use crate::picture::PictureError;
 use std::path::PathBuf;

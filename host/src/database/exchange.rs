@@ -4,7 +4,7 @@
 //! [`columns`]), and all but meshes and pictures as JSON: `{"name": "...", "source": "...", "terms": "...", "material":
 //! {...}}`, with `light` or `spectrum` in place of `material`.
 
-use super::{RecordContent, Curves, DatabaseError, Record, check_name};
+use super::{Curves, DatabaseError, Record, RecordContent, check_name};
 use crate::color::shipped::ComplexIndex;
 use crate::color::{Extrapolation, Origin, Spectrum, columns};
 use crate::illumination::{Light, Material};
@@ -56,8 +56,15 @@ impl Record {
     /// The record as JSON; none of a mesh, a picture or caught light.
     pub fn json(&self) -> Option<serde_json::Value> {
         let Origin { what, source, terms } = self.origin.clone();
-        let mut sheet =
-            RecordJson { name: Some(self.name.clone()), what, source, terms, material: None, light: None, spectrum: None };
+        let mut sheet = RecordJson {
+            name: Some(self.name.clone()),
+            what,
+            source,
+            terms,
+            material: None,
+            light: None,
+            spectrum: None,
+        };
         match &self.content {
             RecordContent::Material(material) => sheet.material = Some((**material).clone()),
             RecordContent::Light(light) => sheet.light = Some((**light).clone()),
@@ -103,7 +110,9 @@ pub fn write(record: &Record, destination: &Destination) -> Result<(), DatabaseE
         (RecordContent::Geometry(grouped), _) if mesh::Format::of(path).is_some() => {
             return Ok(mesh::write_grouped(grouped, destination)?);
         }
-        (RecordContent::Geometry(_), _) => return Err(failed("a mesh goes into .obj, .ply, .stl, .gltf, .glb or .cmesh")),
+        (RecordContent::Geometry(_), _) => {
+            return Err(failed("a mesh goes into .obj, .ply, .stl, .gltf, .glb or .cmesh"));
+        }
         (RecordContent::Texture(picture), "png" | "exr") => return Ok(picture.write(destination)?),
         (RecordContent::Texture(_), _) => return Err(failed("a texture goes into .png or .exr")),
         (RecordContent::Photons(_), _) => return Err(failed("caught light is of use in its database only")),
@@ -167,9 +176,9 @@ fn of_columns(
         ColumnQuantity::Metal => return Err(failed("a metal has two columns, called n and k".into())),
         ColumnQuantity::Reflectance => each(held, Curves::Reflectance)?,
         ColumnQuantity::Light => each(found(Extrapolation::Zero)?, Curves::Light)?,
-        ColumnQuantity::Functions => {
-            whole(Curves::Functions(found(Extrapolation::Zero)?.into_iter().map(|(head, s)| (head.to_owned(), s)).collect()))
-        }
+        ColumnQuantity::Functions => whole(Curves::Functions(
+            found(Extrapolation::Zero)?.into_iter().map(|(head, s)| (head.to_owned(), s)).collect(),
+        )),
     };
     let record = |(name, curves): (String, Curves)| {
         let hint = if quantity == ColumnQuantity::Reflectance { " (or is it a light?)" } else { "" };

@@ -30,8 +30,14 @@ pub enum RecordKind {
 
 impl RecordKind {
     /// Every kind.
-    pub const ALL: [RecordKind; 6] =
-        [RecordKind::Geometry, RecordKind::Texture, RecordKind::Material, RecordKind::Light, RecordKind::Spectrum, RecordKind::Photons];
+    pub const ALL: [RecordKind; 6] = [
+        RecordKind::Geometry,
+        RecordKind::Texture,
+        RecordKind::Material,
+        RecordKind::Light,
+        RecordKind::Spectrum,
+        RecordKind::Photons,
+    ];
 
     /// The kind in a word; the name of its table, too.
     pub fn word(self) -> &'static str {

@@ -1,7 +1,7 @@
 //! Several databases as one: files, and behind them what ships with the program.
 
 use super::store::unknown;
-use super::{RecordContent, Curves, DatabaseError, RecordKind, Record, Store, shipped};
+use super::{Curves, DatabaseError, Record, RecordContent, RecordKind, Store, shipped};
 use crate::color::Spectrum;
 use crate::color::shipped::ComplexIndex;
 use std::path::{Path, PathBuf};

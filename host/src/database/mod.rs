@@ -7,11 +7,11 @@
 //!
 //! The database that ships with the program has records of the same kinds and is read-only.
 
-mod caught;
+mod photons;
 mod check;
 mod error;
 mod exchange;
-mod first_materials;
+mod materials_v1;
 mod kind;
 mod library;
 mod record;
@@ -22,11 +22,11 @@ mod fault_tests;
 #[cfg(test)]
 mod tests;
 
-pub use caught::{PhotonBlock, StoredPhotons};
 pub use check::{DamagedRecord, DatabaseReport};
 pub use error::DatabaseError;
 pub use exchange::{ColumnQuantity, read, write};
-pub use kind::{RecordKind, LONGEST_NAME, MAX_RECORD};
+pub use kind::{LONGEST_NAME, MAX_RECORD, RecordKind};
 pub use library::Library;
-pub use record::{RecordContent, Curves, RecordEntry, Record, check_name};
+pub use photons::{PhotonBlock, StoredPhotons};
+pub use record::{Curves, Record, RecordContent, RecordEntry, check_name};
 pub use store::Store;

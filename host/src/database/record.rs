@@ -4,7 +4,7 @@
 //! it is in a few words, source, terms) and the content. The checksum covers kind, name and all behind it.
 
 use super::kind::{LONGEST_NAME, MAX_RECORD};
-use super::{StoredPhotons, DatabaseError, RecordKind, first_materials};
+use super::{DatabaseError, RecordKind, StoredPhotons, materials_v1};
 use crate::color::shipped::ComplexIndex;
 use crate::color::{Origin, Spectrum};
 use crate::encoding::{Integers, decode, encode};
@@ -179,7 +179,7 @@ impl RecordContent {
             RecordKind::Geometry => RecordContent::Geometry(Box::new(decoded(bytes)?)),
             RecordKind::Texture => RecordContent::Texture(Box::new(decoded::<Pixels>(bytes)?.picture()?)),
             RecordKind::Material if version == 1 => {
-                RecordContent::Material(Box::new(decoded::<first_materials::MaterialV1>(bytes)?.into()))
+                RecordContent::Material(Box::new(decoded::<materials_v1::MaterialV1>(bytes)?.into()))
             }
             RecordKind::Material => RecordContent::Material(Box::new(decoded(bytes)?)),
             RecordKind::Light => RecordContent::Light(Box::new(decoded(bytes)?)),

@@ -1,10 +1,10 @@
 //! The database that ships with the program: read-only, each record with its source and its terms.
 
 use super::store::unknown;
-use super::{RecordContent, Curves, DatabaseError, RecordEntry, RecordKind, Record};
+use super::{Curves, DatabaseError, Record, RecordContent, RecordEntry, RecordKind};
 use crate::color::shipped;
 use crate::color::{ColorError, Origin};
-use crate::illumination::material::{MaterialKind, Finish, RefractiveIndex, Metal, Transparent};
+use crate::illumination::material::{Finish, MaterialKind, Metal, RefractiveIndex, Transparent};
 use crate::mesh;
 
 /// The name of the mesh that ships.
@@ -30,7 +30,8 @@ pub fn names(kind: RecordKind) -> Vec<&'static str> {
 
 /// What there is, of one kind or of all.
 pub fn entries(kind: Option<RecordKind>) -> Vec<RecordEntry> {
-    let all = |kind: &RecordKind| names(*kind).into_iter().filter_map(|name| find(*kind, name).ok()?).collect::<Vec<_>>();
+    let all =
+        |kind: &RecordKind| names(*kind).into_iter().filter_map(|name| find(*kind, name).ok()?).collect::<Vec<_>>();
     let kinds = kind.as_ref().map_or(&RecordKind::ALL[..], std::slice::from_ref);
     kinds.iter().flat_map(all).map(|record| record.entry(0)).collect()
 }

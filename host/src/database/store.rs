@@ -1,6 +1,6 @@
 //! The file: transactions, many readers beside one writer, and what happens when it is damaged.
 
-use super::{DatabaseError, RecordEntry, RecordKind, Record};
+use super::{DatabaseError, Record, RecordEntry, RecordKind};
 use crate::spelling;
 use files::Destination;
 use redb::backends::FileBackend;

@@ -2,13 +2,15 @@
 
 use super::*;
 use crate::color::shipped::ComplexIndex;
-use crate::color::{Extrapolation, Color, Origin, Spectrum, shipped as colors};
+use crate::color::{Color, Extrapolation, Origin, Spectrum, shipped as colors};
 use crate::encoding::{Integers, decode, encode};
 use crate::illumination::distribution::Tabulated;
 use crate::illumination::light::{Goniometry, Light, LightShape, SkyMap};
-use crate::illumination::material::{MaterialKind, Classic, Coated, DistributionForm, RefractiveIndex, Material, Distributed, Transparent};
-use crate::illumination::texture::{TextureMapping, Motif, Paint, Pattern};
-use crate::mesh::{self, Grouped, MetallicRoughness, Mesh};
+use crate::illumination::material::{
+    Classic, Coated, Distributed, DistributionForm, Material, MaterialKind, RefractiveIndex, Transparent,
+};
+use crate::illumination::texture::{Motif, Paint, Pattern, TextureMapping};
+use crate::mesh::{self, Grouped, Mesh, MetallicRoughness};
 use crate::picture::Picture;
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
@@ -83,7 +85,9 @@ fn many() -> Vec<Record> {
         record("functions", RecordContent::Spectrum(functions)),
     ];
     let number = |index: usize, content| record(&format!("thing {index}"), content);
-    all.extend(bodies.into_iter().enumerate().map(|(i, body)| number(i, RecordContent::Material(Box::new(body.into())))));
+    all.extend(
+        bodies.into_iter().enumerate().map(|(i, body)| number(i, RecordContent::Material(Box::new(body.into())))),
+    );
     all.extend(lights.into_iter().enumerate().map(|(i, light)| number(i, RecordContent::Light(Box::new(light)))));
     all.push(record("beam", RecordContent::Photons(Box::new(beam()))));
     all
@@ -126,7 +130,10 @@ fn every_kind_of_record_comes_back_to_the_last_bit() {
         assert_eq!((summary, &*source, &*terms), (record.content.summary(), "Ours.", "MIT or Apache-2.0."));
         assert!(bytes > 0);
     }
-    assert_eq!(DatabaseReport::of(&path).expect("a report"), DatabaseReport { whole: records.len(), ..DatabaseReport::default() });
+    assert_eq!(
+        DatabaseReport::of(&path).expect("a report"),
+        DatabaseReport { whole: records.len(), ..DatabaseReport::default() }
+    );
 }
 
 #[test]
@@ -161,7 +168,8 @@ fn a_record_is_replaced_or_removed_only_when_that_is_asked_for() {
     assert_eq!(store.names(RecordKind::Material).expect("names"), ["paint"], "nothing of the transaction is left");
     store.add(&[material("paint", 0.2)], true).expect("replaced");
     assert_eq!(store.record(RecordKind::Material, "paint").expect("there"), material("paint", 0.2));
-    let error = store.remove(&[(RecordKind::Material, "paint"), (RecordKind::Material, "varnish")]).expect_err("unknown");
+    let error =
+        store.remove(&[(RecordKind::Material, "paint"), (RecordKind::Material, "varnish")]).expect_err("unknown");
     assert!(error.to_string().starts_with("no material is called \"varnish\""), "{error}");
     assert_eq!(store.names(RecordKind::Material).expect("names"), ["paint"]);
     store.remove(&[(RecordKind::Material, "paint")]).expect("removed");
@@ -260,7 +268,7 @@ const SUMS: [u32; 11] = [
 
 #[test]
 fn materials_of_the_first_form_are_read() {
-    use super::first_materials::{BodyV1 as First, MaterialV1 as FirstMaterial};
+    use super::materials_v1::{BodyV1 as First, MaterialV1 as FirstMaterial};
     let glass = RefractiveIndex::Dispersive(colors::glass("SF11").expect("a glass"));
     let red = Color::Spectrum(colors::reflectance("red_brick").expect("a brick"));
     let paints = || [0.0; 3].map(Paint::grey);
@@ -478,7 +486,8 @@ fn files_that_are_exported_come_back_to_the_last_bit() {
         for ending in endings {
             let path = folder.path().join(format!("{}.{ending}", record.name));
             write(&record, &files::Destination::of(&path).expect("a destination")).expect("written");
-            let quantity = matches!(record.content, RecordContent::Spectrum(Curves::Light(_))).then_some(ColumnQuantity::Light);
+            let quantity =
+                matches!(record.content, RecordContent::Spectrum(Curves::Light(_))).then_some(ColumnQuantity::Light);
             let back = read(&path, None, quantity).expect("read").pop().expect("a record");
             let mut expected = record.content.clone();
             if let RecordContent::Geometry(grouped) = &mut expected {
@@ -522,7 +531,9 @@ fn files_that_give_no_record_are_told_with_the_place() {
     let metal = folder.path().join("brass.txt");
     std::fs::write(&metal, "nm n k\n400 1.4 1.7\n500 1.2 2.0\n").expect("written");
     let brass = read(&metal, None, None).expect("a metal").pop().expect("one");
-    assert!(matches!(brass.content, RecordContent::Spectrum(Curves::Metal(ComplexIndex { .. }))) && brass.name == "brass");
+    assert!(
+        matches!(brass.content, RecordContent::Spectrum(Curves::Metal(ComplexIndex { .. }))) && brass.name == "brass"
+    );
     let mesh = folder.path().join("square.ply");
     mesh::write_grouped(&square(), &mesh::destination(&mesh).expect("a destination")).expect("written");
     assert_eq!(read(&mesh, Some("tile"), None).expect("a mesh")[0].name, "tile");

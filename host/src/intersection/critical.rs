@@ -100,7 +100,13 @@ impl NewtonSolver<'_> {
     }
 
     /// Along the first surface: the place on the second, the gradient of the distance, the distance, the normal there.
-    fn gradient(&self, place: SheetCoordinates, at: DVec3, normal: DVec3, reach: f64) -> Option<(SheetCoordinates, DVec3, f64, DVec3)> {
+    fn gradient(
+        &self,
+        place: SheetCoordinates,
+        at: DVec3,
+        normal: DVec3,
+        reach: f64,
+    ) -> Option<(SheetCoordinates, DVec3, f64, DVec3)> {
         let (place, foot) = self.foot(1, place, at, reach);
         // Where the second surface ends, its distance is another function.
         let is_on_both = beside(&foot, at) <= 1e-6 * reach && normal != DVec3::ZERO && foot.normal != DVec3::ZERO;

@@ -53,7 +53,11 @@ pub fn follow(
             continue;
         }
         let ahead = |at: DVec3| (at - start.at).dot(direction);
-        if points.len() > 2 && ahead(last.at) < 0.0 && ahead(newton_point.at) >= 0.0 && newton_point.at.distance(start.at) < 2.0 * step {
+        if points.len() > 2
+            && ahead(last.at) < 0.0
+            && ahead(newton_point.at) >= 0.0
+            && newton_point.at.distance(start.at) < 2.0 * step
+        {
             return (points, End::Closed);
         }
         if !goes_on(&newton_point) {
@@ -83,7 +87,12 @@ pub fn along_valley(solver: &NewtonSolver<'_>, start: &CriticalPoint, step: f64)
     (points, false)
 }
 
-fn one_way(solver: &NewtonSolver<'_>, start: &CriticalPoint, direction: DVec3, step: f64) -> (Vec<CriticalPoint>, bool) {
+fn one_way(
+    solver: &NewtonSolver<'_>,
+    start: &CriticalPoint,
+    direction: DVec3,
+    step: f64,
+) -> (Vec<CriticalPoint>, bool) {
     let (mut points, mut heading) = (vec![*start], direction);
     while points.len() < MOST_STEPS {
         let last = points[points.len() - 1];

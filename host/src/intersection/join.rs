@@ -8,10 +8,10 @@ use rayon::prelude::*;
 use super::critical::CriticalPoint;
 use super::follow::{End, follow};
 use super::newton::{NewtonPoint, NewtonSolver};
-use super::point::{Branch, CurvePoint, Intersection, Mark, IntersectionCounts};
+use super::point::{Branch, CurvePoint, Intersection, IntersectionCounts, Mark};
 use super::polyline::{TrianglePolyline, TrianglePolylines};
 use super::refine::between;
-use super::zone::{ZoneKind, Valley, Zone, Zones};
+use super::zone::{Valley, Zone, ZoneKind, Zones};
 
 /// A curve that comes into a branching point leaves along one of its directions within this cosine.
 const ALIKE: f64 = 0.5;
@@ -58,7 +58,12 @@ pub fn branches(solver: &NewtonSolver<'_>, raw: &TrianglePolylines, zones: &Zone
     }
     zones.valleys.iter().for_each(|valley| joiner.valley(valley));
     let raw_points = joiner.arcs[..cut].iter().map(|arc| arc.points.len()).sum();
-    let work = IntersectionCounts { pairs: raw.pairs, coincident: raw.coincident, raw: raw_points, ..IntersectionCounts::default() };
+    let work = IntersectionCounts {
+        pairs: raw.pairs,
+        coincident: raw.coincident,
+        raw: raw_points,
+        ..IntersectionCounts::default()
+    };
     Intersection { branches: joiner.joined(), touching, counts: work }
 }
 
@@ -75,7 +80,8 @@ impl Joiner<'_> {
         let count = polyline.points.len();
         let within: Vec<Option<usize>> = polyline.points.par_iter().map(|point| zones.holding(*point)).collect();
         let solver = self.solver;
-        let accurate = |index: usize| if within[index].is_none() { accurate(solver, polyline, index) } else { Vec::new() };
+        let accurate =
+            |index: usize| if within[index].is_none() { accurate(solver, polyline, index) } else { Vec::new() };
         let points: Vec<Vec<CurvePoint>> = (0..count).into_par_iter().map(accurate).collect();
         if within.iter().all(Option::is_none) {
             self.arcs.push(Arc { points: points.concat(), is_closed: polyline.is_closed, ..Arc::default() });
@@ -230,7 +236,8 @@ impl Joiner<'_> {
             }
             return;
         }
-        let point = |critical: &CriticalPoint| critical.point(Mark::Tangent, critical.directions[1], self.solver.tolerance);
+        let point =
+            |critical: &CriticalPoint| critical.point(Mark::Tangent, critical.directions[1], self.solver.tolerance);
         let arc = Arc { points: points.iter().map(point).collect(), is_closed: *is_closed, ..Arc::default() };
         self.arcs.push(arc);
     }

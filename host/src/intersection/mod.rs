@@ -35,7 +35,9 @@ mod sheet;
 mod zone;
 
 pub use file::{csv, obj};
-pub use point::{Branch, CurvePoint, Inaccuracy, Intersection, Mark, SheetCoordinates, CurvePrecision, IntersectionCounts};
+pub use point::{
+    Branch, CurvePoint, CurvePrecision, Inaccuracy, Intersection, IntersectionCounts, Mark, SheetCoordinates,
+};
 pub use sheet::ExactSheet;
 
 use newton::NewtonSolver;

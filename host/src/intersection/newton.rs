@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::point::{CurvePoint, Inaccuracy, Mark, SheetCoordinates, CurvePrecision};
+use super::point::{CurvePoint, CurvePrecision, Inaccuracy, Mark, SheetCoordinates};
 use super::sheet::{Foot, PreparedSheet};
 
 /// Steps at most; five are usual.
@@ -96,7 +96,9 @@ impl<'a> NewtonSolver<'a> {
         // The other surface may meet what lies behind the border, even if that bends away.
         let mut best = newton_point;
         for side in [0, 1] {
-            let Some(next) = self.sheets[side].beyond(&newton_point.coordinates[side], newton_point.at) else { continue };
+            let Some(next) = self.sheets[side].beyond(&newton_point.coordinates[side], newton_point.at) else {
+                continue;
+            };
             let mut places = newton_point.coordinates;
             places[side] = next;
             let other = self.iterate(places, start, across, reach);
@@ -107,7 +109,13 @@ impl<'a> NewtonSolver<'a> {
         best
     }
 
-    fn iterate(&self, mut places: [SheetCoordinates; 2], start: DVec3, across: Option<DVec3>, reach: f64) -> NewtonPoint {
+    fn iterate(
+        &self,
+        mut places: [SheetCoordinates; 2],
+        start: DVec3,
+        across: Option<DVec3>,
+        reach: f64,
+    ) -> NewtonPoint {
         let mut at = start;
         let mut best: Option<NewtonPoint> = None;
         let (mut stale, mut is_beside) = (0, false);
@@ -120,7 +128,13 @@ impl<'a> NewtonSolver<'a> {
             if residual < last {
                 is_beside = feet.iter().any(|(_, foot)| beside(foot, at) > self.tolerance);
                 let middle = one.point.midpoint(two.point);
-                best = Some(NewtonPoint { at: middle, coordinates: places, normals: [one.normal, two.normal], residual, inaccuracy: None });
+                best = Some(NewtonPoint {
+                    at: middle,
+                    coordinates: places,
+                    normals: [one.normal, two.normal],
+                    residual,
+                    inaccuracy: None,
+                });
             }
             stale = if residual < 0.5 * last { 0 } else { stale + 1 };
             if residual <= ENOUGH * self.tolerance || stale > 0 && last <= self.tolerance || stale >= MOST_STALE {
@@ -140,8 +154,21 @@ impl<'a> NewtonSolver<'a> {
     }
 
     /// Says what is wrong with a point, if anything is.
-    fn with_inaccuracy(&self, best: Option<NewtonPoint>, places: [SheetCoordinates; 2], start: DVec3, reach: f64, is_beside: bool) -> NewtonPoint {
-        let nowhere = NewtonPoint { at: start, coordinates: places, normals: [DVec3::ZERO; 2], residual: f64::MAX, inaccuracy: None };
+    fn with_inaccuracy(
+        &self,
+        best: Option<NewtonPoint>,
+        places: [SheetCoordinates; 2],
+        start: DVec3,
+        reach: f64,
+        is_beside: bool,
+    ) -> NewtonPoint {
+        let nowhere = NewtonPoint {
+            at: start,
+            coordinates: places,
+            normals: [DVec3::ZERO; 2],
+            residual: f64::MAX,
+            inaccuracy: None,
+        };
         let mut newton_point = best.filter(|newton_point| newton_point.residual.is_finite()).unwrap_or(nowhere);
         newton_point.inaccuracy = if newton_point.residual > self.tolerance {
             let sine = newton_point.normals[0].cross(newton_point.normals[1]).length();

@@ -4,7 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::newton::NewtonSolver;
-use super::point::{Branch, CurvePoint, Inaccuracy, Intersection, Mark, CurvePrecision};
+use super::point::{Branch, CurvePoint, CurvePrecision, Inaccuracy, Intersection, Mark};
 
 /// How often a gap is halved at most.
 const MOST_HALVINGS: u32 = 16;

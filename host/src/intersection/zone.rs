@@ -103,7 +103,13 @@ impl CriticalPoint {
 
     /// As a beginning of other points.
     pub fn newton_point(&self) -> NewtonPoint {
-        NewtonPoint { at: self.at, coordinates: self.coordinates, normals: self.normals, residual: self.gap.abs(), inaccuracy: None }
+        NewtonPoint {
+            at: self.at,
+            coordinates: self.coordinates,
+            normals: self.normals,
+            residual: self.gap.abs(),
+            inaccuracy: None,
+        }
     }
 
     /// The distances from it along the direction of the greater curvature at which the surfaces cross; none if they do not.

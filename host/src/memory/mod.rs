@@ -5,7 +5,7 @@ mod counted;
 mod file;
 mod pages;
 
-pub use budget::{MemoryExceeded, reserve, left, limit, limit_to, machine, peak, readable};
+pub use budget::{MemoryExceeded, left, limit, limit_to, machine, peak, readable, reserve};
 pub use counted::{Counted, held};
 pub use file::{read, read_text};
 pub use pages::prefer_large_pages;

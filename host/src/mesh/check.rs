@@ -2,7 +2,7 @@
 
 use super::edges::EdgeTable;
 use super::triangles::MAX_COUNT;
-use super::{Fault, Mesh, FaultLocation, MeshProblem};
+use super::{Fault, FaultLocation, Mesh, MeshProblem};
 
 /// What the edges say of a mesh. Vertices at the same position (same bits) count as one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -83,8 +83,13 @@ pub struct EdgeSelection {
 
 impl EdgeSelection {
     /// Every edge.
-    pub const ALL: EdgeSelection =
-        EdgeSelection { boundary: true, crease_degrees: Some(0.0), seams: true, smooth: SmoothEdges::All, outline: None };
+    pub const ALL: EdgeSelection = EdgeSelection {
+        boundary: true,
+        crease_degrees: Some(0.0),
+        seams: true,
+        smooth: SmoothEdges::All,
+        outline: None,
+    };
 
     /// Boundaries, and creases sharper than `degrees`.
     pub fn creases(degrees: f64) -> EdgeSelection {

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use files::Destination;
 
-use super::{Fault, Grouped, Mesh, MeshError, FaultLocation, MeshProblem, compact, gltf, obj, ply, stl};
+use super::{Fault, FaultLocation, Grouped, Mesh, MeshError, MeshProblem, compact, gltf, obj, ply, stl};
 
 /// The longest file that is read, bytes.
 pub(super) const MAX_BYTES: u64 = 4 << 30;

@@ -11,7 +11,7 @@ mod error;
 mod groups;
 mod fan;
 pub mod edges;
-mod contour;
+mod smooth_outline;
 mod wire;
 mod polylines;
 mod boundary;
@@ -32,8 +32,8 @@ mod holes;
 pub use boundary::BoundaryLoop;
 pub use bunny::{NoBunny, bunny};
 pub use check::EdgeReport;
-pub use edges::{Viewer, SmoothEdges, EdgeSelection};
-pub use error::{Fault, MeshError, FaultLocation, MeshProblem};
+pub use edges::{EdgeSelection, SmoothEdges, Viewer};
+pub use error::{Fault, FaultLocation, MeshError, MeshProblem};
 pub use file::{
     Format, destination, parse, parse_grouped, print, print_grouped, read, read_grouped, write, write_grouped,
 };

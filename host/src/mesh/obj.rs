@@ -16,7 +16,7 @@ use super::error::shortened;
 use super::fan::fan;
 use super::groups::{Grouped, Groups, has_groups, name_of};
 use super::measure::bits;
-use super::{Fault, Mesh, FaultLocation, MeshProblem};
+use super::{Fault, FaultLocation, Mesh, MeshProblem};
 
 /// A corner of a face: indices into positions, texture coordinates and normals.
 type Corner = (u32, Option<u32>, Option<u32>);
@@ -100,7 +100,8 @@ fn numbers<'a, const N: usize>(words: &mut impl Iterator<Item = &'a str>) -> Res
 
 /// A finite number.
 pub(super) fn number(word: &str) -> Result<f64, MeshProblem> {
-    let value: f64 = word.parse().map_err(|_| MeshProblem::Expected { expected: "a number", found: shortened(word) })?;
+    let value: f64 =
+        word.parse().map_err(|_| MeshProblem::Expected { expected: "a number", found: shortened(word) })?;
     if value.is_finite() { Ok(value) } else { Err(MeshProblem::NotFinite) }
 }
 
@@ -121,7 +122,8 @@ fn corner(word: &str, content: &Content) -> Result<Corner, MeshProblem> {
 
 /// An index from 1, or backwards from -1 (the last entry so far).
 fn index(word: &str, count: usize, table: &'static str) -> Result<u32, MeshProblem> {
-    let index: i64 = word.parse().map_err(|_| MeshProblem::Expected { expected: "an index", found: shortened(word) })?;
+    let index: i64 =
+        word.parse().map_err(|_| MeshProblem::Expected { expected: "an index", found: shortened(word) })?;
     let from_zero = if index > 0 { index - 1 } else { index.saturating_add(count as i64) };
     match u32::try_from(from_zero) {
         Ok(entry) if index != 0 && (entry as usize) < count => Ok(entry),

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::edges::{EdgeTable, EdgeUse};
-use super::{Mesh, EdgeSelection};
+use super::{EdgeSelection, Mesh};
 
 /// Runs of points joined by lines.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -9,7 +9,7 @@ use glam::{DVec3, Vec3};
 
 use super::error::shortened;
 use super::obj::number;
-use super::{Fault, Mesh, FaultLocation, MeshProblem};
+use super::{Fault, FaultLocation, Mesh, MeshProblem};
 
 /// Bytes before the count of a binary file.
 const TITLE_BYTES: usize = 80;
@@ -32,7 +32,8 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
 }
 
 fn parse_binary(bytes: &[u8], announced: Option<u32>) -> Result<Mesh, Fault> {
-    let count = announced.ok_or_else(|| FaultLocation::Byte(bytes.len()).fault(MeshProblem::Ends("the header")))? as usize;
+    let count =
+        announced.ok_or_else(|| FaultLocation::Byte(bytes.len()).fault(MeshProblem::Ends("the header")))? as usize;
     let whole = bytes[HEADER_BYTES..].chunks_exact(TRIANGLE_BYTES);
     if whole.len() < count {
         return Err(FaultLocation::Byte(bytes.len()).fault(MeshProblem::Ends("a triangle")));

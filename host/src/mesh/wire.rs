@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::Mesh;
-use super::contour::SmoothOutline;
-use super::edges::{EdgeTable, EdgeSelection};
+use super::edges::{EdgeSelection, EdgeTable};
+use super::smooth_outline::SmoothOutline;
 
 /// The selected lines of `mesh` as vectors, each once.
 pub fn wire(mesh: &Mesh, selection: &EdgeSelection) -> Vec<[DVec3; 2]> {

@@ -325,7 +325,10 @@ mod tests {
         assert_eq!(ExactNumber::from(1.0).over(&ExactNumber::from(3.0)), 1.0 / 3.0);
         assert_eq!(ExactNumber::from(-1.0).over(&ExactNumber::from(3.0)), -1.0 / 3.0);
         assert_eq!(ExactNumber::from(f64::MAX).over(&ExactNumber::from(1.0)), f64::MAX);
-        assert_eq!((ExactNumber::from(1e300) * &ExactNumber::from(1e300)).over(&ExactNumber::from(1e-300)), f64::INFINITY);
+        assert_eq!(
+            (ExactNumber::from(1e300) * &ExactNumber::from(1e300)).over(&ExactNumber::from(1e-300)),
+            f64::INFINITY
+        );
         assert_eq!((ExactNumber::from(3.0) - ExactNumber::from(3.0)).sign(), 0.0);
     }
 

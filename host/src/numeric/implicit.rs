@@ -8,7 +8,7 @@
 //! Attene 2020, "Indirect predicates for geometric constructions"; the numbers are ours.
 
 use super::bounds::Bounds;
-use super::exact::{ExactNumber, Arithmetic, RoundedNumber, DoubleDouble, cross, dot, minus};
+use super::exact::{Arithmetic, DoubleDouble, ExactNumber, RoundedNumber, cross, dot, minus};
 use glam::DVec3;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 use std::cmp::Ordering;
@@ -66,9 +66,11 @@ impl ImplicitPoint {
     pub fn new(definition: PointDefinition) -> ImplicitPoint {
         let (near, errors) = match &definition {
             &PointDefinition::Given(at) => return ImplicitPoint::known(definition, at, DVec3::ZERO),
-            &PointDefinition::LineAndPlane(line, plane) => {
-                place(on_line(line, plane, RoundedNumber::over), on_line(line, plane, DoubleDouble::over), [&line, &plane])
-            }
+            &PointDefinition::LineAndPlane(line, plane) => place(
+                on_line(line, plane, RoundedNumber::over),
+                on_line(line, plane, DoubleDouble::over),
+                [&line, &plane],
+            ),
             &PointDefinition::Planes(planes) => {
                 let [a, b, c] = planes.each_ref();
                 place(on_planes(planes, RoundedNumber::over), on_planes(planes, DoubleDouble::over), [a, b, c])
@@ -91,7 +93,10 @@ impl ImplicitPoint {
         let exact = homogeneous(&definition);
         let near = DVec3::from([0, 1, 2].map(|axis| exact[axis].over(&exact[3])));
         let error = f64::EPSILON * near.abs().max_element() + f64::MIN_POSITIVE;
-        ImplicitPoint { exact: OnceLock::from(Box::new(exact)), ..ImplicitPoint::known(definition, near, DVec3::splat(error)) }
+        ImplicitPoint {
+            exact: OnceLock::from(Box::new(exact)),
+            ..ImplicitPoint::known(definition, near, DVec3::splat(error))
+        }
     }
 
     fn known(definition: PointDefinition, near: DVec3, errors: DVec3) -> ImplicitPoint {
@@ -366,7 +371,10 @@ mod tests {
             let [a, b] = [a, b].map(|p| ImplicitPoint::new(PointDefinition::Given(p)));
             assert_eq!([turn(0, &a, &b, &point), turn(1, &a, &b, &point)], [0.0; 2]);
         }
-        let far = ImplicitPoint::new(PointDefinition::crossing([DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0)], [DVec3::X, DVec3::Y]));
+        let far = ImplicitPoint::new(PointDefinition::crossing(
+            [DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0)],
+            [DVec3::X, DVec3::Y],
+        ));
         assert_eq!(far.near(), DVec3::new(0.5, 0.5, 0.0));
     }
 

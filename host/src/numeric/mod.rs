@@ -6,10 +6,10 @@ pub mod exact;
 pub mod implicit;
 pub mod plane;
 pub mod predicates;
-mod print;
+mod debug_hash;
 pub mod ray;
 pub mod sampling;
 pub mod sequence;
 pub mod triangle;
 
-pub(crate) use print::debug_hash;
+pub(crate) use debug_hash::debug_hash;

@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::clip::{LocalBounds, FAT, clipped_bounds};
+use super::clip::{FAT, LocalBounds, clipped_bounds};
 use super::code::{LocationalCode, MAX_DEPTH};
 use super::cube::Cube;
 

@@ -1,12 +1,12 @@
 //! Rays down the index, nearest child first.
 
-use super::frame::PreparedRay;
-use super::index::Child;
 #[cfg(target_arch = "x86_64")]
 use super::lanes::AvxLanes;
 use super::lanes::{LANES, Lanes, ScalarLanes, prefetch};
 use super::packet::Packet;
+use super::prepared_ray::PreparedRay;
 use super::walk::Search;
+use super::wide_bvh::Child;
 use super::{Hit, Octree, Ray, WalkCount};
 use glam::DVec3;
 

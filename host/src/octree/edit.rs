@@ -8,12 +8,12 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::build::{OctreeBuilder, Leaves, Nodes, TriangleReference, octants, within};
+use super::build::{Leaves, Nodes, OctreeBuilder, TriangleReference, octants, within};
 use super::code::LocationalCode;
 use super::error::{MAX_TRIANGLES, OctreeError, check};
-use super::index::WideBvh;
 use super::settings::Walk;
 use super::tree::{ObjectCounts, Octree};
+use super::wide_bvh::WideBvh;
 
 impl Octree {
     /// Puts an object in, as the last one.

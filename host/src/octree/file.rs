@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::build::{OctreeBuilder, Leaves, Nodes, TriangleReference, octants};
+use super::build::{Leaves, Nodes, OctreeBuilder, TriangleReference, octants};
 use super::code::{LocationalCode, MAX_DEPTH};
 use super::cube::Cube;
 use super::error::{OctreeError, check};

@@ -1,9 +1,9 @@
 //! What the index holds, in the order of locational codes: triangles, and pieces of large ones that are thin and slanted.
 
 use super::build::{OctreeBuilder, octants, place};
-use super::clip::{LocalBounds, FAT};
+use super::bvh::{DIGITS, radix_sorted};
+use super::clip::{FAT, LocalBounds};
 use super::code::{LocationalCode, MAX_DEPTH};
-use super::sorted::{DIGITS, radix_sorted};
 use glam::DVec3;
 use rayon::prelude::*;
 use wide::f32x4;
@@ -168,7 +168,13 @@ fn home_level(&[a, b, c]: &[DVec3; 3]) -> u32 {
 }
 
 /// Adds the pieces of a triangle in the cells of a level within a cell.
-fn collect(division: &OctreeBuilder<'_>, triangle: u32, cell: LocationalCode, level: u32, pieces: &mut Vec<LocalBounds>) {
+fn collect(
+    division: &OctreeBuilder<'_>,
+    triangle: u32,
+    cell: LocationalCode,
+    level: u32,
+    pieces: &mut Vec<LocalBounds>,
+) {
     let Some(piece) = division.part(triangle, cell) else { return };
     if cell.level() >= level.min(MAX_DEPTH) {
         pieces.push(piece);

@@ -1,7 +1,7 @@
 //! Eight triangles at a time: which of them can a ray hit?
 
-use super::frame::SinglePrecisionRay;
 use super::lanes::{Eight, LANES, Lanes};
+use super::prepared_ray::SinglePrecisionRay;
 use glam::DVec3;
 
 /// What rounding the corners may add to the size of a triangle.
@@ -91,7 +91,12 @@ impl Packet {
     /// are off it is off by 3 d s; their sum, which is at most 6 d more than the whole, is off by as much and their
     /// products by 2^-22 of it: together less than 8 d (s + e) + 2 e whole, after multiplication by the whole.
     #[inline(always)]
-    pub fn candidates<L: Lanes, const ANY: bool>(&self, frame: &SinglePrecisionRay, limit: f32, within: [f32; 2]) -> (u32, u32) {
+    pub fn candidates<L: Lanes, const ANY: bool>(
+        &self,
+        frame: &SinglePrecisionRay,
+        limit: f32,
+        within: [f32; 2],
+    ) -> (u32, u32) {
         let [a, b, c] = &self.corners;
         let ((ax, ay), (bx, by), (cx, cy)) = (across::<L>(a, frame), across::<L>(b, frame), across::<L>(c, frame));
         let first = cx.times_minus(by, cy.times(bx));

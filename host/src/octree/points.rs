@@ -126,7 +126,14 @@ impl SortedPoints {
     ///
     /// - `normal`: of the disc, unit length. `squares`: of its radius, and of how far above and below a point may be, sides
     ///   of the cube.
-    pub fn within(&self, around: &NearbyPoints, place: DVec3, normal: DVec3, squares: [f32; 2], give: impl FnMut(u32, f32)) {
+    pub fn within(
+        &self,
+        around: &NearbyPoints,
+        place: DVec3,
+        normal: DVec3,
+        squares: [f32; 2],
+        give: impl FnMut(u32, f32),
+    ) {
         let (local, normal) = (self.local(place), normal.as_vec3().to_array());
         #[cfg(target_arch = "x86_64")]
         {

@@ -351,7 +351,8 @@ mod tests {
         let mut random = Pcg32::seed_from_u64(6);
         let octree = soup(20_000, 0.02, &mut random);
         let small = |at: DVec3| Bounds { min: at, max: at + DVec3::splat(0.02) };
-        let ShaftContents::Some(shaft) = octree.between(small(DVec3::splat(-0.9)), small(DVec3::splat(0.9)), |_| true, 1000)
+        let ShaftContents::Some(shaft) =
+            octree.between(small(DVec3::splat(-0.9)), small(DVec3::splat(0.9)), |_| true, 1000)
         else {
             panic!("not many are in the way")
         };

@@ -5,11 +5,11 @@
 //! where voxels are small beside what matters. Voxels that hold more than one surface, or one that bends, keep their
 //! triangles. Where a surface ends within a voxel, its point stands for it up to the voxel's sides.
 
-use super::build::{OctreeBuilder, Leaves, Nodes, PARALLEL_TRIANGLES, TriangleReference, octants, place};
+use super::build::{Leaves, Nodes, OctreeBuilder, PARALLEL_TRIANGLES, TriangleReference, octants, place};
 use super::clip::clipped;
-use super::frame::PreparedRay;
-use super::index::WideBvh;
+use super::prepared_ray::PreparedRay;
 use super::walk::Search;
+use super::wide_bvh::WideBvh;
 use super::{Hit, LocationalCode, Octree, Ray};
 use crate::numeric::sampling::{RandomStream, triangle};
 use crate::numeric::triangle::weights;

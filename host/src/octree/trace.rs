@@ -1,6 +1,6 @@
 //! What a ray hits, by the way that the octree is walked.
 
-use super::frame::PreparedRay;
+use super::prepared_ray::PreparedRay;
 use super::settings::Walk;
 use super::tree::{Octree, WalkCount};
 use super::walk::Search;

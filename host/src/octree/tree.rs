@@ -4,12 +4,12 @@ use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 
-use super::build::{OctreeBuilder, Leaves, Nodes, PARALLEL_TRIANGLES};
+use super::build::{Leaves, Nodes, OctreeBuilder, PARALLEL_TRIANGLES};
 use super::code::{LocationalCode, MAX_DEPTH};
 use super::cube::Cube;
 use super::error::{OctreeError, check};
-use super::index::WideBvh;
 use super::settings::{OctreeSettings, Walk};
+use super::wide_bvh::WideBvh;
 use crate::numeric::bounds::Bounds;
 
 /// Where a point lies.

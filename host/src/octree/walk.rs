@@ -3,7 +3,7 @@
 use super::build::octants;
 use super::clip::FAT;
 use super::code::{LocationalCode, MAX_DEPTH};
-use super::frame::PreparedRay;
+use super::prepared_ray::PreparedRay;
 use super::{Hit, Location, Octree, WalkCount};
 use glam::DVec3;
 

@@ -5,7 +5,7 @@
 
 mod decision;
 mod stage;
-mod reach;
+mod visibility;
 
 pub use stage::Stage;
 
@@ -88,7 +88,7 @@ impl Plan {
         };
         let lights: Vec<Decision> = prepared.lights.iter().map(light).collect();
         let facts = stage::Facts::new(prepared, lights.iter().map(|d| d.needed).collect());
-        let objects = reach::objects(prepared, views, &facts);
+        let objects = visibility::objects(prepared, views, &facts);
         let facts = facts.within(objects.iter().map(|d| d.needed).collect());
         for stage in Stage::ALL {
             plan.stages[stage as usize] =

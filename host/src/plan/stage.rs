@@ -4,7 +4,7 @@ use super::decision::Decision;
 use crate::illumination::Material;
 use crate::illumination::distribution::TableError;
 use crate::illumination::light::LightOrigin;
-use crate::illumination::material::{MaterialKind, Classic, Coated, DistributionForm, Distributed};
+use crate::illumination::material::{Classic, Coated, Distributed, DistributionForm, MaterialKind};
 use crate::illumination::optics::Interreflection;
 use crate::scene::{Caustics, Prepared, PreparedObject};
 
@@ -117,7 +117,9 @@ impl<'a> Facts<'a> {
 /// Whether a material reflects light diffusely.
 fn has_diffuse(material: &Material) -> bool {
     match &material.body {
-        MaterialKind::Classic(Classic { diffuse, .. }) | MaterialKind::Coated(Coated { diffuse, .. }) => !diffuse.is_black(),
+        MaterialKind::Classic(Classic { diffuse, .. }) | MaterialKind::Coated(Coated { diffuse, .. }) => {
+            !diffuse.is_black()
+        }
         MaterialKind::Shaped(Distributed { reflectance, .. }) => !reflectance.is_black(),
         MaterialKind::Principled(principled) => principled.is_diffuse(),
         MaterialKind::Metal(_) | MaterialKind::Transparent(_) => false,
@@ -239,7 +241,8 @@ fn light_buffer(facts: &Facts<'_>) -> Decision {
 
 /// Caustics are more of the picture, not a better way to the same: forcing everything does not bring them.
 fn photon_map(facts: &Facts<'_>) -> Decision {
-    let (throwers, takers) = (facts.count(Material::may_cast_caustics), facts.count(|m| has_diffuse(m) || !m.may_cast_caustics()));
+    let (throwers, takers) =
+        (facts.count(Material::may_cast_caustics), facts.count(|m| has_diffuse(m) || !m.may_cast_caustics()));
     let lamps = facts.prepared.lights.iter().enumerate().filter(|(i, _)| facts.is_bright(*i));
     let even = lamps.filter(|(_, light)| light.is_even_sky()).count();
     let lamps = facts.lights() - even;
@@ -346,7 +349,9 @@ fn highlights(facts: &Facts<'_>) -> Decision {
     let mut decision = direct(facts, "highlight", has_highlight);
     let mut told = Vec::new();
     for material in facts.included().flat_map(|object| &object.materials) {
-        let MaterialKind::Shaped(Distributed { form: DistributionForm::Facets(table), .. }) = &material.body else { continue };
+        let MaterialKind::Shaped(Distributed { form: DistributionForm::Facets(table), .. }) = &material.body else {
+            continue;
+        };
         let TableError { greatest, mean, values } = table.error();
         let words = format!(
             "; a user's distribution in {values} values: error {greatest:.1e} of a value at most, {mean:.1e} of the area"

@@ -3,8 +3,8 @@
 use super::*;
 use crate::color::Color;
 use crate::illumination::Paint;
-use crate::illumination::material::{MaterialKind, Classic};
-use crate::illumination::{RgbPower, Light, Material};
+use crate::illumination::material::{Classic, MaterialKind};
+use crate::illumination::{Light, Material, RgbPower};
 use crate::scene::{Camera, Object, Scene, Shape};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec3};

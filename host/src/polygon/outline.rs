@@ -66,7 +66,12 @@ impl Outline {
     }
 
     /// Appends the corners of a contour where it turns.
-    fn append_turning(&self, contour: usize, distinct: &mut Vec<u32>, turning: &mut Vec<u32>) -> Result<(), PolygonError> {
+    fn append_turning(
+        &self,
+        contour: usize,
+        distinct: &mut Vec<u32>,
+        turning: &mut Vec<u32>,
+    ) -> Result<(), PolygonError> {
         let end = self.starts.get(contour + 1).copied().unwrap_or(self.corners.len());
         let at = |index: u32| self.corners[index as usize];
         distinct.clear();

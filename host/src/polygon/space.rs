@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{PolygonError, TriangulationKind, Triangulation, triangulate};
+use super::{PolygonError, Triangulation, TriangulationKind, triangulate};
 
 /// Divides a plane polygon in space into triangles, as [`triangulate`] does.
 ///
@@ -17,7 +17,10 @@ use super::{PolygonError, TriangulationKind, Triangulation, triangulate};
 ///
 /// # Source
 /// The normal after Newell, in Sutherland, Sproull and Schumacker 1974.
-pub fn triangulate_in_space<C: AsRef<[DVec3]>>(contours: &[C], shape: TriangulationKind) -> Result<Triangulation, PolygonError> {
+pub fn triangulate_in_space<C: AsRef<[DVec3]>>(
+    contours: &[C],
+    shape: TriangulationKind,
+) -> Result<Triangulation, PolygonError> {
     let corners = || contours.iter().flat_map(|contour| contour.as_ref());
     let greatest = corners().fold(0.0, |greatest: f64, corner| greatest.max(corner.abs().max_element()));
     let longest = |a: DVec3, b: DVec3| if b.length_squared() > a.length_squared() { b } else { a };

@@ -2,20 +2,22 @@
 
 mod closed_form;
 mod error;
-mod shot;
+mod rendered_view;
 mod progressive;
 
 pub use closed_form::{difference, view_of_dials};
 pub use error::ProductionError;
-pub use progressive::{RenderingEvent, Progressive};
-pub use shot::RenderedView;
+pub use progressive::{Progressive, RenderingEvent};
+pub use rendered_view::RenderedView;
 
 use crate::{
     picture::{Picture, display::DisplayTransform},
     plan::Plan,
-    render::{RenderOrder, RenderError, Watch, World, radiosity::Radiosity, tiles::Tiling},
+    render::{RenderError, RenderOrder, Watch, World, radiosity::Radiosity, tiles::Tiling},
     scene::{Camera, Prepared, Projection, Scene, View},
-    workstation::{Drawing, InitialView, Session, StructureCommands, WorkstationError, network, raster, structure, tiles},
+    workstation::{
+        Drawing, InitialView, Session, StructureCommands, WorkstationError, network, raster, structure, tiles,
+    },
 };
 use glam::{DMat4, DVec3};
 use std::num::NonZeroUsize;

@@ -1,12 +1,13 @@
 //! Images of a view: at once, or in a thread of their own that tells of itself while samples are added.
 
 use super::error::ProductionError;
-use super::shot::RenderedView;
+use super::rendered_view::RenderedView;
 use crate::{
     picture::{Picture, display::DisplayTransform},
     plan::Plan,
     render::{
-        Progress, Film, RenderOrder, RenderError, Task, Watch, metering::Meter, ray_tracer_watched, ray_tracing::Checkpoints,
+        Film, Progress, RenderError, RenderOrder, Task, Watch, metering::Meter, ray_tracer_watched,
+        ray_tracing::Checkpoints,
     },
     scene::{Prepared, View},
 };
@@ -69,7 +70,9 @@ impl Progressive {
             };
             let watch = Watch { cancelled: &cancelled, stage: &stage, progress: &progress, memo: None };
             let mut part = |part: RenderingEvent| tell(part);
-            tell(RenderingEvent::End(render_view(&prepared, &view, &options, &display, &watch, Some(&mut part)).map(Box::new)));
+            tell(RenderingEvent::End(
+                render_view(&prepared, &view, &options, &display, &watch, Some(&mut part)).map(Box::new),
+            ));
         };
         let thread = std::thread::Builder::new().name("rendering".into());
         thread.spawn(work).map_err(|error| ProductionError::Thread(error.to_string()))?;
@@ -84,7 +87,8 @@ impl Progressive {
                 Ok(news) => {
                     let is_outdated = matches!(
                         (all.last(), &news),
-                        (Some(RenderingEvent::Part { .. }), RenderingEvent::Part { .. }) | (Some(RenderingEvent::Amount(_)), RenderingEvent::Amount(_))
+                        (Some(RenderingEvent::Part { .. }), RenderingEvent::Part { .. })
+                            | (Some(RenderingEvent::Amount(_)), RenderingEvent::Amount(_))
                     );
                     if is_outdated {
                         all.pop();

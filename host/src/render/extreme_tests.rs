@@ -3,10 +3,12 @@
 use super::ray_tracer;
 use super::scan_line::ScanLine;
 use super::{RenderOrder, Renderer, Rendering, Watch};
-use crate::color::{Extrapolation, Color, Spectrum};
+use crate::color::{Color, Extrapolation, Spectrum};
 use crate::illumination::light::LightShape;
-use crate::illumination::material::{MaterialKind, Classic, Coated, Finish, RefractiveIndex, Material, Metal, Transparent};
-use crate::illumination::{RgbPower, Light, Paint};
+use crate::illumination::material::{
+    Classic, Coated, Finish, Material, MaterialKind, Metal, RefractiveIndex, Transparent,
+};
+use crate::illumination::{Light, Paint, RgbPower};
 use crate::picture::difference;
 use crate::plan::Plan;
 use crate::scene::{Camera, Interreflection, Object, Parallel, Prepared, Scene, Settings, Shape, View};
@@ -36,7 +38,8 @@ fn diffuse(k: f64) -> Classic {
 
 fn glass(index: f64, roughness: f64, absorption: f64) -> Material {
     let (index, absorption) = (RefractiveIndex::Constant(index), Color::grey(absorption));
-    MaterialKind::Transparent(Transparent { roughness: roughness.into(), absorption, ..Transparent::clear(index) }).into()
+    MaterialKind::Transparent(Transparent { roughness: roughness.into(), absorption, ..Transparent::clear(index) })
+        .into()
 }
 
 fn metal(n: f64, k: f64, finish: Finish) -> Material {
@@ -158,7 +161,8 @@ fn no_roughness_and_no_angle_creates_light() {
             let tracer = ray_tracer(&prepared, &plan).expect("ready");
             for degrees in [0.0, 60.0, 89.0, 89.9999] {
                 let view = View::Camera(at_angle(degrees));
-                let rendering = tracer.render(&view, &RenderOrder::of(&scene.settings), &Watch::NOBODY).expect("a picture");
+                let rendering =
+                    tracer.render(&view, &RenderOrder::of(&scene.settings), &Watch::NOBODY).expect("a picture");
                 let (found, error) = red(&rendering);
                 let place = format!("{word} {roughness} {degrees}: {found} {error}");
                 assert!(found < 1.0 + 5.0 * error + 1e-3 && found > 1.0 - loss - 5.0 * error, "{place}");

@@ -1,7 +1,7 @@
 //! What the samples of all pixels add up to.
 
-use super::guide::PixelFeatures;
-use super::tally::{RadianceByClass, PixelSample, Tally};
+use super::features::PixelFeatures;
+use super::tally::{PixelSample, RadianceByClass, Tally};
 use crate::memory::prefer_large_pages;
 use crate::picture::{Picture, PictureError};
 use rayon::prelude::*;
@@ -118,9 +118,22 @@ impl Film {
     /// A film of pixels that are known; none if there are not as many as that.
     ///
     /// - `guides`: of a denoiser, for each of them; none if they are not kept.
-    pub(super) fn of_tallies(width: u32, height: u32, tallies: Vec<Tally>, features: Vec<PixelFeatures>) -> Option<Film> {
+    pub(super) fn of_tallies(
+        width: u32,
+        height: u32,
+        tallies: Vec<Tally>,
+        features: Vec<PixelFeatures>,
+    ) -> Option<Film> {
         let possible = Picture::pixels_of(width, height).is_ok_and(|count| count == tallies.len());
-        possible.then_some(Film { width, height, tallies, classes: Vec::new(), features, in_turn: true, adaptive: None })
+        possible.then_some(Film {
+            width,
+            height,
+            tallies,
+            classes: Vec::new(),
+            features,
+            in_turn: true,
+            adaptive: None,
+        })
     }
 
     /// How far adaptive sampling has come that goes on towards a target: where it stopped, if that was the target before.

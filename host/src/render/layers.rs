@@ -1,7 +1,7 @@
 //! Films as EXR files with layers: what is known of each pixel beside its radiance.
 
+use super::features::PixelFeatures;
 use super::film::Film;
-use super::guide::PixelFeatures;
 use super::tally::{PathClass, Tally};
 use crate::picture::{Picture, PictureError, Pixel, Provenance, encoder};
 use crate::scene::Prepared;

@@ -12,7 +12,7 @@
 //! of the tone curve as long as the rest does not become too dark.
 
 use super::tally::Tally;
-use super::{Film, RenderOrder, RenderError, Renderer, Watch};
+use super::{Film, RenderError, RenderOrder, Renderer, Watch};
 use crate::color::srgb::LUMINANCE;
 use crate::picture::display::{DisplayTransform, Exposure, MIDDLE_GREY, Tone};
 use crate::picture::{Filter, Picture};

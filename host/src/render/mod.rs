@@ -2,7 +2,7 @@
 
 mod error;
 mod tally;
-mod guide;
+mod features;
 mod film;
 mod order;
 mod state;
@@ -25,14 +25,16 @@ mod renderers;
 #[cfg(test)]
 mod extreme_tests;
 
-pub use error::{RenderError, RadiosityError};
+pub use error::{RadiosityError, RenderError};
 pub use film::Film;
 pub use memo::Memo;
 pub use order::RenderOrder;
 pub use renderer::Renderer;
-pub use renderers::{AnyRenderer, RENDERERS, PreparedRenderer, RendererRow, Task, Technique, ray_tracer, ray_tracer_watched};
+pub use renderers::{
+    AnyRenderer, PreparedRenderer, RENDERERS, RendererRow, Task, Technique, ray_tracer, ray_tracer_watched,
+};
 pub use rendering::{RayCounts, Rendering, SpanCounts};
 pub use state::{Fingerprint, RenderState, StateError};
-pub use tally::{RadianceByClass, PathClass, PixelSample, Tally};
+pub use tally::{PathClass, PixelSample, RadianceByClass, Tally};
 pub use watch::{Progress, Watch};
 pub use world::World;

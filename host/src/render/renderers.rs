@@ -209,7 +209,9 @@ pub fn ray_tracer<'a>(prepared: &'a Prepared, plan: &'a Plan) -> Result<RayTrace
 ///
 /// # Errors
 /// [`RenderError::Octree`], [`RenderError::Material`], [`RenderError::Radiosity`].
-pub fn ray_tracer_watched<'a>(task: &Task<'a>) -> Result<(RayTracer<'a>, Option<radiosity::RadiosityReport>), RenderError> {
+pub fn ray_tracer_watched<'a>(
+    task: &Task<'a>,
+) -> Result<(RayTracer<'a>, Option<radiosity::RadiosityReport>), RenderError> {
     let Task { prepared, plan, photon_store, watch } = *task;
     (watch.stage)("while building the octree");
     let world = World::new(prepared, plan)?;

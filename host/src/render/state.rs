@@ -5,8 +5,8 @@
 //! (u32); and a checksum of all before it (CRC-32, u32). Numbers are little-endian.
 
 use super::RenderOrder;
+use super::features::PixelFeatures;
 use super::film::{AdaptiveSampling, Film};
-use super::guide::PixelFeatures;
 use super::tally::Tally;
 use crate::encoding::{EncodingError, Integers, decode_from, encode_into};
 use crate::picture::PictureError;
@@ -232,7 +232,9 @@ impl RenderState {
             Some([WITHOUT_FEATURES]) => false,
             Some([WITH_FEATURES]) => true,
             Some([version]) => {
-                return Err(damaged(&format!("version {version} is not known; {WITHOUT_FEATURES} and {WITH_FEATURES} are")));
+                return Err(damaged(&format!(
+                    "version {version} is not known; {WITHOUT_FEATURES} and {WITH_FEATURES} are"
+                )));
             }
             _ => return Err(damaged("it is no state of a rendering")),
         };
@@ -331,7 +333,8 @@ mod tests {
             assert_eq!((state.film.features(), state.film.features()[5].albedo[0]), (guided.features(), 1.0));
         }
         film().write_state(&destination, own, 0).expect("written");
-        let error = RenderState::read(destination.path(), &RenderOrder { denoise: true, ..order() }, own).expect_err("no guides");
+        let error = RenderState::read(destination.path(), &RenderOrder { denoise: true, ..order() }, own)
+            .expect_err("no guides");
         assert!(error.to_string().contains("--denoise"), "{error}");
     }
 

@@ -1,8 +1,8 @@
 //! Solids made of other objects.
 
 use super::ShapeError;
-use super::made::ShapeMesh;
 use super::object::{Composite, Object, Operation, Shape};
+use super::shape_mesh::ShapeMesh;
 use super::stretch::largest_stretch;
 use crate::illumination::Material;
 use crate::mesh::normal_matrix;
@@ -34,7 +34,8 @@ impl Composite {
     pub fn tessellate(&self, tolerance: Tolerance) -> Result<ShapeMesh, ShapeError> {
         let mut leaves = Vec::new();
         let expression = self.collect(&DMat4::IDENTITY, None, tolerance.chord, &mut leaves);
-        let finite = |leaf: &LeafOperand| if leaf.is_half_space() { Ok(None) } else { leaf.solid(tolerance.angle).map(Some) };
+        let finite =
+            |leaf: &LeafOperand| if leaf.is_half_space() { Ok(None) } else { leaf.solid(tolerance.angle).map(Some) };
         let finite: Vec<Option<ExactSolid>> = leaves.par_iter().map(finite).collect::<Result<_, _>>()?;
         let vertices = finite.iter().flatten().flat_map(|solid| &solid.solid().mesh().vertices);
         let bounds = Bounds::of(vertices.copied());
@@ -230,7 +231,8 @@ mod tests {
     fn half_spaces_cut_and_do_not_make_endless_solids() {
         let half = || object(Shape::HalfSpace { normal: DVec3::Y, at: DVec3::Y * 0.25 }, DMat4::IDENTITY);
         let ball = || solid(Primitive::Sphere { radius: 1.0 });
-        let cap = |operation| Ok::<_, ShapeError>(composite(operation, vec![ball(), half()]).tessellate(within(1e-4))?.mesh);
+        let cap =
+            |operation| Ok::<_, ShapeError>(composite(operation, vec![ball(), half()]).tessellate(within(1e-4))?.mesh);
         let (below, above) = (cap(Operation::Intersection).unwrap(), cap(Operation::Difference).unwrap());
         assert!((above.signed_volume() - PI * 0.75_f64.powi(2) * 2.25 / 3.0).abs() < 1e-3);
         assert!((below.signed_volume() + above.signed_volume() - 4.0 / 3.0 * PI).abs() < 1e-3);

@@ -11,19 +11,19 @@ mod sculpture;
 mod solid;
 mod error;
 mod object;
-mod places;
+mod origins;
 mod stretch;
-mod made;
+mod shape_mesh;
 mod tolerance;
 mod composite;
-mod meeting;
+mod object_intersection;
 mod shape;
 mod parameters;
 mod exact;
 mod acceleration;
 mod shared;
 mod prepared;
-mod placing;
+mod texture_footprint;
 mod piercing;
 mod octrees;
 mod triangles;
@@ -34,27 +34,27 @@ mod studio;
 pub use acceleration::{Acceleration, AccelerationKey, SceneOctree};
 pub use cage::{Cage, Sharp, Sharpening};
 pub use error::{SceneError, ShapeError};
-pub use made::ShapeMesh;
-pub use meeting::{ObjectIntersection, object_intersections};
-pub use motion::{Motion, Displacement};
+pub use motion::{Displacement, Motion};
 pub use object::{Composite, MAX_NESTING, Object, Operation, RoundedSolid, Shape};
+pub use object_intersection::{ObjectIntersection, object_intersections};
+pub use origins::{ScriptPosition, ShapeOrigins};
 pub use piercing::SurfacePoint;
-pub use places::{ShapeOrigins, ScriptPosition};
-pub use placing::{Footprint, footprint};
 pub use prepared::{Contents, Prepared, PreparedObject};
 pub use sculpture::{Sculpture, SculptureError, SurfaceSheet};
 pub use settings::{
     Caustics, GeometrySettings, ImageSettings, LightSettings, MAX_PHOTONS, MAX_REFLECTION_DEPTH, MAX_SAMPLES,
     PhotonSettings, RadiositySettings, Settings,
 };
+pub use shape_mesh::ShapeMesh;
 pub use solid::PrimitiveSolid;
 pub use studio::Studio;
+pub use texture_footprint::{Footprint, footprint};
 pub use view::{Camera, Lens, Parallel, Projection, View};
 
 pub use crate::illumination::optics::Interreflection;
 
 use crate::illumination::light::LightShape;
-use crate::illumination::{RgbPower, Light};
+use crate::illumination::{Light, RgbPower};
 use crate::picture::display::DisplayTransform;
 use serde::{Deserialize, Serialize};
 

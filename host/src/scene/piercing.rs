@@ -43,7 +43,8 @@ impl Contents {
         let reach = [q - p, r - q, p - r].map(|side| own(side).length_squared()).into_iter().fold(0.0, f64::max).sqrt();
         let (from, direction) = (object.to_own.transform_point3(position), own(ray.direction));
         let outward = outside == is_turned;
-        let PiercingPoint { uv, normal, t } = pierced(surface, &PiercingLine { from, direction, outward }, guess, reach)?;
+        let PiercingPoint { uv, normal, t } =
+            pierced(surface, &PiercingLine { from, direction, outward }, guess, reach)?;
         let outwards = (object.normals_to_scene * normal).try_normalize()?;
         let normal = if outward { -outwards } else { outwards };
         Some(SurfacePoint { beyond: t, normal, uv: (uv - low) / (high - low), own: from + direction * t })

@@ -2,14 +2,14 @@
 
 use super::acceleration::AccelerationCache;
 use super::exact::{ExactSurfaces, FLAT_SINE};
-use super::made::ShapeMesh;
 use super::object::{GROUND, Object};
 use super::parameters::parameters;
+use super::shape_mesh::ShapeMesh;
 use super::shared::SharedMeshes;
 use super::stretch::{cofactors, largest_stretch};
 use super::{Camera, GeometrySettings, Motion, Scene, SceneError, Settings, View};
 use crate::illumination::light::LightShape;
-use crate::illumination::{RgbPower, Light, Material};
+use crate::illumination::{Light, Material, RgbPower};
 use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
 use crate::numeric::triangle::MAX_MAGNITUDE;

@@ -1,12 +1,12 @@
 //! Shapes in their own coordinates: whether their measures are sound, their sizes, and their triangles.
 
-use super::made::ShapeMesh;
-use super::meeting::intersect_shapes;
 use super::object::{MAX_NESTING, Object, RoundedSolid, Shape};
+use super::object_intersection::intersect_shapes;
 use super::settings::check_tolerance;
+use super::shape_mesh::ShapeMesh;
 use super::stretch::largest_stretch;
 use super::{SceneError, ShapeError};
-use crate::database::{RecordContent, RecordKind, Library};
+use crate::database::{Library, RecordContent, RecordKind};
 use crate::intersection::CurvePrecision;
 use crate::memory;
 use crate::mesh::{self, Mesh, NoBunny, edges::EdgeTable};
@@ -76,8 +76,18 @@ impl Shape {
             Shape::Composite(composite) => composite.extent(),
             Shape::Curve(objects) => objects.iter().filter_map(Object::extent).reduce(f64::max),
             Shape::Rounded(rounded) => {
-                let extent =
-                    || Some(rounded.object.shape.tessellate(Tolerance::new(f64::MAX, 180.0)).ok()?.mesh.bounds()?.diagonal());
+                let extent = || {
+                    Some(
+                        rounded
+                            .object
+                            .shape
+                            .tessellate(Tolerance::new(f64::MAX, 180.0))
+                            .ok()?
+                            .mesh
+                            .bounds()?
+                            .diagonal(),
+                    )
+                };
                 rounded.object.extent().or_else(|| Some(extent()? * largest_stretch(&rounded.object.transform)))
             }
             Shape::HalfSpace { .. } | Shape::Ground { .. } | Shape::Bunny => None,

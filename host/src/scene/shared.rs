@@ -1,6 +1,6 @@
 //! Shapes that several objects have: their triangles are made once.
 
-use super::made::ShapeMesh;
+use super::shape_mesh::ShapeMesh;
 use super::{Scene, SceneError};
 use crate::memory;
 use crate::numeric::debug_hash;
@@ -71,11 +71,10 @@ impl SharedMeshes {
                 let made = object.tessellate(scene.settings.geometry.tolerance, scene.settings.geometry.angle)?;
                 let (count, triangles) = (u64::from(*needed), made.mesh.triangles.len() as u64);
                 let objects = if count == 1 { String::new() } else { format!(" and {} more", count - 1) };
-                memory::reserve(count * triangles * BYTES, || format!("{}{objects} of {triangles} triangles", object.name))
-                    .map_err(|excess| SceneError::Object {
-                        object: object.name.clone(),
-                        problem: excess.to_string(),
-                    })?;
+                memory::reserve(count * triangles * BYTES, || {
+                    format!("{}{objects} of {triangles} triangles", object.name)
+                })
+                .map_err(|excess| SceneError::Object { object: object.name.clone(), problem: excess.to_string() })?;
                 Rc::new(made)
             }
         };

@@ -7,7 +7,7 @@ use crate::color::Color;
 use crate::curve::Basis;
 use crate::illumination::RgbPower;
 use crate::illumination::light::{Light, LightShape};
-use crate::illumination::material::{MaterialKind, Classic};
+use crate::illumination::material::{Classic, MaterialKind};
 use crate::surface::SplineSurface;
 use glam::{DMat4, DVec3};
 use serde::{Deserialize, Serialize};

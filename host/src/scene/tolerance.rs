@@ -1,7 +1,7 @@
 //! How closely the triangles of an object follow its surface: its own tolerance, that of the scene, or a part of its size.
 
-use super::made::ShapeMesh;
 use super::object::{Object, Shape};
+use super::shape_mesh::ShapeMesh;
 use super::stretch::largest_stretch;
 use super::{SceneError, ShapeError};
 use crate::surface::Tolerance;

@@ -1,9 +1,9 @@
 //! A scene as one mesh, of which every triangle knows its object and its surface.
 
-use super::{MAX_OBJECTS, ShapeMesh, Object, Scene, SceneError, Shape};
+use super::{MAX_OBJECTS, Object, Scene, SceneError, Shape, ShapeMesh};
 use crate::illumination::Material;
-use crate::illumination::material::{MaterialPreview, MaterialKind};
-use crate::mesh::{Grouped, MetallicRoughness, Mesh};
+use crate::illumination::material::{MaterialKind, MaterialPreview};
+use crate::mesh::{Grouped, Mesh, MetallicRoughness};
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
@@ -78,7 +78,11 @@ impl Scene {
 fn metallic_roughness(material: &Material) -> MetallicRoughness {
     if let MaterialKind::Principled(principled) = &material.body {
         let base = principled.base_color.mean_bands().clamp(DVec3::ZERO, DVec3::ONE);
-        return MetallicRoughness { base, metallic: principled.metallic.mean(), roughness: principled.roughness.mean() };
+        return MetallicRoughness {
+            base,
+            metallic: principled.metallic.mean(),
+            roughness: principled.roughness.mean(),
+        };
     }
     let sum = |bands: DVec3| bands.element_sum();
     let MaterialPreview { diffuse, specular, exponent, mirror } = material.preview();
@@ -118,7 +122,8 @@ mod tests {
         (can.material, drill.material) = (Some(Material::default()), Some(shine));
         let composite = Composite { operation: Operation::Difference, operands: vec![can.clone(), drill], nesting: 1 };
         let part = Object { shape: Shape::Composite(Box::new(composite)), material: None, ..can };
-        let Grouped { mesh, materials: looks, .. } = Scene { objects: vec![part], ..Scene::default() }.tessellated().unwrap();
+        let Grouped { mesh, materials: looks, .. } =
+            Scene { objects: vec![part], ..Scene::default() }.tessellated().unwrap();
         for (triangle, surface) in mesh.surfaces.iter().enumerate() {
             let is_hole = mesh.corners(triangle).iter().all(|p| p.x.hypot(p.z) < 0.6);
             let look = looks[*surface as usize].unwrap();

@@ -4,7 +4,7 @@ use super::definition::{ParameterAssignment, ScriptParameters};
 use super::folders::Folders;
 use super::handle::{CallResult, Handle};
 use crate::database::Library;
-use crate::scene::{Composite, MAX_NESTING, MAX_OBJECTS, Motion, Object, Operation, ScriptPosition, Scene, Shape};
+use crate::scene::{Composite, MAX_NESTING, MAX_OBJECTS, Motion, Object, Operation, Scene, ScriptPosition, Shape};
 use glam::{DMat4, DVec3};
 use rhai::Dynamic;
 use std::collections::HashMap;

@@ -6,7 +6,7 @@ use super::handle::CallResult;
 use super::kinds::{Flag, NumberKind, TextKind};
 use super::lighting::add;
 use super::parameter::{optional, with_default};
-use crate::color::{Extrapolation, Color, Spectrum};
+use crate::color::{Color, Extrapolation, Spectrum};
 use crate::illumination::Light;
 use crate::illumination::atmosphere::{
     Atmosphere, COLUMNS, ClearSky, Moment, NODES, ROWS, SUN_RADIUS, Spectral, node, solar_position,

@@ -8,7 +8,7 @@ use super::parameter::{Defaulted, Optional, Required, optional, required, with_d
 use crate::color::srgb::LUMINANCE;
 use crate::color::{Color, Spectrum, light_of_temperature};
 use crate::illumination::Light;
-use crate::illumination::light::{Goniometry, Panorama, LightShape, SkyDisc, SkyMap};
+use crate::illumination::light::{Goniometry, LightShape, Panorama, SkyDisc, SkyMap};
 use crate::memory;
 use crate::scene::{MAX_LIGHTS, MAX_PORTALS, Studio};
 use glam::DVec3;
@@ -241,7 +241,12 @@ impl Strength {
 }
 
 /// Adds a surface that shines.
-fn add_area(builder: &mut Builder, patch: LightShape, given: [Option<DVec3>; 2], spectrum: Option<String>) -> CallResult {
+fn add_area(
+    builder: &mut Builder,
+    patch: LightShape,
+    given: [Option<DVec3>; 2],
+    spectrum: Option<String>,
+) -> CallResult {
     let [strength, power] = given;
     // A surface of radiance 1 emits pi on each unit of area.
     let flux = PI * patch.area().max(f64::MIN_POSITIVE);

@@ -4,24 +4,28 @@ use super::builder::Builder;
 use super::function::{Function, function};
 use super::handle::{CallResult, Handle};
 use super::kinds::{
-    AmountKind, DistributionKind, DistributionValue, Flag, FunctionOfAngle, Integer, NumberKind, NumberOrText, NumberOrTextValue,
-    Powers, Reflectance, TextKind, Vector,
+    AmountKind, DistributionKind, DistributionValue, Flag, FunctionOfAngle, Integer, NumberKind, NumberOrText,
+    NumberOrTextValue, Powers, Reflectance, TextKind, Vector,
 };
 use super::lighting::{SPECTRUM, color_of_light};
 use super::parameter::{Defaulted, optional, required, with_default};
 use super::shared::OBJECT;
 use crate::color::{Color, shipped};
 use crate::illumination::material::{
-    MaterialKind, Classic, Coated, Finish, DistributionForm, RefractiveIndex, Material, Metal, Principled, Distributed, Transparent,
+    Classic, Coated, Distributed, DistributionForm, Finish, Material, MaterialKind, Metal, Principled, RefractiveIndex,
+    Transparent,
 };
 use crate::illumination::texture::NumberTexture as PaintedNumber;
 use glam::DVec3;
 use rhai::Dynamic;
 
 /// A roughness; 0 is polished.
-const ROUGHNESS: Defaulted<AmountKind, f64> =
-    with_default(AmountKind(0.0, 1000.0), 0.0, "roughness m: root mean square slope of its facets, times the root of 2")
-        .note("polished");
+const ROUGHNESS: Defaulted<AmountKind, f64> = with_default(
+    AmountKind(0.0, 1000.0),
+    0.0,
+    "roughness m: root mean square slope of its facets, times the root of 2",
+)
+.note("polished");
 
 /// A part of the whole.
 const PART: AmountKind = AmountKind(0.0, 1.0);

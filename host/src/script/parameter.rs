@@ -126,7 +126,11 @@ where
 /// A parameter that may be left out.
 ///
 /// - `otherwise`: what holds then, in words.
-pub(super) const fn optional<K: ParameterKind + Copy>(kind: K, otherwise: &'static str, help: &'static str) -> Optional<K> {
+pub(super) const fn optional<K: ParameterKind + Copy>(
+    kind: K,
+    otherwise: &'static str,
+    help: &'static str,
+) -> Optional<K> {
     Optional { kind, otherwise, help }
 }
 

@@ -103,7 +103,10 @@ impl Builder {
             return Err("a surface cannot be joined to itself".into());
         }
         for handle in handles {
-            if self.transformed_sheets(handle)?.iter().any(|s| matches!(s, SurfaceSheet::Spline { loops, .. } if !loops.is_empty()))
+            if self
+                .transformed_sheets(handle)?
+                .iter()
+                .any(|s| matches!(s, SurfaceSheet::Spline { loops, .. } if !loops.is_empty()))
             {
                 return Err(format!("{} is trimmed; join surfaces before", self.object(handle)?.name));
             }

@@ -3,7 +3,7 @@
 use super::builder::{Builder, check_bounding, check_nesting, nesting_of};
 use super::function::{Function, function};
 use super::handle::{CallResult, Handle};
-use super::kinds::{ObjectKind, Length, PointsKind};
+use super::kinds::{Length, ObjectKind, PointsKind};
 use super::parameter::{optional, required};
 use super::shared::{OBJECT, TOLERANCE};
 use crate::scene::{Object, RoundedSolid, Shape};

@@ -1,6 +1,6 @@
 //! Parameters that several functions share.
 
-use super::kinds::{ObjectKind, Length};
+use super::kinds::{Length, ObjectKind};
 use super::parameter::{Optional, Required, optional, required};
 
 /// The object before the dot.

@@ -4,11 +4,12 @@ use super::builder::Builder;
 use super::function::{Function, function};
 use super::handle::CallResult;
 use super::kinds::{
-    ANY_NUMBER, ObjectKind, AxisKind, Contours, CurveKind, Flag, Integer, Length, Lengths, NumberKind, PointsKind, Vector,
+    ANY_NUMBER, AxisKind, Contours, CurveKind, Flag, Integer, Length, Lengths, NumberKind, ObjectKind, PointsKind,
+    Vector,
 };
 use super::parameter::{Defaulted, Required, required, with_default};
 use super::shared::{OBJECT, TOLERANCE};
-use crate::scene::{Operation, Shape, PrimitiveSolid};
+use crate::scene::{Operation, PrimitiveSolid, Shape};
 use crate::solid::Primitive;
 use glam::{DVec2, DVec3};
 use rhai::Dynamic;

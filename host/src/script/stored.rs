@@ -6,7 +6,7 @@ use super::kinds::TextKind;
 use super::lighting::add;
 use super::parameter::{Required, required};
 use super::shared::OBJECT;
-use crate::database::{self, RecordContent, Record};
+use crate::database::{self, Record, RecordContent};
 use crate::scene::Shape;
 use rhai::Dynamic;
 use std::path::PathBuf;

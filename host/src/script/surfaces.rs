@@ -4,8 +4,8 @@ use super::builder::Builder;
 use super::function::{Function, function};
 use super::handle::CallResult;
 use super::kinds::{
-    ObjectKind, Contours, CurveKind, Flag, Integer, Loops, NumberKind, Numbers, Objects, PointsKind, RowsOfNumbers, SidesKind, Spline,
-    Word,
+    Contours, CurveKind, Flag, Integer, Loops, NumberKind, Numbers, ObjectKind, Objects, PointsKind, RowsOfNumbers,
+    SidesKind, Spline, Word,
 };
 use super::parameter::{Defaulted, Optional, optional, required, with_default};
 use super::sculpting::{array, on_curve};

@@ -2,9 +2,10 @@
 
 use super::function::{Function, function};
 use super::kinds::{
-    ANY_NUMBER, AxisKind, Factors, Flag, Integer, Length, NamedAxis, NumberKind, PointsKind, ScalarKind, TextKind, Vector, Word,
+    ANY_NUMBER, AxisKind, Factors, Flag, Integer, Length, NamedAxis, NumberKind, PointsKind, ScalarKind, TextKind,
+    Vector, Word,
 };
-use super::parameter::{Defaulted, with_fallback, optional, required, with_default};
+use super::parameter::{Defaulted, optional, required, with_default, with_fallback};
 use super::shared::{OBJECT, TOLERANCE};
 use crate::illumination::optics::Interreflection;
 use crate::octree::MAX_POINT_DEPTH;

@@ -3,7 +3,9 @@
 use super::*;
 use crate::color::Color;
 use crate::illumination::light::{LightShape, SkyDisc, SkyMap};
-use crate::illumination::material::{MaterialKind, Classic, DistributionForm, RefractiveIndex, Distributed, Transparent};
+use crate::illumination::material::{
+    Classic, Distributed, DistributionForm, MaterialKind, RefractiveIndex, Transparent,
+};
 use crate::illumination::{Light, Material};
 use crate::scene::Shape;
 use crate::solid::Primitive;
@@ -109,7 +111,10 @@ fn a_function_of_a_script_becomes_a_distribution_or_an_error_with_its_place() {
         sphere(1).shaped(0.5, user_distribution(#{ area: |angle| 1 }));
     ");
     for object in &made.scene.objects {
-        let Some(Material { body: MaterialKind::Shaped(Distributed { form: DistributionForm::Facets(table), .. }), .. }) = &object.material
+        let Some(Material {
+            body: MaterialKind::Shaped(Distributed { form: DistributionForm::Facets(table), .. }),
+            ..
+        }) = &object.material
         else {
             panic!("it is {:?}", object.material)
         };

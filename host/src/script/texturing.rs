@@ -9,7 +9,7 @@ use super::shared::OBJECT;
 use crate::database::{self, Record};
 use crate::illumination::Paint;
 use crate::illumination::texture::{
-    Band, ImageContent, Image, TextureMapping, Motif, NumberTexture as PaintedNumber, Pattern, Relief, Varying,
+    Band, Image, ImageContent, Motif, NumberTexture as PaintedNumber, Pattern, Relief, TextureMapping, Varying,
 };
 use rhai::Dynamic;
 

@@ -8,7 +8,7 @@ use super::mass::Moments;
 use super::{ExactSolid, Mass, PrimitiveError};
 use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
-use crate::surface::{Parallelogram, TransformedSurface, Surface, TessellationError, Tolerance, tessellate};
+use crate::surface::{Parallelogram, Surface, TessellationError, Tolerance, TransformedSurface, tessellate};
 
 /// Each direction of a surface is divided so often for the integrals over it, with a rule of [`NODES`] points in each part.
 const PARTS: usize = 6;

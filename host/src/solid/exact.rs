@@ -2,7 +2,7 @@
 
 use super::{Expression, Outcome, Solid, SolidError};
 use crate::mesh::Mesh;
-use crate::surface::{TransformedSurface, Surface};
+use crate::surface::{Surface, TransformedSurface};
 use glam::{DAffine3, DVec2, DVec3};
 use rayon::prelude::*;
 use std::sync::Arc;

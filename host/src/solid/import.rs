@@ -1,9 +1,9 @@
 //! From meshes to solids: what must hold is checked, what does no harm is put right.
 
-use super::bodies::{Shells, certain_volume};
 use super::boolean::{Lattice, Resolution, resolve};
 use super::cleaning::{check_edges, dissolve, without_collapsed};
-use super::tangle::overlaps;
+use super::self_intersection::overlaps;
+use super::shells::{Shells, certain_volume};
 use super::{Solid, SolidError};
 use crate::mesh::Mesh;
 

@@ -36,9 +36,15 @@ fn balanced(mesh: &Mesh) -> bool {
 }
 
 fn evaluate(meshes: Vec<&Mesh>, expression: &Expression) -> Outcome {
-    let sorted: Vec<TriangleBvh> = meshes.iter().map(|mesh| TriangleBvh::new(&mesh.vertices, &mesh.triangles)).collect();
+    let sorted: Vec<TriangleBvh> =
+        meshes.iter().map(|mesh| TriangleBvh::new(&mesh.vertices, &mesh.triangles)).collect();
     let quad_partners: Vec<Vec<u32>> = meshes.iter().map(|mesh| boolean::quad_partners(mesh)).collect();
-    let operand = |k: usize| boolean::Operand { mesh: meshes[k], sorted: &sorted[k], quad_partners: &quad_partners[k], overlaps: &[] };
+    let operand = |k: usize| boolean::Operand {
+        mesh: meshes[k],
+        sorted: &sorted[k],
+        quad_partners: &quad_partners[k],
+        overlaps: &[],
+    };
     boolean::evaluate((0..meshes.len()).map(operand).collect(), expression).unwrap()
 }
 

@@ -5,10 +5,10 @@
 use super::StudyError;
 use super::plot::{Axis, Plot, PlotPoint, Series};
 use super::sweep::short;
-use crate::illumination::distribution::measure::{emitted_share, light_at, reciprocity_residual, received_share};
+use crate::illumination::distribution::measure::{emitted_share, light_at, received_share, reciprocity_residual};
 use crate::illumination::distribution::{Distribution, FAMILY};
 use crate::numeric::sampling::{RandomStream, r2_point};
-use crate::render::{Progress, Memo, Watch};
+use crate::render::{Memo, Progress, Watch};
 use serde::{Deserialize, Serialize};
 use std::hint::black_box;
 use std::sync::atomic::Ordering;
@@ -89,10 +89,12 @@ fn row(name: &str, roughness: f64, distribution: &dyn Distribution) -> Illuminat
     let integrals =
         INCIDENCES.map(|d| emitted_share(distribution, light_at(d.to_radians()), TOLERANCE, MOST_EVALUATIONS));
     let reciprocity = reciprocity_residual(distribution, PAIRS, SEED);
-    let seen = (reciprocity > RECIPROCAL)
-        .then(|| INCIDENCES.map(|d| received_share(distribution, light_at(d.to_radians()), TOLERANCE, MOST_EVALUATIONS)));
+    let seen = (reciprocity > RECIPROCAL).then(|| {
+        INCIDENCES.map(|d| received_share(distribution, light_at(d.to_radians()), TOLERANCE, MOST_EVALUATIONS))
+    });
     let light = light_at(0.5);
-    let views: Vec<_> = (0..TIMED).filter_map(|index| distribution.sample(light, r2_point(index, [0.3, 0.7]))).collect();
+    let views: Vec<_> =
+        (0..TIMED).filter_map(|index| distribution.sample(light, r2_point(index, [0.3, 0.7]))).collect();
     let start = Instant::now();
     let sum: f64 = views.iter().map(|view| distribution.density(black_box(light), *view)).sum();
     black_box(sum);

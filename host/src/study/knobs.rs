@@ -3,7 +3,7 @@
 use super::error::StudyError;
 use super::options::Options;
 use super::sweep::Study;
-use super::{composite, division, meeting, octree, residual, tessellation};
+use super::{composite, division, intersection, octree, residual, tessellation};
 use crate::render::Watch;
 use crate::scene::Scene;
 
@@ -61,12 +61,12 @@ pub const KNOBS: &[KnobRow] = &[
         name: "intersect",
         summary: "tolerance of the triangles of objects that meet; their exact curves, and how near lines between the points are",
         options: Options { width: 160, samples: 1, settings: 6, threads: None },
-        run: meeting::triangles,
+        run: intersection::triangles,
     },
     KnobRow {
         name: "newton",
         summary: "tolerance of the iteration for exact curves in which objects meet",
         options: Options { width: 160, samples: 1, settings: 7, threads: None },
-        run: meeting::newton,
+        run: intersection::newton,
     },
 ];

@@ -13,7 +13,7 @@ mod octree;
 mod division;
 mod composite;
 mod residual;
-mod meeting;
+mod intersection;
 mod knobs;
 mod rendering;
 
@@ -26,7 +26,7 @@ pub use knobs::{KNOBS, KnobRow};
 pub use options::Options;
 pub use plot::{Axis, Plot, PlotError, PlotPoint, Series};
 pub use rendering::{
-    ErrorFloor, KnobStudy, ErrorMeasures, RENDER_KNOBS, RENDER_OPTIONS, RenderKnob, RenderRow, RenderStudy, renderers, studied,
-    usual,
+    ErrorFloor, ErrorMeasures, KnobStudy, RENDER_KNOBS, RENDER_OPTIONS, RenderKnob, RenderRow, RenderStudy, renderers,
+    studied, usual,
 };
-pub use sweep::{Knob, StudyRow, Study, Trial, sweep};
+pub use sweep::{Knob, Study, StudyRow, Trial, sweep};

@@ -91,7 +91,9 @@ impl Knob for OctreeStudy {
             return Ok(Trial { answer: Hits { hits: [hits.clone(), hits] }, seconds: 0.0, counts: Vec::new() });
         }
         let settings = match self.parameter {
-            OctreeParameter::LeafTriangles => OctreeSettings { leaf_triangles: setting as usize, ..OctreeSettings::default() },
+            OctreeParameter::LeafTriangles => {
+                OctreeSettings { leaf_triangles: setting as usize, ..OctreeSettings::default() }
+            }
             OctreeParameter::Depth => OctreeSettings { depth: setting as u32, ..OctreeSettings::default() },
         };
         let walk = |octree: &Octree| {

@@ -256,7 +256,10 @@ impl Plot {
             .margin_right(12 * scale)
             .x_label_area_size(46 * scale)
             .y_label_area_size(74 * scale)
-            .build_cartesian_2d(AxisTicks { range: x0..x1, ticks: x_ticks }, AxisTicks { range: y0..y1, ticks: y_ticks })
+            .build_cartesian_2d(
+                AxisTicks { range: x0..x1, ticks: x_ticks },
+                AxisTicks { range: y0..y1, ticks: y_ticks },
+            )
             .map_err(|e| failed(&e))?;
         chart
             .configure_mesh()

@@ -2,7 +2,7 @@
 
 use super::StudyError;
 use super::plot::{Axis, Plot, PlotPoint, Series};
-use crate::render::{Progress, Memo, Watch};
+use crate::render::{Memo, Progress, Watch};
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::Ordering;
 

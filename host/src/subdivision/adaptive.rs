@@ -471,7 +471,10 @@ fn edge_face(first: &FanCorner, second: &FanCorner) -> Rc<Face> {
     let before_end = first.at(first.face.corners.len() - 2);
     let is_crease = |rim: &SharpRim, side: usize| rim.creases.get(side).copied().unwrap_or(false);
     if is_crease(rims[0], before_end) && is_crease(rims[1], end_beyond) {
-        return Face::new(vec![a, b, c, d], SharpRim { creases: vec![false, true, false, false], pinned: vec![false; 4] });
+        return Face::new(
+            vec![a, b, c, d],
+            SharpRim { creases: vec![false, true, false, false], pinned: vec![false; 4] },
+        );
     }
     Face::new(vec![a, b, c, d], SharpRim::default())
 }

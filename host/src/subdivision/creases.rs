@@ -33,8 +33,14 @@ impl<'a> Creases<'a> {
         let vertex_hold = (0..mesh.points.len())
             .map(|vertex| mesh.vertex_sharpness.get(vertex).map_or(0.0, |sharpness| pinning(*sharpness)))
             .collect();
-        let mut creases =
-            Creases { mesh, last: mesh.last(), sectors: Vec::new(), ring: Vec::new(), vertex_pinning: vertex_hold, cut: Vec::new() };
+        let mut creases = Creases {
+            mesh,
+            last: mesh.last(),
+            sectors: Vec::new(),
+            ring: Vec::new(),
+            vertex_pinning: vertex_hold,
+            cut: Vec::new(),
+        };
         creases.find_sectors();
         creases.pin_corners();
         creases

@@ -7,7 +7,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::creases::{Creases, CornerSets};
+use super::creases::{CornerSets, Creases};
 use super::polyhedron::{NONE, Polyhedron};
 use super::rings::{Rings, by_face};
 use super::weights::{Pinning, held, step, waves};

@@ -24,7 +24,7 @@ mod weights;
 mod smooth;
 mod creases;
 mod limit;
-mod strips;
+mod face_cuts;
 mod sharp;
 mod adaptive;
 

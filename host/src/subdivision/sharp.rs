@@ -4,10 +4,10 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use super::creases::{Creases, CornerSets};
+use super::creases::{CornerSets, Creases};
 use super::error::SubdivisionError;
+use super::face_cuts;
 use super::polyhedron::Polyhedron;
-use super::strips;
 
 /// A step of sharp rules: cuts corners and grinds edges except where they are sharp, and leaves strips at both sides of
 /// creases, which it uses up by one.
@@ -15,7 +15,7 @@ use super::strips;
 /// # Errors
 /// Corners meet that should not: only where faces of the polyhedron touch each other twice.
 pub(super) fn refined(mesh: &Polyhedron) -> Result<Polyhedron, SubdivisionError> {
-    let mut refined = strips::divided(ground(mesh)?)?;
+    let mut refined = face_cuts::divided(ground(mesh)?)?;
     let sharpness = refined.edge_sharpness.iter_mut().chain(&mut refined.vertex_sharpness);
     sharpness.for_each(|sharpness| *sharpness -= sharpness.min(1.0));
     Ok(refined)

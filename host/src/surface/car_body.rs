@@ -126,7 +126,10 @@ mod tests {
             car_body().expect("the data fit").iter().flat_map(|part| part.patches().to_vec()).collect();
         let mesh = tessellate_adaptively(&patches, Tolerance::new(0.002, 20.0)).expect("tessellated");
         let report = mesh.edge_report();
-        assert!(report.non_manifold == 0 && report.misoriented == 0 && report.euler_characteristic() == 1, "{report:?}");
+        assert!(
+            report.non_manifold == 0 && report.misoriented == 0 && report.euler_characteristic() == 1,
+            "{report:?}"
+        );
         let size = mesh.bounds().expect("vertices").size();
         assert!((4.3..4.6).contains(&size.x) && (1.1..1.3).contains(&size.y) && (1.7..1.9).contains(&size.z), "{size}");
         // Outside out: up at the top of the roof, to the side at the doors.

@@ -3,8 +3,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::border::{SharedCurves, along_side};
 use super::curvature::{Curved, normal_curvature};
+use super::shared_curves::{SharedCurves, along_side};
 
 /// A side of the rectangle of parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -49,7 +49,8 @@ fn turned() -> Vec<(&'static str, Box<dyn Surface>)> {
         members.push((name, Box::new(SurfaceOfRevolution::whole(profile.clone()))));
         members.push((name, Box::new(SurfaceOfRevolution::part(profile.reversed(), [-0.3, 0.35]))));
     }
-    members.push(("mirrored torus", Box::new(TransformedSurface::new(SurfaceOfRevolution::whole(torus.clone()), turn))));
+    members
+        .push(("mirrored torus", Box::new(TransformedSurface::new(SurfaceOfRevolution::whole(torus.clone()), turn))));
     let flat = DAffine3::from_scale(DVec3::new(1.0, 0.5, 2.0));
     members.push(("stretched torus", Box::new(TransformedSurface::new(SurfaceOfRevolution::whole(torus), flat))));
     members
@@ -183,8 +184,16 @@ fn second_derivatives_agree_with_differences_of_first_ones() {
         Box::new(Sphere::new(DVec3::ONE, 2.0)),
         Box::new(TransformedSurface::new(Sphere::new(DVec3::ONE, 2.0), mirror)),
         Box::new(SurfaceOfRevolution::whole(arc)),
-        Box::new(SurfaceOfRevolution::whole(Profile::HyperbolaOneSheet { across: 0.8, along: 1.2, reach: [-1.0, 1.0] })),
-        Box::new(SurfaceOfRevolution::whole(Profile::HyperbolaTwoSheets { across: 0.8, along: 1.2, reach: [-1.0, 1.0] })),
+        Box::new(SurfaceOfRevolution::whole(Profile::HyperbolaOneSheet {
+            across: 0.8,
+            along: 1.2,
+            reach: [-1.0, 1.0],
+        })),
+        Box::new(SurfaceOfRevolution::whole(Profile::HyperbolaTwoSheets {
+            across: 0.8,
+            along: 1.2,
+            reach: [-1.0, 1.0],
+        })),
         Box::new(SurfaceOfRevolution::whole(Profile::Parabola { apex: 1.0, rise: 0.4, reach: [0.0, 1.5] })),
         Box::new(Parallelogram::new(DVec3::ONE, DVec3::X, DVec3::Y)),
         Box::new(teapot()[7].clone()),

@@ -10,7 +10,7 @@
 
 mod accuracy;
 mod bezier;
-mod border;
+mod shared_curves;
 mod car_body;
 mod continuity;
 mod curvature;
@@ -20,9 +20,9 @@ mod nearest;
 mod parallelogram;
 mod patches;
 mod pierced;
-mod placed;
+mod transformed;
 mod profile;
-mod revolution;
+mod rational_revolution;
 mod sphere;
 mod spline;
 mod swept;
@@ -30,7 +30,7 @@ mod teapot;
 mod tensor;
 mod tessellation;
 mod trim;
-mod turned;
+mod surface_of_revolution;
 
 pub use accuracy::{ChordError, chord_error};
 pub use bezier::BezierPatch;
@@ -43,17 +43,17 @@ pub use nearest::nearest_from;
 pub use parallelogram::{Parallelogram, box_faces, ground};
 pub use patches::{PatchError, PatchProblem, PatchSet};
 pub use pierced::{PiercingLine, PiercingPoint, pierced};
-pub use placed::TransformedSurface;
 pub use profile::Profile;
-pub use revolution::{rational_sphere, rational_torus, revolved};
+pub use rational_revolution::{rational_sphere, rational_torus, revolved};
 pub use sphere::Sphere;
 pub use spline::{Direction, SplineSurface};
+pub use surface_of_revolution::SurfaceOfRevolution;
 pub use swept::{Spine, Swept, TwistAndTaper};
 pub use teapot::{teapot, teapot_parts};
 pub use tensor::TensorPatch;
 pub use tessellation::{TessellationError, Tolerance, tessellate};
+pub use transformed::TransformedSurface;
 pub use trim::{TrimEdge, TrimError, TrimmedSurface, tessellate_adaptively, tessellate_trimmed};
-pub use turned::SurfaceOfRevolution;
 
 use std::sync::Arc;
 

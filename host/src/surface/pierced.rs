@@ -44,7 +44,12 @@ pub struct PiercingLine {
 /// # Source
 /// Newton's method, as for patches in Toth 1985, "On ray tracing parametric surfaces": each step meets the tangent plane.
 /// Ours: that borders hold, and that poles and seams are left by way of the nearest point.
-pub fn pierced<S: Surface + ?Sized>(surface: &S, line: &PiercingLine, guess: DVec2, reach: f64) -> Option<PiercingPoint> {
+pub fn pierced<S: Surface + ?Sized>(
+    surface: &S,
+    line: &PiercingLine,
+    guess: DVec2,
+    reach: f64,
+) -> Option<PiercingPoint> {
     let [low, high] = surface.domain();
     let guess = guess.clamp(low, high);
     newton(surface, line, guess, reach).or_else(|| {
@@ -122,7 +127,7 @@ fn clamped_step([du, dv]: [DVec3; 2], across: DVec3, offset: DVec3, uv: DVec2, [
 
 #[cfg(test)]
 mod tests {
-    use super::super::{BezierPatch, TransformedSurface, Profile, Sphere, SurfaceOfRevolution, teapot};
+    use super::super::{BezierPatch, Profile, Sphere, SurfaceOfRevolution, TransformedSurface, teapot};
     use super::*;
     use glam::DAffine3;
 

@@ -78,8 +78,12 @@ impl Profile {
             Profile::Line { from, to } => Profile::Line { from: to, to: from },
             Profile::Arc { center, radius, turns } => Profile::Arc { center, radius, turns: turned(turns) },
             Profile::Parabola { apex, rise, reach } => Profile::Parabola { apex, rise, reach: turned(reach) },
-            Profile::HyperbolaOneSheet { across, along, reach } => Profile::HyperbolaOneSheet { across, along, reach: turned(reach) },
-            Profile::HyperbolaTwoSheets { across, along, reach } => Profile::HyperbolaTwoSheets { across, along, reach: turned(reach) },
+            Profile::HyperbolaOneSheet { across, along, reach } => {
+                Profile::HyperbolaOneSheet { across, along, reach: turned(reach) }
+            }
+            Profile::HyperbolaTwoSheets { across, along, reach } => {
+                Profile::HyperbolaTwoSheets { across, along, reach: turned(reach) }
+            }
             Profile::Spline(curve) => Profile::Spline(curve.reversed()),
         }
     }
@@ -125,9 +129,9 @@ impl Profile {
                 return [DVec2::new(at(0), at(1)), *to - *from, DVec2::ZERO];
             }
             Profile::Arc { turns, .. } => (*turns, Profile::arc),
-            Profile::Parabola { reach, .. } | Profile::HyperbolaOneSheet { reach, .. } | Profile::HyperbolaTwoSheets { reach, .. } => {
-                (*reach, Profile::conic)
-            }
+            Profile::Parabola { reach, .. }
+            | Profile::HyperbolaOneSheet { reach, .. }
+            | Profile::HyperbolaTwoSheets { reach, .. } => (*reach, Profile::conic),
             Profile::Spline(curve) => (curve.domain(), Profile::spline),
         };
         let [point, first, second] = jet(self, between(low, high, v));

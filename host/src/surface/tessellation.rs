@@ -10,7 +10,7 @@ use std::collections::HashMap;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-use super::border::{SharedCurves, along_side};
+use super::shared_curves::{SharedCurves, along_side};
 use super::{Surface, between};
 use crate::mesh::{Mesh, bits};
 
@@ -144,7 +144,11 @@ pub(super) fn estimated_segments<S: Surface>(surface: &S, tolerance: Tolerance) 
 }
 
 impl Grids {
-    fn fitted<S: Surface>(surfaces: &[S], borders: &SharedCurves, tolerance: Tolerance) -> Result<Grids, TessellationError> {
+    fn fitted<S: Surface>(
+        surfaces: &[S],
+        borders: &SharedCurves,
+        tolerance: Tolerance,
+    ) -> Result<Grids, TessellationError> {
         let estimates: Vec<Option<[SegmentEstimate; 2]>> = surfaces.par_iter().map(estimate).collect();
         if let Some(surface) = estimates.iter().position(Option::is_none) {
             return Err(TessellationError::NotFinite { surface });
@@ -205,7 +209,13 @@ impl Grids {
         [0, 2].map(|side| self.segments[self.strips[borders.sides[surface][side].curve]])
     }
 
-    fn raise(&mut self, borders: &SharedCurves, surface: usize, axis: usize, wanted: f64) -> Result<(), TessellationError> {
+    fn raise(
+        &mut self,
+        borders: &SharedCurves,
+        surface: usize,
+        axis: usize,
+        wanted: f64,
+    ) -> Result<(), TessellationError> {
         let segments = wanted.min(usize::MAX as f64) as usize;
         let strip = self.strips[borders.sides[surface][2 * axis].curve];
         self.segments[strip] = self.segments[strip].max(segments.min(MAX_SEGMENTS + 1));
@@ -434,7 +444,9 @@ mod tests {
         for chord in [0.1, 0.01, 0.001, 0.0001] {
             let mesh = ball(chord);
             let report = mesh.edge_report();
-            assert!(report.is_closed() && report.collapsed + report.degenerate == 0 && report.euler_characteristic() == 2);
+            assert!(
+                report.is_closed() && report.collapsed + report.degenerate == 0 && report.euler_characteristic() == 2
+            );
             let (lost_area, lost_volume) = (1.0 - mesh.area() / area, 1.0 - mesh.signed_volume() / volume);
             // A shell as thick as the chord around the inscribed ball bounds the lost volume.
             assert!(lost_volume > 0.0 && lost_volume < 3.0 * chord / 2.0, "{lost_volume} for {chord}");

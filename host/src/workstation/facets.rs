@@ -8,8 +8,8 @@
 use super::names::name;
 use crate::{
     color::WavelengthSets,
-    illumination::{RgbPower, Light, Material, light::LightSource, material::MaterialPreview},
-    mesh::{Mesh, EdgeSelection, edges::EdgeTable},
+    illumination::{Light, Material, RgbPower, light::LightSource, material::MaterialPreview},
+    mesh::{EdgeSelection, Mesh, edges::EdgeTable},
 };
 use glam::DVec3;
 use protocol::command::{Attributes, Illumination, Polygon, PolygonVertex, SurfaceColor};

@@ -2,7 +2,7 @@
 
 mod error;
 mod initial_view;
-mod patience;
+mod timeouts;
 mod names;
 pub mod facets;
 pub mod network;
@@ -16,6 +16,6 @@ pub use emulator::Emulator;
 pub use error::WorkstationError;
 pub use initial_view::InitialView;
 pub use names::ROOT;
-pub use patience::Timeouts;
 pub use session::Session;
 pub use structure::{Drawing, DrawnEdges, StructureCommands};
+pub use timeouts::Timeouts;

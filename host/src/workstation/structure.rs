@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     illumination::Material,
-    mesh::{Viewer, Polylines, EdgeSelection, polylines_of_groups},
+    mesh::{EdgeSelection, Polylines, Viewer, polylines_of_groups},
     numeric::bounds::Bounds,
     render::tiles::Tiling,
     scene::{Camera, Object, Scene},
@@ -117,7 +117,8 @@ pub fn with_light(
     light: Option<&Tiling>,
 ) -> Result<StructureCommands, WorkstationError> {
     let camera = &initial.camera;
-    let mut out = StructureCommands { depth_clipping: camera.far.is_some() || camera.near > 0.0, ..StructureCommands::default() };
+    let mut out =
+        StructureCommands { depth_clipping: camera.far.is_some() || camera.near > 0.0, ..StructureCommands::default() };
     let angle = scene.settings.geometry.angle;
     let objects: Result<Vec<Vec<MaterialPart>>, WorkstationError> = (1..)
         .zip(&scene.objects)

@@ -1,17 +1,18 @@
 //! `peris db`: databases of geometry, textures, materials, lights and spectra.
 
-mod place;
+mod record_address;
 mod plot;
 mod show;
 
-use super::{ScriptArguments, Exit, CommandFailure, SubcommandRow};
+use super::{CommandFailure, Exit, ScriptArguments, SubcommandRow};
 use crate::database::{
-    self, RecordContent, DatabaseError, RecordEntry, RecordKind, ColumnQuantity, Record, DatabaseReport, Store, check_name, shipped,
+    self, ColumnQuantity, DatabaseError, DatabaseReport, Record, RecordContent, RecordEntry, RecordKind, Store,
+    check_name, shipped,
 };
 use crate::scene::{Object, Scene, Shape};
 use clap::{ArgMatches, Args, Command, FromArgMatches, Subcommand};
 use files::{Destination, Folder};
-use place::{RecordAddress, SHIPPED, kind_of};
+use record_address::{RecordAddress, SHIPPED, kind_of};
 use std::path::{Path, PathBuf};
 
 pub(super) const ROW: SubcommandRow = SubcommandRow {

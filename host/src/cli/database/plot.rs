@@ -1,9 +1,9 @@
 //! Records drawn: spectra as curves, materials and geometry as pictures.
 
-use super::place::RecordAddress;
+use super::record_address::RecordAddress;
 use crate::cli::{CommandFailure, progress};
 use crate::color::Color;
-use crate::database::{RecordContent, Curves, Record};
+use crate::database::{Curves, Record, RecordContent};
 use crate::illumination::material::Material;
 use crate::picture::Picture;
 use crate::plan::Plan;
@@ -77,7 +77,8 @@ fn picture_file(folder: &Folder, name: &str) -> Result<Destination, CommandFailu
 /// Curves over the wavelengths that are seen.
 fn curve(record: &Record, curves: &Curves) -> Plot {
     let of = |(name, spectrum): (&str, &crate::color::Spectrum)| {
-        let within = spectrum.samples().filter(|(wavelength, _)| (VISIBLE_RANGE.0..=VISIBLE_RANGE.1).contains(wavelength));
+        let within =
+            spectrum.samples().filter(|(wavelength, _)| (VISIBLE_RANGE.0..=VISIBLE_RANGE.1).contains(wavelength));
         let points = within.map(|(x, y)| PlotPoint { x, y, label: String::new() }).collect();
         Series { name: name.to_owned(), points }
     };

@@ -2,7 +2,7 @@
 
 use crate::cli::CommandFailure;
 use crate::color::columns;
-use crate::database::{RecordContent, Record};
+use crate::database::{Record, RecordContent};
 use crate::mesh::Grouped;
 use crate::picture::Picture;
 

@@ -2,9 +2,9 @@
 
 use crate::cli::display::DisplayArguments;
 use crate::cli::source::stem;
-use crate::cli::{ScriptArguments, Exit, CommandFailure, SCRIPT_HELP};
+use crate::cli::{CommandFailure, Exit, SCRIPT_HELP, ScriptArguments};
 use crate::picture::{Filter, Picture};
-use crate::render::{RenderOrder, RENDERERS, Technique};
+use crate::render::{RENDERERS, RenderOrder, Technique};
 use crate::scene::{Camera, MAX_SAMPLES, Prepared, Settings, View};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};

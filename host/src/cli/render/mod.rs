@@ -5,14 +5,14 @@ mod pixel;
 mod saved;
 mod views;
 
-use super::say::warn;
+use super::output::warn;
 use super::source::{load_lit, warn_of_emptiness};
-use super::{Exit, CommandFailure, SubcommandRow, progress};
+use super::{CommandFailure, Exit, SubcommandRow, progress};
 use crate::picture::display::DisplayTransform;
 use crate::plan::Plan;
 use crate::render::metering::Meter;
 use crate::render::two_way::PhotonStore;
-use crate::render::{Film, Fingerprint, AnyRenderer, PreparedRenderer, RenderError, Task, Watch};
+use crate::render::{AnyRenderer, Film, Fingerprint, PreparedRenderer, RenderError, Task, Watch};
 use crate::scene::Prepared;
 use arguments::RenderArguments;
 use clap::{Args, FromArgMatches};
@@ -105,7 +105,10 @@ fn run(arguments: &RenderArguments) -> Result<(), CommandFailure> {
 }
 
 /// Makes something on as many threads as are asked for.
-fn in_pool<T: Send>(arguments: &RenderArguments, make: impl FnOnce() -> Result<T, RenderError> + Send) -> Result<T, CommandFailure> {
+fn in_pool<T: Send>(
+    arguments: &RenderArguments,
+    make: impl FnOnce() -> Result<T, RenderError> + Send,
+) -> Result<T, CommandFailure> {
     let threads = arguments.threads.map_or(0, |n| n.get());
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(anyhow::Error::from)?;
     Ok(pool.install(make)?)

@@ -1,7 +1,7 @@
 //! One pixel, explained.
 
 use super::arguments::RenderArguments;
-use crate::cli::{Exit, CommandFailure};
+use crate::cli::{CommandFailure, Exit};
 use crate::render::RenderOrder;
 use crate::render::ray_tracing::{Explanation, RayTracer};
 use crate::scene::View;

@@ -3,9 +3,9 @@
 use super::arguments::RenderArguments;
 use super::saved::Saved;
 use crate::cli::interrupts::{self, InterruptGuard};
-use crate::cli::say::{self, warn};
+use crate::cli::output::{self, warn};
 use crate::cli::source::stem;
-use crate::cli::{Exit, CommandFailure, progress};
+use crate::cli::{CommandFailure, Exit, progress};
 use crate::memory;
 use crate::picture::display::{DisplayTransform, Tone, clipped};
 use crate::picture::{Picture, Provenance};
@@ -22,7 +22,8 @@ use std::time::Instant;
 const REPORTED_CLIPPING: f64 = 1e-3;
 
 /// Renders a view: on a film that was begun before, if there is one, and keeping it from time to time.
-pub(super) type Render<'a> = dyn FnMut(&View, Option<Film>, Option<Checkpoints<'_>>) -> Result<Rendering, CommandFailure> + 'a;
+pub(super) type Render<'a> =
+    dyn FnMut(&View, Option<Film>, Option<Checkpoints<'_>>) -> Result<Rendering, CommandFailure> + 'a;
 
 /// Views of a scene, and their files.
 pub(super) struct ViewBatch<'a> {
@@ -55,8 +56,8 @@ impl ViewBatch<'_> {
         let ended = self.render_all(render, &mut reports);
         match self.arguments.views {
             _ if !self.arguments.json || reports.is_empty() => {}
-            Some(_) => say::report(Value::Array(reports)),
-            None => say::report(reports.pop().unwrap_or_default()),
+            Some(_) => output::report(Value::Array(reports)),
+            None => output::report(reports.pop().unwrap_or_default()),
         }
         ended
     }

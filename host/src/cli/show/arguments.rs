@@ -1,7 +1,7 @@
 //! The arguments of `peris show`.
 
-use crate::cli::waits::TimeoutArguments;
-use crate::cli::{ScriptArguments, SCRIPT_HELP};
+use crate::cli::timeouts::TimeoutArguments;
+use crate::cli::{SCRIPT_HELP, ScriptArguments};
 use crate::workstation::{Drawing, DrawnEdges};
 use clap::Args;
 use protocol::address::Address;

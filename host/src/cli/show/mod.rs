@@ -3,16 +3,16 @@
 mod arguments;
 mod ready;
 mod edits;
-mod told;
+mod view_reporter;
 mod serving;
 
-use super::say::warn;
-use super::{Exit, CommandFailure, SubcommandRow, load, source};
+use super::output::warn;
+use super::{CommandFailure, Exit, SubcommandRow, load, source};
 use crate::{
     production::{Production, Sent},
     render::tiles::Tiling,
     script::Evaluated,
-    workstation::{Emulator, Timeouts, Session, network::KEYS},
+    workstation::{Emulator, Session, Timeouts, network::KEYS},
 };
 use arguments::ShowArguments;
 use clap::{Args, FromArgMatches};
@@ -21,7 +21,7 @@ use files::Destination;
 use protocol::address::Address;
 use ready::modelled;
 use serving::Server;
-use told::ViewReporter;
+use view_reporter::ViewReporter;
 
 pub(super) const ROW: SubcommandRow = SubcommandRow {
     name: "show",

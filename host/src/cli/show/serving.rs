@@ -1,15 +1,15 @@
 //! Keys of the workstation, orders from standard input, edits of the script and the rendering that goes on meanwhile.
 
-use super::{arguments::ShowArguments, edits::Edit, told::ViewReporter};
+use super::{arguments::ShowArguments, edits::Edit, view_reporter::ViewReporter};
 use crate::{
-    cli::{CommandFailure, exit::story, progress, say},
+    cli::{CommandFailure, exit::story, output, progress},
     picture::display::DisplayTransform,
-    production::{RenderingEvent, Production, ProductionError, Progressive, RenderedView},
+    production::{Production, ProductionError, Progressive, RenderedView, RenderingEvent},
     render::{Progress, RenderOrder},
     scene::Scene,
     workstation::{
         Emulator, WorkstationError,
-        network::{KEY_PREFIX, KEYS, FunctionKey},
+        network::{FunctionKey, KEY_PREFIX, KEYS},
     },
 };
 use std::{
@@ -80,7 +80,10 @@ impl<'a> Server<'a> {
     /// Serves until the end.
     ///
     /// - `edits`: scenes that take the place of this one.
-    pub(super) fn serve(&mut self, edits: Option<&mpsc::Receiver<Result<Edit, CommandFailure>>>) -> Result<(), CommandFailure> {
+    pub(super) fn serve(
+        &mut self,
+        edits: Option<&mpsc::Receiver<Result<Edit, CommandFailure>>>,
+    ) -> Result<(), CommandFailure> {
         loop {
             if self.perform_commands()? {
                 return Ok(());
@@ -147,7 +150,7 @@ impl<'a> Server<'a> {
             Ok(edit) => edit,
             Err(failure) => {
                 let text = story(&failure.error);
-                say::write_error(&text);
+                output::write_error(&text);
                 return Ok(self.production.show_message(&brief(&text))?);
             }
         };

@@ -1,6 +1,6 @@
 //! Facets with all reflections between them: what the first reflection loses is emitted after further ones.
 
-use super::{Distribution, DistributionError, SlopeDistribution, Microfacet};
+use super::{Distribution, DistributionError, Microfacet, SlopeDistribution};
 use crate::numeric::cubature::{GAUSS, unit_square};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;

@@ -324,7 +324,7 @@ impl TryFrom<Plain> for FacetTable {
 #[cfg(test)]
 mod tests {
     use super::super::measure::{check, emitted_share, light_at, reciprocity_residual};
-    use super::super::{SlopeDistribution, Microfacet};
+    use super::super::{Microfacet, SlopeDistribution};
     use super::*;
     use crate::numeric::sampling::{RandomStream, cosine_hemisphere};
     use glam::DVec2;

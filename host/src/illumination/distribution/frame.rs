@@ -21,7 +21,9 @@ impl ShadingFrame {
     /// - `along`: any length; parallel to the normal or 0, it is not heeded.
     pub fn brushed(normal: DVec3, along: DVec3) -> ShadingFrame {
         match (along - normal * along.dot(normal)).try_normalize() {
-            Some(x) if x.dot(normal).abs() < 1e-6 => ShadingFrame { axes: DMat3::from_cols(x, normal.cross(x), normal) },
+            Some(x) if x.dot(normal).abs() < 1e-6 => {
+                ShadingFrame { axes: DMat3::from_cols(x, normal.cross(x), normal) }
+            }
             _ => ShadingFrame::from_normal(normal),
         }
     }
@@ -46,7 +48,11 @@ mod tests {
     #[test]
     fn a_frame_turns_there_and_back() {
         let normal = DVec3::new(1.0, -2.0, 0.5).normalize();
-        for frame in [ShadingFrame::from_normal(normal), ShadingFrame::brushed(normal, DVec3::Y), ShadingFrame::brushed(normal, normal * 3.0)] {
+        for frame in [
+            ShadingFrame::from_normal(normal),
+            ShadingFrame::brushed(normal, DVec3::Y),
+            ShadingFrame::brushed(normal, normal * 3.0),
+        ] {
             assert!((frame.local(normal) - DVec3::Z).length() < 1e-15);
             let direction = DVec3::new(0.3, 0.4, -0.2);
             assert!((frame.world(frame.local(direction)) - direction).length() < 1e-15);

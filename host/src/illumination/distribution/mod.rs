@@ -159,7 +159,10 @@ pub const FAMILY: &[DistributionRow] = &[
         name: "anisotropic",
         summary: "Beckmann, four times smoother along y",
         make: |m| {
-            Ok(Box::new(Microfacet::new(SlopeDistribution::Beckmann, DVec2::new(m, (m / ANISOTROPY).max(LEAST_ROUGHNESS)))?))
+            Ok(Box::new(Microfacet::new(
+                SlopeDistribution::Beckmann,
+                DVec2::new(m, (m / ANISOTROPY).max(LEAST_ROUGHNESS)),
+            )?))
         },
     },
     DistributionRow {

@@ -1,6 +1,6 @@
 //! Facts about the whole family of distributions, and what each member must have to itself.
 
-use super::measure::{check, emitted_share, light_at, reciprocity_residual, received_share};
+use super::measure::{check, emitted_share, light_at, received_share, reciprocity_residual};
 use super::*;
 use crate::numeric::sampling::{RandomStream, r2_point};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -177,8 +177,9 @@ fn ggx_at_normal_incidence_has_its_closed_form() {
 
 #[test]
 fn compensated_forms_conserve_energy_to_a_ten_thousandth_and_never_create_it() {
-    for (facets, roughness) in
-        [SlopeDistribution::Beckmann, SlopeDistribution::Ggx].into_iter().flat_map(|f| [1e-6, 1e-2, 0.2, 1.0].map(|m| (f, m)))
+    for (facets, roughness) in [SlopeDistribution::Beckmann, SlopeDistribution::Ggx]
+        .into_iter()
+        .flat_map(|f| [1e-6, 1e-2, 0.2, 1.0].map(|m| (f, m)))
     {
         let made = Compensated::new(facets, roughness).expect("a roughness");
         let first = Microfacet::new(facets, DVec2::splat(roughness)).expect("a roughness");

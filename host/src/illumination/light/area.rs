@@ -1,8 +1,8 @@
 //! A surface that emits the same radiance in all directions of its front, and is seen.
 
 use super::LightShape;
-use super::beam::{LightSample, LightHit, LightPoint, LightOrigin, EmittingSides, EmissionSample};
 use super::emitter::Emitter;
+use super::light_sample::{EmissionSample, EmittingSides, LightHit, LightOrigin, LightPoint, LightSample};
 use crate::color::{Channels, SpectralTable};
 use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::Ray;
@@ -19,7 +19,13 @@ pub(super) struct AreaLight {
 }
 
 impl Emitter for AreaLight {
-    fn sample_incident(&self, point: DVec3, _: Option<DVec3>, uniform: [f64; 2], wavelength_set: usize) -> Option<LightSample> {
+    fn sample_incident(
+        &self,
+        point: DVec3,
+        _: Option<DVec3>,
+        uniform: [f64; 2],
+        wavelength_set: usize,
+    ) -> Option<LightSample> {
         let drawn = self.patch.sample(point, uniform)?;
         let irradiance = self.strength.of(wavelength_set) * drawn.pdf.recip();
         Some(LightSample { towards: drawn.towards, distance: drawn.distance, irradiance, pdf: Some(drawn.pdf) })

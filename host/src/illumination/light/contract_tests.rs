@@ -1,6 +1,6 @@
 //! What every light keeps: what is sampled is what is seen, what leaves it is its power, it is where it says.
 
-use super::{Goniometry, Light, LightOrigin, LightShape, SkyDisc, SkyMap, LightSource, EmissionSample};
+use super::{EmissionSample, Goniometry, Light, LightOrigin, LightShape, LightSource, SkyDisc, SkyMap};
 use crate::color::{Color, WavelengthSets};
 use crate::numeric::cubature::unit_square;
 use crate::numeric::ray::Ray;
@@ -63,7 +63,8 @@ fn sampled(source: &LightSource) -> f64 {
 /// The radiance that comes from a direction, and the density with which beams are drawn there.
 fn seen(source: &LightSource, towards: DVec3) -> (f64, f64) {
     let ray = Ray { origin: POINT, direction: towards };
-    let light_hit = source.intersect(&ray, 0.0, f64::INFINITY, 0).or_else(|| source.sky_radiance(&ray, Some(DVec3::Y), 0));
+    let light_hit =
+        source.intersect(&ray, 0.0, f64::INFINITY, 0).or_else(|| source.sky_radiance(&ray, Some(DVec3::Y), 0));
     if let Some(light_hit) = light_hit {
         return (light_hit.radiance.0[0], light_hit.pdf);
     }
@@ -128,7 +129,11 @@ fn points_that_stand_for_a_light_light_as_it_does() {
     // A disc in the sky stands in its middle, and other skies have no points.
     for source in sources().iter().filter(|source| !source.is_infinite()) {
         let points = source.points(4096);
-        let term = |point| source.incident_from(point, POINT, 0).map_or(0.0, |light_sample| light_sample.irradiance.0[0] * light_sample.towards.y);
+        let term = |point| {
+            source
+                .incident_from(point, POINT, 0)
+                .map_or(0.0, |light_sample| light_sample.irradiance.0[0] * light_sample.towards.y)
+        };
         let (found, expected) = (points.iter().map(term).sum::<f64>(), sampled(source));
         assert!((found / expected - 1.0).abs() < 5e-3, "{}: {found} {expected}", source.kind());
         assert!(points.len() == 1 || !source.is_delta(), "{}", source.kind());

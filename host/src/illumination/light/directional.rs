@@ -1,7 +1,7 @@
 //! Parallel light from infinitely far away.
 
-use super::beam::{LightSample, LightPoint, LightOrigin, EmissionSample};
 use super::emitter::Emitter;
+use super::light_sample::{EmissionSample, LightOrigin, LightPoint, LightSample};
 use crate::color::{Channels, SpectralTable};
 use glam::DVec3;
 use std::f64::consts::PI;

@@ -1,6 +1,6 @@
 //! Facts about light as it leaves its source.
 
-use super::{Goniometry, Light, LightShape, LightSource, EmissionSample};
+use super::{EmissionSample, Goniometry, Light, LightShape, LightSource};
 use crate::color::{Color, WavelengthSets};
 use crate::numeric::sampling::sphere;
 use crate::numeric::sequence::SobolSequence;
@@ -51,7 +51,9 @@ fn what_leaves_a_source_is_its_power() {
 fn a_sky_sends_its_light_through_every_disc() {
     let light = Light::Sky { map: None, radiance: Color::grey(2.0), turned: 0.0 };
     let source = LightSource::new(&light, &WavelengthSets::bands());
-    let Some(EmissionSample::Parallel { irradiance, .. }) = source.sample_emission([0.3, 0.7], 0) else { panic!("parallel") };
+    let Some(EmissionSample::Parallel { irradiance, .. }) = source.sample_emission([0.3, 0.7], 0) else {
+        panic!("parallel")
+    };
     assert!((irradiance.0[0] - 4.0 * TAU).abs() < 1e-9);
     assert!((source.power(3.0, 0).0[0] - 4.0 * TAU * 9.0 * PI).abs() < 1e-9);
 }

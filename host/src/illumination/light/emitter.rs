@@ -1,6 +1,6 @@
 //! What every light tells: what arrives at a point, what leaves it, where it is.
 
-use super::beam::{LightSample, LightHit, LightPoint, LightOrigin, EmissionSample};
+use super::light_sample::{EmissionSample, LightHit, LightOrigin, LightPoint, LightSample};
 use crate::color::Channels;
 use crate::numeric::ray::Ray;
 use glam::DVec3;
@@ -8,7 +8,13 @@ use glam::DVec3;
 /// A light of one kind, ready for rendering. [`Source`](super::Source) says what each function gives.
 pub(super) trait Emitter {
     /// Light that arrives at a point if nothing stands between.
-    fn sample_incident(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2], wavelength_set: usize) -> Option<LightSample>;
+    fn sample_incident(
+        &self,
+        point: DVec3,
+        normal: Option<DVec3>,
+        uniform: [f64; 2],
+        wavelength_set: usize,
+    ) -> Option<LightSample>;
 
     /// A few points that stand for it.
     fn points(&self, count: u32) -> Vec<LightPoint>;

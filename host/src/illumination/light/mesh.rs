@@ -1,7 +1,7 @@
 //! Triangles of an object that emits the same radiance on both sides.
 
-use super::beam::{LightSample, LightPoint, LightOrigin, EmittingSides, EmissionSample};
 use super::emitter::Emitter;
+use super::light_sample::{EmissionSample, EmittingSides, LightOrigin, LightPoint, LightSample};
 use crate::color::{Channels, SpectralTable};
 use crate::numeric::bounds::Bounds;
 use glam::DVec3;
@@ -56,7 +56,13 @@ impl MeshLight {
 }
 
 impl Emitter for MeshLight {
-    fn sample_incident(&self, point: DVec3, _: Option<DVec3>, uniform: [f64; 2], wavelength_set: usize) -> Option<LightSample> {
+    fn sample_incident(
+        &self,
+        point: DVec3,
+        _: Option<DVec3>,
+        uniform: [f64; 2],
+        wavelength_set: usize,
+    ) -> Option<LightSample> {
         let (towards, distance, pdf) = self.sample(point, uniform)?;
         let irradiance = self.strength.of(wavelength_set) * pdf.recip();
         Some(LightSample { towards, distance, irradiance, pdf: Some(pdf) })

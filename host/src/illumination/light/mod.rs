@@ -1,20 +1,20 @@
 //! Sources of light: what a scene says of them, and what of their light arrives at a point.
 
-mod beam;
+mod light_sample;
 mod emitter;
 mod goniometry;
 mod panorama;
 mod spherical_rectangle;
-mod patch;
+mod light_shape;
 mod portal;
 mod sky;
 mod point;
 mod directional;
 mod spot;
-mod luminaire;
+mod goniometric;
 mod area;
 mod mesh;
-mod surrounding;
+mod environment;
 mod source;
 #[cfg(test)]
 mod contract_tests;
@@ -23,10 +23,10 @@ mod emission_tests;
 #[cfg(test)]
 mod tests;
 
-pub use beam::{LightSample, LightHit, LightPoint, LightOrigin, EmissionSample};
 pub use goniometry::{Goniometry, GoniometryError};
+pub use light_sample::{EmissionSample, LightHit, LightOrigin, LightPoint, LightSample};
+pub use light_shape::LightShape;
 pub use panorama::Panorama;
-pub use patch::LightShape;
 pub use sky::Sky;
 pub use source::LightSource;
 

@@ -1,7 +1,7 @@
 //! A point that emits alike in all directions.
 
-use super::beam::{LightSample, LightPoint, LightOrigin, EmissionSample, from_point};
 use super::emitter::Emitter;
+use super::light_sample::{EmissionSample, LightOrigin, LightPoint, LightSample, from_point};
 use crate::color::{Channels, SpectralTable};
 use glam::DVec3;
 use std::f64::consts::TAU;
@@ -15,7 +15,13 @@ pub(super) struct PointLight {
 }
 
 impl Emitter for PointLight {
-    fn sample_incident(&self, point: DVec3, _: Option<DVec3>, _: [f64; 2], wavelength_set: usize) -> Option<LightSample> {
+    fn sample_incident(
+        &self,
+        point: DVec3,
+        _: Option<DVec3>,
+        _: [f64; 2],
+        wavelength_set: usize,
+    ) -> Option<LightSample> {
         from_point(self.at - point, self.strength.of(wavelength_set))
     }
 

@@ -1,7 +1,7 @@
 //! Openings through which the light of skies comes in: what is drawn there is not lost on walls.
 
 use super::LightShape;
-use super::patch::ShapeSample;
+use super::light_shape::ShapeSample;
 use crate::numeric::ray::Ray;
 use glam::DVec3;
 

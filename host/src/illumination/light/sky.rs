@@ -322,8 +322,11 @@ impl Map {
         let across = self.columns.len() / self.rows.len();
         let (row, down) = within(&self.rows, y);
         let (column, aside) = within(&self.columns[row * across..(row + 1) * across], x);
-        let (cell, [s, t]) =
-            if self.side == 1 { ([column, row], [aside, down]) } else { self.sample_cell([column, row], [aside, down]) };
+        let (cell, [s, t]) = if self.side == 1 {
+            ([column, row], [aside, down])
+        } else {
+            self.sample_cell([column, row], [aside, down])
+        };
         // Down the means of both sides first, and then across where that is.
         let [a, b, c, d] = self.corners(cell);
         let t = linear(a + b, c + d, t);

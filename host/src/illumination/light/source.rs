@@ -1,14 +1,14 @@
 //! Lights made ready for rendering, a row for each kind. A new light is a file, a row, and what scenes say of it.
 
 use super::area::AreaLight;
-use super::beam::{LightSample, LightHit, LightPoint, LightOrigin, EmissionSample};
 use super::directional::DirectionalLight;
 use super::emitter::Emitter;
-use super::luminaire::GoniometricLight;
+use super::environment::EnvironmentLight;
+use super::goniometric::GoniometricLight;
+use super::light_sample::{EmissionSample, LightHit, LightOrigin, LightPoint, LightSample};
 use super::mesh::MeshLight;
 use super::point::PointLight;
 use super::spot::SpotLight;
-use super::surrounding::EnvironmentLight;
 use super::{Light, LightShape, Sky};
 use crate::color::{Channels, SpectralTable, WavelengthSets};
 use crate::numeric::ray::Ray;
@@ -110,7 +110,13 @@ impl LightSource {
     /// - `normal`: of the element at the point, unit length, if there is one: directions above it are drawn more often.
     /// - `uniform`: a point of the unit square, which chooses the point of a light that has a size.
     #[inline]
-    pub fn sample_incident(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2], wavelength_set: usize) -> Option<LightSample> {
+    pub fn sample_incident(
+        &self,
+        point: DVec3,
+        normal: Option<DVec3>,
+        uniform: [f64; 2],
+        wavelength_set: usize,
+    ) -> Option<LightSample> {
         self.0.emitter().sample_incident(point, normal, uniform, wavelength_set)
     }
 

@@ -1,7 +1,7 @@
 //! A point that emits a cone of light, which fades towards its edge.
 
-use super::beam::{LightSample, LightPoint, LightOrigin, EmissionSample, from_point};
 use super::emitter::Emitter;
+use super::light_sample::{EmissionSample, LightOrigin, LightPoint, LightSample, from_point};
 use crate::color::{Channels, SpectralTable};
 use glam::DVec3;
 use std::f64::consts::TAU;
@@ -29,7 +29,13 @@ impl SpotLight {
 }
 
 impl Emitter for SpotLight {
-    fn sample_incident(&self, point: DVec3, _: Option<DVec3>, _: [f64; 2], wavelength_set: usize) -> Option<LightSample> {
+    fn sample_incident(
+        &self,
+        point: DVec3,
+        _: Option<DVec3>,
+        _: [f64; 2],
+        wavelength_set: usize,
+    ) -> Option<LightSample> {
         let light_sample = from_point(self.at - point, self.strength.of(wavelength_set))?;
         let part = self.part(-light_sample.towards.dot(self.axis));
         (part > 0.0).then(|| LightSample { irradiance: light_sample.irradiance * part, ..light_sample })

@@ -31,7 +31,10 @@ fn irradiance_of_a_point_falls_with_the_square_of_the_distance() {
     let point = source(Light::Point { at: DVec3::new(0.0, 3.0, 0.0), intensity: Color::grey(18.0) });
     let light_sample = point.sample_incident(DVec3::ZERO, None, [0.5; 2], 0).expect("light");
     assert_eq!((light_sample.irradiance.0[0], light_sample.distance, light_sample.towards), (2.0, 3.0, DVec3::Y));
-    assert!(point.sample_incident(DVec3::new(0.0, 3.0, 0.0), None, [0.5; 2], 0).is_none(), "no direction at the light itself");
+    assert!(
+        point.sample_incident(DVec3::new(0.0, 3.0, 0.0), None, [0.5; 2], 0).is_none(),
+        "no direction at the light itself"
+    );
     for far in [1e-9, 1e9] {
         let light_sample = point.sample_incident(DVec3::new(far, 3.0, 0.0), None, [0.5; 2], 0).expect("light");
         assert!((light_sample.irradiance.0[0] * far * far / 18.0 - 1.0).abs() < 1e-12);
@@ -116,7 +119,11 @@ fn densities_are_those_of_the_drawn_directions() {
         LightShape::Sphere { center: DVec3::new(1.0, 3.0, 0.0), radius: 0.7 },
         LightShape::Disc { center: DVec3::new(1.0, 3.0, 0.0), normal: DVec3::new(-0.3, -1.0, 0.2), radius: 0.7 },
         LightShape::Rectangle { corner: DVec3::new(-1.0, 2.0, -1.0), across: DVec3::X * 2.0, up: DVec3::Z },
-        LightShape::Rectangle { corner: DVec3::new(-1.0, 2.0, -1.0), across: DVec3::X * 2.0, up: DVec3::new(1.0, 0.0, 1.0) },
+        LightShape::Rectangle {
+            corner: DVec3::new(-1.0, 2.0, -1.0),
+            across: DVec3::X * 2.0,
+            up: DVec3::new(1.0, 0.0, 1.0),
+        },
     ];
     let mut stream = RandomStream::new(7, 7);
     for patch in patches {
@@ -144,7 +151,8 @@ fn a_spot_falls_from_all_to_nothing_between_its_angles() {
     });
     let at = |degrees: f64| {
         let (sin, cos) = degrees.to_radians().sin_cos();
-        spot.sample_incident(DVec3::new(sin, 1.0 - cos, 0.0), None, [0.5; 2], 0).map_or(0.0, |light_sample| light_sample.irradiance.0[0])
+        spot.sample_incident(DVec3::new(sin, 1.0 - cos, 0.0), None, [0.5; 2], 0)
+            .map_or(0.0, |light_sample| light_sample.irradiance.0[0])
     };
     assert!((at(0.0) - 1.0).abs() < 1e-12 && (at(19.9) - 1.0).abs() < 1e-12 && at(40.1) == 0.0);
     let middle = ((20f64.to_radians().cos() + 40f64.to_radians().cos()) / 2.0).acos().to_degrees();
@@ -215,7 +223,10 @@ fn a_sky_of_one_radiance_lights_a_plane_with_pi_times_it() {
     for uniform in [[0.1, 0.2], [0.7, 0.9], [0.99, 0.5]] {
         let light_sample = sky.sample_incident(DVec3::ZERO, Some(DVec3::Y), uniform, 0).expect("light");
         assert!((light_sample.irradiance.0[0] * light_sample.towards.y - 2.0 * PI).abs() < 1e-9);
-        assert_eq!(sky.sky_radiance(&from_origin(light_sample.towards), Some(DVec3::Y), 0).map(|light_hit| light_hit.pdf), light_sample.pdf);
+        assert_eq!(
+            sky.sky_radiance(&from_origin(light_sample.towards), Some(DVec3::Y), 0).map(|light_hit| light_hit.pdf),
+            light_sample.pdf
+        );
     }
 }
 
@@ -234,8 +245,12 @@ fn a_map_is_seen_where_its_directions_are_and_drawn_as_bright_as_it_is() {
     // The density integrates to 1.
     let all = 4.0
         * PI
-        * unit_square(|u| sky.sky_radiance(&from_origin(sphere(u)), None, 0).map_or(0.0, |light_hit| light_hit.pdf), 1e-4, 400_000)
-            .value;
+        * unit_square(
+            |u| sky.sky_radiance(&from_origin(sphere(u)), None, 0).map_or(0.0, |light_hit| light_hit.pdf),
+            1e-4,
+            400_000,
+        )
+        .value;
     assert!((all - 1.0).abs() < 2e-3, "{all}");
     let mut stream = RandomStream::new(2, 2);
     for _ in 0..100 {
@@ -247,7 +262,11 @@ fn a_map_is_seen_where_its_directions_are_and_drawn_as_bright_as_it_is() {
     // In the middle of column 4 of row 1, which is 60 degrees from the zenith, and straight up, where row 0 is.
     let towards = |degrees: f64, turn: f64| {
         let ((sine, cosine), (across, along)) = (degrees.to_radians().sin_cos(), turn.to_radians().sin_cos());
-        ahead.sky_radiance(&from_origin(DVec3::new(sine * across, cosine, -sine * along)), None, 0).expect("a sky").radiance.0[0]
+        ahead
+            .sky_radiance(&from_origin(DVec3::new(sine * across, cosine, -sine * along)), None, 0)
+            .expect("a sky")
+            .radiance
+            .0[0]
     };
     let pixel = |x: usize, y: usize| ((y * 8 + x) % 5) as f64;
     assert!((towards(60.0, 22.5) - pixel(4, 1)).abs() < 1e-9 && (towards(60.0, 112.5) - pixel(6, 1)).abs() < 1e-9);
@@ -272,11 +291,14 @@ fn a_disc_in_the_sky_is_drawn_evenly_and_seen_where_it_is() {
         assert_eq!(Some(seen.pdf), light_sample.pdf);
     }
     assert!(
-        sun.sky_radiance(&from_origin(-disc.towards), None, 0).is_none() && sun.sky_radiance(&from_origin(DVec3::Y), None, 0).is_none()
+        sun.sky_radiance(&from_origin(-disc.towards), None, 0).is_none()
+            && sun.sky_radiance(&from_origin(DVec3::Y), None, 0).is_none()
     );
     let [point] = sun.points(7)[..] else { panic!("one point") };
     let light_sample = sun.incident_from(&point, DVec3::ZERO, 0).expect("light");
-    assert!((light_sample.irradiance.0[0] - 2.0).abs() < 1e-6 && (light_sample.towards - disc.towards).length() < 1e-12);
+    assert!(
+        (light_sample.irradiance.0[0] - 2.0).abs() < 1e-6 && (light_sample.towards - disc.towards).length() < 1e-12
+    );
 }
 
 #[test]
@@ -345,7 +367,9 @@ fn portals_change_where_a_sky_is_looked_for_and_not_how_much_it_lights() {
         let mut stream = RandomStream::new(5, 1);
         let mut through = 0;
         for _ in 0..1000 {
-            let Some(light_sample) = seen.sample_incident(DVec3::ZERO, Some(normal), stream.point(), 0) else { continue };
+            let Some(light_sample) = seen.sample_incident(DVec3::ZERO, Some(normal), stream.point(), 0) else {
+                continue;
+            };
             let light_hit = seen.sky_radiance(&from_origin(light_sample.towards), Some(normal), 0).expect("a sky");
             assert!((light_hit.pdf / light_sample.pdf.expect("spread") - 1.0).abs() < 1e-9);
             let at = light_sample.towards / -light_sample.towards.z;

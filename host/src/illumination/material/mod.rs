@@ -419,9 +419,11 @@ impl Material {
                     Finish::Rough { roughness, .. } => {
                         MaterialPreview { specular: color, exponent: shine(roughness.mean()), ..black }
                     }
-                    Finish::Brushed { roughness: [along, across], .. } => {
-                        MaterialPreview { specular: color, exponent: shine((along.mean() * across.mean()).sqrt()), ..black }
-                    }
+                    Finish::Brushed { roughness: [along, across], .. } => MaterialPreview {
+                        specular: color,
+                        exponent: shine((along.mean() * across.mean()).sqrt()),
+                        ..black
+                    },
                 }
             }
             MaterialKind::Principled(principled) => principled.preview(),

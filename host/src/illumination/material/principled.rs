@@ -1,6 +1,6 @@
 //! The principled material: metal, opaque ground and transparent body in any mixture.
 
-use super::{MaterialPreview, Classic, MaterialError, fraction, normal_reflectance, power, priority};
+use super::{Classic, MaterialError, MaterialPreview, fraction, normal_reflectance, power, priority};
 use crate::color::Color;
 use crate::illumination::distribution::checked_roughness;
 use crate::illumination::fresnel::Dielectric;
@@ -118,7 +118,8 @@ impl Principled {
 
     pub(super) fn preview(&self) -> MaterialPreview {
         let base = self.base_color.mean_bands().clamp(DVec3::ZERO, DVec3::ONE);
-        let [metallic, transmission, specular] = [&self.metallic, &self.transmission, &self.specular].map(NumberTexture::mean);
+        let [metallic, transmission, specular] =
+            [&self.metallic, &self.transmission, &self.specular].map(NumberTexture::mean);
         let opaque = (1.0 - metallic) * (1.0 - transmission);
         let clear = (1.0 - metallic) * (transmission + (1.0 - transmission) * specular);
         let reflected = base * metallic + DVec3::splat(clear * normal_reflectance(self.index));
@@ -126,9 +127,12 @@ impl Principled {
         let diffuse = base * opaque;
         let shine = |roughness: f64| (2.0 / roughness.max(0.03).powi(4) - 2.0).clamp(1.0, Classic::MOST_EXPONENT);
         match self.roughness.mean() {
-            0.0 => {
-                MaterialPreview { diffuse, specular: coat, exponent: shine(self.coat_roughness.mean()), mirror: reflected }
-            }
+            0.0 => MaterialPreview {
+                diffuse,
+                specular: coat,
+                exponent: shine(self.coat_roughness.mean()),
+                mirror: reflected,
+            },
             roughness => MaterialPreview { diffuse, specular: reflected, exponent: shine(roughness), mirror: coat },
         }
     }

@@ -1,12 +1,12 @@
 //! A material made ready for rendering: a sum of lobes, and which of them carry rays on.
 
+use super::context::{BsdfSample, InterfaceIndices, ShadingContext};
 use super::lobe::{Flags, Lobe};
 use super::lobes::AnyLobe;
+use super::prepared_textures::{PreparedNumber, PreparedPaint, PreparedTexture};
 use super::principled::PrincipledSurface;
-use super::shade::{PreparedTexture, PreparedNumber, PreparedPaint};
-use super::sighting::{BsdfSample, InterfaceIndices, ShadingContext};
 use crate::color::{Channels, SpectralTable};
-use crate::illumination::texture::{NumberTexture, TextureFootprint, Relief};
+use crate::illumination::texture::{NumberTexture, Relief, TextureFootprint};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -232,7 +232,10 @@ impl Bsdf {
     pub fn specular_samples(&self, context: &ShadingContext) -> impl Iterator<Item = BsdfSample> {
         let narrow = |member: &&Member| member.class == LobeClass::Narrow && member.flags.has(Flags::DELTA);
         let members = self.lobes.iter().filter(narrow);
-        members.flat_map(|member| member.lobe.specular_samples(context)).flatten().filter(|sample| sample.weight.max() > 0.0)
+        members
+            .flat_map(|member| member.lobe.specular_samples(context))
+            .flatten()
+            .filter(|sample| sample.weight.max() > 0.0)
     }
 
     /// What goes straight through, if anything does.
@@ -245,7 +248,13 @@ impl Bsdf {
     ///
     /// - `choice`: uniform in 0..1, chooses among lobes. `point`: uniform in the unit square.
     /// - `among`: which lobes it is drawn among.
-    pub fn sample(&self, context: &ShadingContext, choice: f64, point: [f64; 2], selection: LobeSelection) -> Option<BsdfSample> {
+    pub fn sample(
+        &self,
+        context: &ShadingContext,
+        choice: f64,
+        point: [f64; 2],
+        selection: LobeSelection,
+    ) -> Option<BsdfSample> {
         let shares = self.shares(context, selection);
         let (index, choice) = choose_share(&shares, choice)?;
         let Member { class, lobe, .. } = self.lobes.get(index)?;
@@ -287,7 +296,9 @@ impl Bsdf {
     /// passes on.
     pub fn non_delta_albedo(&self, context: &ShadingContext) -> Channels {
         let spread = self.lobes.iter().filter(|member| !member.flags.has(Flags::DELTA));
-        spread.fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.diffuse_albedo(context) + lobe.glossy_albedo(context))
+        spread.fold(Channels::ZERO, |sum, Member { lobe, .. }| {
+            sum + lobe.diffuse_albedo(context) + lobe.glossy_albedo(context)
+        })
     }
 
     /// Whether some light is reflected alike to everywhere.
@@ -334,11 +345,26 @@ impl Bsdf {
     /// The part of light that goes straight through.
     ///
     /// - `cosine`: of the angle between light and normal, 0..=1. `place`: asked for only if a pattern has to be looked up.
-    pub fn straight_transmittance(&self, wavelength_set: usize, cosine: f64, footprint: impl FnOnce() -> TextureFootprint) -> Channels {
+    pub fn straight_transmittance(
+        &self,
+        wavelength_set: usize,
+        cosine: f64,
+        footprint: impl FnOnce() -> TextureFootprint,
+    ) -> Channels {
         let Some(passing) = &self.straight_transmission else { return Channels::ZERO };
-        let texture_values = if self.patterns.is_empty() { TextureValues::new() } else { self.texture_values(&footprint(), wavelength_set) };
+        let texture_values = if self.patterns.is_empty() {
+            TextureValues::new()
+        } else {
+            self.texture_values(&footprint(), wavelength_set)
+        };
         let view = DVec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
-        passing.of(&ShadingContext { view, wavelength_set, indices: InterfaceIndices::AIR, lane: 0, texture_values: &texture_values })
+        passing.of(&ShadingContext {
+            view,
+            wavelength_set,
+            indices: InterfaceIndices::AIR,
+            lane: 0,
+            texture_values: &texture_values,
+        })
     }
 
     /// Whether it is a polished interface: what goes through has one direction.
@@ -350,9 +376,18 @@ impl Bsdf {
     /// The part of light that a polished interface lets through, as if it were not bent.
     ///
     /// - `cosine`: of the angle between light and normal, 0..=1. `place`: asked for only if a pattern has to be looked up.
-    pub fn clear_transmittance(&self, wavelength_set: usize, cosine: f64, footprint: impl FnOnce() -> TextureFootprint) -> Channels {
+    pub fn clear_transmittance(
+        &self,
+        wavelength_set: usize,
+        cosine: f64,
+        footprint: impl FnOnce() -> TextureFootprint,
+    ) -> Channels {
         let Some(interior) = &self.interior else { return Channels::ZERO };
-        let texture_values = if self.patterns.is_empty() { TextureValues::new() } else { self.texture_values(&footprint(), wavelength_set) };
+        let texture_values = if self.patterns.is_empty() {
+            TextureValues::new()
+        } else {
+            self.texture_values(&footprint(), wavelength_set)
+        };
         let view = DVec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
         let side = InterfaceIndices { behind: interior.index.of(wavelength_set), ..InterfaceIndices::AIR };
         let context = ShadingContext { view, wavelength_set, indices: side, lane: 0, texture_values: &texture_values };
@@ -396,7 +431,8 @@ impl Bsdf {
 
     /// Whether light that is followed from lamps goes on from it about everywhere.
     pub fn is_broad(&self) -> bool {
-        let goes_on = |member: &Member| LobeSelection::Broad.has(member.class, member.flags) && !member.flags.has(Flags::BLACK);
+        let goes_on =
+            |member: &Member| LobeSelection::Broad.has(member.class, member.flags) && !member.flags.has(Flags::BLACK);
         self.lobes.iter().any(goes_on)
     }
 
@@ -423,7 +459,9 @@ impl Bsdf {
         match class {
             _ if is_black => {}
             LobeClass::Narrow if flags.has(Flags::STRAIGHT) => self.transmits_straight = true,
-            LobeClass::Narrow if flags.has(Flags::PANE) => (self.transmits_straight, self.casts_caustics) = (true, true),
+            LobeClass::Narrow if flags.has(Flags::PANE) => {
+                (self.transmits_straight, self.casts_caustics) = (true, true)
+            }
             LobeClass::Narrow => self.casts_caustics = true,
             LobeClass::Broad | LobeClass::Radiosity | LobeClass::LightsOnly => self.stores_photons = true,
         }

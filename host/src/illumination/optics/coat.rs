@@ -1,9 +1,9 @@
 //! A transparent coat on a diffuse ground: plastic, varnish, glaze.
 
+use super::context::{BsdfSample, ShadingContext};
 use super::diffuse::{cosine_pdf, cosine_sample};
 use super::lobe::{Flags, Lobe};
-use super::shade::PreparedPaint;
-use super::sighting::{BsdfSample, ShadingContext};
+use super::prepared_textures::PreparedPaint;
 use crate::color::{Channels, SpectralTable};
 use crate::illumination::distribution::{Distribution, Microfacet};
 use crate::illumination::fresnel::Dielectric;
@@ -155,14 +155,19 @@ enum Fraction {
 
 impl CoatedDiffuse {
     /// - `index`: of the coat over that of what is above. `reflectance`: of the ground. `combs`: how many there are.
-    pub(super) fn new(coat: Arc<CoatReflection>, index: f64, reflectance: &PreparedPaint, sets: usize) -> CoatedDiffuse {
+    pub(super) fn new(
+        coat: Arc<CoatReflection>,
+        index: f64,
+        reflectance: &PreparedPaint,
+        sets: usize,
+    ) -> CoatedDiffuse {
         let mean = coat.mean_through();
         // Where the coat is the thinner medium, nothing is reflected back but what Fresnel's term says.
         let back = (1.0 - mean / (index * index)).max(0.0);
         let fraction = match reflectance {
-            PreparedPaint::Plain(curve) => {
-                Fraction::Known(SpectralTable::each(sets, |wavelength_set| curve.of(wavelength_set).map(|k| series(k, mean, back))))
-            }
+            PreparedPaint::Plain(curve) => Fraction::Known(SpectralTable::each(sets, |wavelength_set| {
+                curve.of(wavelength_set).map(|k| series(k, mean, back))
+            })),
             textured => Fraction::Textured(textured.clone()),
         };
         CoatedDiffuse { coat, mean, back, fraction }

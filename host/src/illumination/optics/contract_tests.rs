@@ -2,12 +2,13 @@
 
 use super::lobe::{Flags, Lobe};
 use super::lobes::AnyLobe;
-use super::{Interreflection, BsdfBuilder, InterfaceIndices, ShadingContext};
+use super::{BsdfBuilder, InterfaceIndices, Interreflection, ShadingContext};
 use crate::color::{Channels, WavelengthSets, shipped};
 use crate::illumination::material::{
-    MaterialKind, Classic, Coated, Finish, DistributionForm, RefractiveIndex, Material, Metal, Principled, Distributed, Transparent,
+    Classic, Coated, Distributed, DistributionForm, Finish, Material, MaterialKind, Metal, Principled, RefractiveIndex,
+    Transparent,
 };
-use crate::illumination::texture::{Band, TextureMapping, Motif, NumberTexture, Paint, Pattern, Varying};
+use crate::illumination::texture::{Band, Motif, NumberTexture, Paint, Pattern, TextureMapping, Varying};
 use crate::numeric::cubature::unit_square;
 use crate::numeric::sampling::RandomStream;
 use glam::DVec3;
@@ -39,10 +40,14 @@ fn lobes() -> Vec<AnyLobe> {
         Material::from(MaterialKind::Metal(Metal { n, k, finish }))
     };
     let rough = |name: &str, roughness| Finish::Rough { name: name.into(), roughness };
-    let coated = |roughness: NumberTexture| MaterialKind::Coated(Coated { diffuse: grey(0.6), index: 1.5, roughness }).into();
+    let coated =
+        |roughness: NumberTexture| MaterialKind::Coated(Coated { diffuse: grey(0.6), index: 1.5, roughness }).into();
     let glass = |roughness: f64| {
-        MaterialKind::Transparent(Transparent { roughness: roughness.into(), ..Transparent::clear(RefractiveIndex::Constant(1.5)) })
-            .into()
+        MaterialKind::Transparent(Transparent {
+            roughness: roughness.into(),
+            ..Transparent::clear(RefractiveIndex::Constant(1.5))
+        })
+        .into()
     };
     let principled = |transmission: f64, roughness: f64| {
         MaterialKind::Principled(Box::new(Principled {
@@ -91,8 +96,15 @@ fn lobes() -> Vec<AnyLobe> {
 
 fn context(degrees: f64, before: f64, behind: f64) -> ShadingContext<'static> {
     let (sin, cos) = degrees.to_radians().sin_cos();
-    let side = InterfaceIndices { before: Channels::splat(before), behind: Channels::splat(behind), inside: before > behind };
-    ShadingContext { view: DVec3::new(sin, 0.0, cos), wavelength_set: 0, indices: side, lane: 0, texture_values: &TEXTURE_VALUES }
+    let side =
+        InterfaceIndices { before: Channels::splat(before), behind: Channels::splat(behind), inside: before > behind };
+    ShadingContext {
+        view: DVec3::new(sin, 0.0, cos),
+        wavelength_set: 0,
+        indices: side,
+        lane: 0,
+        texture_values: &TEXTURE_VALUES,
+    }
 }
 
 /// From outside and from inside, steeply and at a flat angle.
@@ -256,8 +268,7 @@ fn flags_tell_what_lobes_do() {
             let lights = [0; 20].map(|_| stream.point()).map(|[x, y]| direction(2.0 * x - 1.0, y));
             let sample = lobe.sample(&context, stream.uniform(), stream.point());
             if flags.has(Flags::DELTA) {
-                let is_nothing =
-                    |l: &DVec3| lobe.value(&context, *l).max() == 0.0 && lobe.pdf(&context, *l) == 0.0;
+                let is_nothing = |l: &DVec3| lobe.value(&context, *l).max() == 0.0 && lobe.pdf(&context, *l) == 0.0;
                 assert!(lights.iter().all(is_nothing), "{kind}");
                 assert!(sample.is_none_or(|onward| onward.pdf.is_none()), "{kind}");
             } else {

@@ -1,8 +1,8 @@
 //! Lambert's lobe: equal radiance everywhere.
 
+use super::context::{BsdfSample, ShadingContext};
 use super::lobe::{Flags, Lobe};
-use super::shade::PreparedPaint;
-use super::sighting::{BsdfSample, ShadingContext};
+use super::prepared_textures::PreparedPaint;
 use crate::color::Channels;
 use crate::numeric::sampling::cosine_hemisphere;
 use glam::DVec3;

@@ -1,6 +1,6 @@
 //! What every lobe of a surface tells: its value, its samples with their density, its flags.
 
-use super::sighting::{BsdfSample, ShadingContext};
+use super::context::{BsdfSample, ShadingContext};
 use crate::color::Channels;
 use glam::DVec3;
 use std::ops::BitOr;

@@ -1,16 +1,16 @@
 //! The lobes of all materials, a row each. A new lobe is a file and a row.
 
 use super::coat::{CoatReflection, CoatedDiffuse};
+use super::context::{BsdfSample, ShadingContext};
+use super::dielectric::{RoughDielectric, SmoothDielectric};
 use super::diffuse::DiffuseLobe;
-use super::facets::RoughConductor;
-use super::interface::{RoughDielectric, SmoothDielectric};
+use super::distributed::DistributedLobe;
 use super::lobe::{Flags, Lobe};
 use super::mirror::MirrorLobe;
-use super::polished::SmoothConductor;
+use super::prepared_textures::PreparedNumber;
 use super::principled::PrincipledLobe;
-use super::shade::PreparedNumber;
-use super::shaped::DistributedLobe;
-use super::sighting::{BsdfSample, ShadingContext};
+use super::rough_conductor::RoughConductor;
+use super::smooth_conductor::SmoothConductor;
 use super::straight::StraightLobe;
 use super::varied::VaryingLobe;
 use crate::color::Channels;

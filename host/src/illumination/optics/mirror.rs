@@ -1,8 +1,8 @@
 //! A mirror that reflects a fraction of light.
 
+use super::context::{BsdfSample, ShadingContext};
 use super::lobe::{Flags, Lobe};
-use super::shade::PreparedPaint;
-use super::sighting::{BsdfSample, ShadingContext};
+use super::prepared_textures::PreparedPaint;
 use crate::color::Channels;
 use glam::DVec3;
 

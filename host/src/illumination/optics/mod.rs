@@ -6,28 +6,28 @@
 //! An [`Optics`] is a sum of lobes. Some end a ray's way: they answer lights and ambient light only, as Lambert's and
 //! Phong's terms do where diffuse interreflection is left out. The others carry it on.
 
-mod sighting;
-mod shade;
+mod context;
+mod prepared_textures;
 mod lobe;
 mod diffuse;
-mod shaped;
+mod distributed;
 mod mirror;
 mod straight;
-mod polished;
-mod facets;
+mod smooth_conductor;
+mod rough_conductor;
 mod coat;
-mod interface;
+mod dielectric;
 mod principled;
 mod varied;
 mod lobes;
 mod bsdf;
-mod library;
+mod builder;
 
 #[cfg(test)]
 mod contract_tests;
 #[cfg(test)]
 mod tests;
 
-pub use bsdf::{LobeSelection, InteriorMedium, Interreflection, TextureMixture, Bsdf, TextureValues, LobeClass};
-pub use library::BsdfBuilder;
-pub use sighting::{BsdfSample, InterfaceIndices, ShadingContext};
+pub use bsdf::{Bsdf, InteriorMedium, Interreflection, LobeClass, LobeSelection, TextureMixture, TextureValues};
+pub use builder::BsdfBuilder;
+pub use context::{BsdfSample, InterfaceIndices, ShadingContext};

@@ -1,8 +1,8 @@
 //! What goes straight through, as if nothing was there.
 
+use super::context::{BsdfSample, ShadingContext};
 use super::lobe::{Flags, Lobe};
-use super::shade::PreparedPaint;
-use super::sighting::{BsdfSample, ShadingContext};
+use super::prepared_textures::PreparedPaint;
 use crate::color::Channels;
 use glam::DVec3;
 

@@ -3,8 +3,10 @@
 use super::*;
 use crate::color::Channels;
 use crate::color::{Color, WavelengthSets, shipped};
-use crate::illumination::material::{MaterialKind, Classic, Coated, Finish, DistributionForm, RefractiveIndex, Material, Metal, Distributed, Transparent};
-use crate::illumination::texture::{Band, TextureMapping, Motif, NumberTexture, Paint, Pattern, Varying};
+use crate::illumination::material::{
+    Classic, Coated, Distributed, DistributionForm, Finish, Material, MaterialKind, Metal, RefractiveIndex, Transparent,
+};
+use crate::illumination::texture::{Band, Motif, NumberTexture, Paint, Pattern, TextureMapping, Varying};
 use crate::numeric::cubature::unit_square;
 use crate::numeric::sampling::{RandomStream, sphere};
 use glam::DVec3;
@@ -18,7 +20,8 @@ fn ready(material: &Material, wavelengths: &WavelengthSets) -> Bsdf {
 
 fn context(degrees: f64, before: f64, behind: f64) -> ShadingContext<'static> {
     let (sin, cos) = degrees.to_radians().sin_cos();
-    let side = InterfaceIndices { before: Channels::splat(before), behind: Channels::splat(behind), inside: before > behind };
+    let side =
+        InterfaceIndices { before: Channels::splat(before), behind: Channels::splat(behind), inside: before > behind };
     ShadingContext { view: DVec3::new(sin, 0.0, cos), wavelength_set: 0, indices: side, lane: 0, texture_values: &[] }
 }
 
@@ -35,8 +38,9 @@ fn rough(name: &str, roughness: f64) -> Finish {
 fn furnace(bsdf: &Bsdf, context: &ShadingContext) -> f64 {
     let mirrored: f64 = bsdf.specular_samples(context).map(|sample| sample.weight.0[0]).sum();
     let spread = |choice: f64| {
-        let drawn =
-            |point| bsdf.sample(context, choice, point, LobeSelection::NonDelta).map_or(0.0, |sample| sample.weight.0[0]);
+        let drawn = |point| {
+            bsdf.sample(context, choice, point, LobeSelection::NonDelta).map_or(0.0, |sample| sample.weight.0[0])
+        };
         unit_square(drawn, 1e-4, 20_000).value
     };
     // Lobes are chosen by the first number; it is averaged over evenly.
@@ -116,8 +120,11 @@ fn samples_and_values_tell_the_same_of_every_material() {
 /// A number that a pattern tells, from one to another.
 fn varying(from: f64, to: f64) -> NumberTexture {
     let paints = vec![Paint::grey(0.0), Paint::grey(1.0)];
-    let pattern =
-        Pattern { motif: Motif::Noise { octaves: 3 }, laying: TextureMapping { solid: true, ..TextureMapping::default() }, paints };
+    let pattern = Pattern {
+        motif: Motif::Noise { octaves: 3 },
+        laying: TextureMapping { solid: true, ..TextureMapping::default() },
+        paints,
+    };
     NumberTexture::Varying(Box::new(Varying { pattern, band: Band::Mean, from, to }))
 }
 
@@ -126,8 +133,10 @@ fn a_lobe_that_varies_is_that_of_the_value_at_the_place() {
     let wavelengths = WavelengthSets::bands();
     let metal = |roughness| copper(Finish::Rough { name: "GGX".into(), roughness });
     let coated = |roughness| MaterialKind::Coated(Coated { diffuse: Paint::grey(0.6), index: 1.5, roughness }).into();
-    let glass =
-        |roughness| MaterialKind::Transparent(Transparent { roughness, ..Transparent::clear(RefractiveIndex::Constant(1.5)) }).into();
+    let glass = |roughness| {
+        MaterialKind::Transparent(Transparent { roughness, ..Transparent::clear(RefractiveIndex::Constant(1.5)) })
+            .into()
+    };
     let kinds: [&dyn Fn(NumberTexture) -> Material; 3] = [&metal, &coated, &glass];
     for made in kinds {
         let varied = ready(&made(varying(0.1, 0.5)), &wavelengths);
@@ -153,7 +162,10 @@ fn a_lobe_that_varies_is_that_of_the_value_at_the_place() {
     let light = DVec3::new(-0.4, 0.1, 0.8).normalize();
     for beyond in [0.5, 0.9] {
         let texture_values = [Channels::splat(beyond)];
-        let [a, b] = [varied.total_value(&ShadingContext { texture_values: &texture_values, ..of }, light), same.total_value(&of, light)];
+        let [a, b] = [
+            varied.total_value(&ShadingContext { texture_values: &texture_values, ..of }, light),
+            same.total_value(&of, light),
+        ];
         assert_eq!(a, b);
     }
 }
@@ -189,7 +201,8 @@ fn densities_are_those_with_which_directions_are_drawn() {
             let context = context(35.0, before, behind);
             // Share of samples in a cap, counted and integrated.
             let mut stream = RandomStream::new(5, 1);
-            let axis = DVec3::new(-0.4, 0.3, if matches!(material.body, MaterialKind::Transparent(_)) { -0.6 } else { 0.6 });
+            let axis =
+                DVec3::new(-0.4, 0.3, if matches!(material.body, MaterialKind::Transparent(_)) { -0.6 } else { 0.6 });
             let (axis, cosine) = (axis.normalize(), 0.8);
             let count = 40_000;
             let mut inside = 0.0;
@@ -203,7 +216,10 @@ fn densities_are_those_with_which_directions_are_drawn() {
                 let (sin, cos) = (TAU * y).sin_cos();
                 let sine = (1.0 - z * z).sqrt();
                 let light = frame.world(DVec3::new(sine * cos, sine * sin, z));
-                LobeClass::CONTINUING.iter().map(|which| bsdf.pdf(*which, &context, light, LobeSelection::All)).sum::<f64>()
+                LobeClass::CONTINUING
+                    .iter()
+                    .map(|which| bsdf.pdf(*which, &context, light, LobeSelection::All))
+                    .sum::<f64>()
             };
             let expected = TAU * (1.0 - cosine) * unit_square(term, 1e-5, 100_000).value;
             let found = inside / f64::from(count);
@@ -234,7 +250,8 @@ fn smooth_glass_splits_light_without_loss_and_bends_it_by_snells_law() {
 fn a_rough_metal_with_all_reflections_loses_only_what_it_absorbs() {
     // A metal that reflects everything: n = 0, k > 0.
     let flat = |value: f64| {
-        crate::color::Spectrum::regular(300.0, 600.0, vec![value; 2], crate::color::Extrapolation::Held).expect("a spectrum")
+        crate::color::Spectrum::regular(300.0, 600.0, vec![value; 2], crate::color::Extrapolation::Held)
+            .expect("a spectrum")
     };
     let wavelengths = WavelengthSets::bands();
     for roughness in [0.1, 0.5, 1.0] {
@@ -278,8 +295,7 @@ fn straight_light_goes_on_and_impossible_materials_are_errors() {
     let straight: Vec<BsdfSample> = bsdf.specular_samples(&context(30.0, 1.0, 1.0)).collect();
     assert!(straight[0].is_straight && straight[0].weight.0[0] == 0.25 && bsdf.straight_transmission.is_some());
     let mut library = BsdfBuilder::new(&wavelengths, false);
-    let mut refused =
-        |material: Material| library.bsdf(&material, Interreflection::Followed).unwrap_err().to_string();
+    let mut refused = |material: Material| library.bsdf(&material, Interreflection::Followed).unwrap_err().to_string();
     let loud = Classic { diffuse: Paint::grey(1.5), ..Classic::default() };
     assert!(refused(loud.into()).contains("diffuse reflectance"));
     assert!(refused(copper(rough("Beckman", 0.3))).contains("did you mean Beckmann?"));
@@ -315,11 +331,12 @@ fn nothing_is_infinite_at_the_extremes() {
                     let light = sphere(stream.point());
                     let value = bsdf.total_value(&context, light);
                     assert!(value.is_finite() && value.0.iter().all(|v| *v >= 0.0));
-                    assert!(
-                        LobeClass::CONTINUING
-                            .iter()
-                            .all(|which| bsdf.pdf(*which, &context, light, LobeSelection::All) >= 0.0)
-                    );
+                    assert!(LobeClass::CONTINUING.iter().all(|which| bsdf.pdf(
+                        *which,
+                        &context,
+                        light,
+                        LobeSelection::All
+                    ) >= 0.0));
                     let sample = bsdf.sample(&context, stream.uniform(), stream.point(), LobeSelection::All);
                     assert!(sample.is_none_or(|o| o.weight.is_finite() && (o.light.length() - 1.0).abs() < 1e-6));
                 }
@@ -335,11 +352,16 @@ fn absorption_over_the_wavelength_has_its_colour_however_strong_it_is() {
     let sets = wavelengths.count();
     for scale in [0.1, 1.0, 100.0] {
         let bands = glam::DVec3::new(0.2, 9.0, 7.0) * scale;
-        let glass = Transparent { absorption: Color::Bands(bands), ..Transparent::clear(RefractiveIndex::Constant(1.5)) };
-        let absorption = ready(&MaterialKind::Transparent(glass).into(), &wavelengths).interior.expect("glass").absorption;
-        let seen: DVec3 =
-            (0..sets).map(|wavelength_set| wavelengths.to_srgb(wavelength_set, absorption.of(wavelength_set) * white.of(wavelength_set))).sum::<DVec3>()
-                / sets as f64;
+        let glass =
+            Transparent { absorption: Color::Bands(bands), ..Transparent::clear(RefractiveIndex::Constant(1.5)) };
+        let absorption =
+            ready(&MaterialKind::Transparent(glass).into(), &wavelengths).interior.expect("glass").absorption;
+        let seen: DVec3 = (0..sets)
+            .map(|wavelength_set| {
+                wavelengths.to_srgb(wavelength_set, absorption.of(wavelength_set) * white.of(wavelength_set))
+            })
+            .sum::<DVec3>()
+            / sets as f64;
         assert!((seen - bands).length() < 2e-2 * bands.max_element(), "{seen} {bands}");
     }
 }

@@ -1,8 +1,8 @@
 //! A lobe whose roughness, or another number, changes from place to place.
 
+use super::context::{BsdfSample, ShadingContext};
 use super::lobe::{Flags, Lobe};
-use super::shade::PreparedNumber;
-use super::sighting::{BsdfSample, ShadingContext};
+use super::prepared_textures::PreparedNumber;
 use crate::color::Channels;
 use crate::illumination::texture::NumberTexture;
 use glam::DVec3;

@@ -3,7 +3,7 @@
 use super::TextureFootprint;
 use super::texels::{TexelStorage, Texels};
 use crate::memory;
-use crate::picture::source::{TexelFormat, PictureReader, Texel};
+use crate::picture::source::{PictureReader, Texel, TexelFormat};
 use crate::picture::{Picture, PictureError};
 use glam::{DVec2, DVec3};
 use protocol::raster::light_of_srgb;
@@ -78,7 +78,9 @@ impl Image {
             (TexelFormat::Sixteen { .. } | TexelFormat::Float { .. }, _) => TexelStorage::Bands,
         };
         let pixels = Picture::pixels_of(width, height)?;
-        memory::reserve(bytes_of(kind, pixels), || format!("{}: an image of {width} x {height} pixels", path.display()))?;
+        memory::reserve(bytes_of(kind, pixels), || {
+            format!("{}: an image of {width} x {height} pixels", path.display())
+        })?;
         let mut finest = Level { width: width as usize, height: height as usize, texels: Texels::new(kind, pixels) };
         let mut wrong = None;
         source.each(|x, y, texel| {

@@ -8,15 +8,15 @@ mod image;
 mod motif;
 mod noise;
 mod number;
-mod place;
+mod footprint;
 mod texels;
 #[cfg(test)]
 mod tests;
 
-pub use image::{ImageContent, Image};
+pub use footprint::{FootprintSide, TextureFootprint};
+pub use image::{Image, ImageContent};
 pub use motif::Motif;
 pub use number::{Band, NumberTexture, Varying};
-pub use place::{TextureFootprint, FootprintSide};
 
 use crate::color::Color;
 use glam::{DMat3, DVec2, DVec3};

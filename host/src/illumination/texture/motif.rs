@@ -1,7 +1,7 @@
 //! The kinds of pattern.
 
 use super::noise::octaves;
-use super::{Image, MOST_PAINTS, TextureFootprint, TextureError, positive};
+use super::{Image, MOST_PAINTS, TextureError, TextureFootprint, positive};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;

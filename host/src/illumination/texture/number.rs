@@ -1,6 +1,6 @@
 //! Numbers of a surface that may change from place to place: roughness, metalness, weights.
 
-use super::{Motif, Paint, Pattern, TextureFootprint, TextureError};
+use super::{Motif, Paint, Pattern, TextureError, TextureFootprint};
 use crate::color::Color;
 use glam::DVec3;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};

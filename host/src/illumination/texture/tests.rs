@@ -58,7 +58,8 @@ fn the_mean_over_many_periods_is_the_mean_of_the_pattern() {
 
 #[test]
 fn the_mean_of_a_checker_is_exact() {
-    let checker = pattern(Motif::Checker, TextureMapping { size: DVec3::new(0.5, 0.25, 1.0), ..TextureMapping::default() });
+    let checker =
+        pattern(Motif::Checker, TextureMapping { size: DVec3::new(0.5, 0.25, 1.0), ..TextureMapping::default() });
     for at in points(50) {
         let width = 0.07;
         let steps = 400;
@@ -76,7 +77,12 @@ fn the_mean_of_a_checker_is_exact() {
 
 #[test]
 fn a_pattern_lies_where_it_is_laid() {
-    let laying = TextureMapping { size: DVec3::splat(2.0), at: DVec3::new(0.3, 0.1, 0.0), up: DVec3::X, ..TextureMapping::default() };
+    let laying = TextureMapping {
+        size: DVec3::splat(2.0),
+        at: DVec3::new(0.3, 0.1, 0.0),
+        up: DVec3::X,
+        ..TextureMapping::default()
+    };
     let image = Image::new("quarters".into(), 64, 64, |x, y| DVec3::new(f64::from(x / 32), f64::from(y / 32), 0.0));
     let pattern = Pattern { motif: Motif::Image { image }, laying, paints: Vec::new() };
     // The image stands with its upper edge towards +u: what is to its right is towards -v.
@@ -130,7 +136,10 @@ fn impossible_textures_are_refused_in_words() {
     assert!(wrong(Motif::Noise { octaves: 17 }, solid()).is_err());
     assert!(wrong(Motif::Marble { turbulence: -1.0, sharpness: 1.0 }, solid()).is_err());
     assert!(wrong(Motif::Wood { turbulence: 0.1, grain: f64::NAN }, solid()).is_err());
-    assert!(wrong(Motif::Checker, TextureMapping { up: DVec3::Z, ..TextureMapping::default() }).is_err(), "up is not on the surface");
+    assert!(
+        wrong(Motif::Checker, TextureMapping { up: DVec3::Z, ..TextureMapping::default() }).is_err(),
+        "up is not on the surface"
+    );
     let mut paint = Paint::grey(0.5);
     for _ in 0..=MAX_NESTING {
         paint = Paint::Pattern(Box::new(Pattern {

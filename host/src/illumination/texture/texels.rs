@@ -204,7 +204,9 @@ mod tests {
     fn each_kind_rounds_as_finely_as_it_says() {
         let fractions = (0..4096).map(|i| DVec3::new(f64::from(i) / 4095.0, f64::from(i * i) / 4095f64.powi(2), 0.3));
         let mut large = Texels::Packed(vec![0; 1]);
-        for (kind, most) in [(TexelStorage::Light, 0.005), (TexelStorage::Numbers, 0.002), (TexelStorage::Bands, 0.5001 / WHOLE)] {
+        for (kind, most) in
+            [(TexelStorage::Light, 0.005), (TexelStorage::Numbers, 0.002), (TexelStorage::Bands, 0.5001 / WHOLE)]
+        {
             let mut texels = Texels::new(kind, 1);
             for fraction in fractions.clone() {
                 texels.set(0, fraction);

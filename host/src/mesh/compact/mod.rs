@@ -21,7 +21,7 @@ use self::bits::{BitReader, BitWriter, Rice};
 use self::front::{Front, Step};
 use super::edges::EdgeTable;
 use super::triangles::MAX_COUNT;
-use super::{Fault, Mesh, FaultLocation, MeshProblem};
+use super::{Fault, FaultLocation, Mesh, MeshProblem};
 
 /// The first bytes of a file.
 const MAGIC: &[u8; 8] = b"PERIScm1";
@@ -48,7 +48,11 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
     let limit = (body.len() as u64 * 8).min(MAX_COUNT as u64);
     if u64::from(vertices.max(triangles)) > limit {
         let count = u64::from(vertices.max(triangles));
-        return Err(FaultLocation::Byte(8).fault(MeshProblem::TooMany { what: "vertices or triangles announced", count, limit }));
+        return Err(FaultLocation::Byte(8).fault(MeshProblem::TooMany {
+            what: "vertices or triangles announced",
+            count,
+            limit,
+        }));
     }
     if !(origin.is_finite() && step.is_finite()) {
         return Err(FaultLocation::Byte(16).fault(MeshProblem::NotFinite));

@@ -78,7 +78,13 @@ impl Rows<'_> {
 
 impl<'a> Buffers<'a> {
     /// Rows `count` from the buffer view that `view` names on; `owner` says where they begin in it.
-    fn rows(&self, owner: LocatedValue<'a>, view: LocatedValue<'a>, count: usize, columns: usize) -> Result<Rows<'_>, Fault> {
+    fn rows(
+        &self,
+        owner: LocatedValue<'a>,
+        view: LocatedValue<'a>,
+        count: usize,
+        columns: usize,
+    ) -> Result<Rows<'_>, Fault> {
         let component = Component::of(owner.need("componentType")?)?;
         self.rows_of(owner, view, count, columns, component)
     }
@@ -150,7 +156,12 @@ impl<'a> Buffers<'a> {
     }
 
     /// Replaces some rows of a table.
-    fn replace<const N: usize>(&self, accessor: LocatedValue<'a>, sparse: LocatedValue<'a>, table: &mut [[f64; N]]) -> Result<(), Fault> {
+    fn replace<const N: usize>(
+        &self,
+        accessor: LocatedValue<'a>,
+        sparse: LocatedValue<'a>,
+        table: &mut [[f64; N]],
+    ) -> Result<(), Fault> {
         let count = sparse.need("count")?.count()?;
         let (indices, values) = (sparse.need("indices")?, sparse.need("values")?);
         let places = self.rows(indices, indices.need("bufferView")?, count, 1)?;

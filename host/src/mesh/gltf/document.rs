@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::super::error::shortened;
-use super::super::{Fault, JsonPath, FaultLocation, MeshProblem};
+use super::super::{Fault, FaultLocation, JsonPath, MeshProblem};
 
 /// A value and where it stands.
 #[derive(Clone, Copy)]
@@ -83,7 +83,8 @@ impl<'a> LocatedValue<'a> {
 
     /// A member that is a finite number.
     pub fn number(&self, key: &'static str) -> Result<Option<f64>, Fault> {
-        let read = |at: LocatedValue| at.value.as_f64().filter(|x| x.is_finite()).ok_or_else(|| at.expected("a number"));
+        let read =
+            |at: LocatedValue| at.value.as_f64().filter(|x| x.is_finite()).ok_or_else(|| at.expected("a number"));
         self.get(key).map(read).transpose()
     }
 

@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use super::super::fan::strip;
 use super::super::groups::{Grouped, Groups, MetallicRoughness};
-use super::super::{Fault, Mesh, FaultLocation, MeshProblem};
+use super::super::{Fault, FaultLocation, Mesh, MeshProblem};
 use super::accessor::Buffers;
 use super::document::LocatedValue;
 use super::{BINARY_CHUNK, JSON_CHUNK, MAGIC, base64};
@@ -69,7 +69,9 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Fault> {
         field.map(u32::from_le_bytes).ok_or_else(|| ends(bytes.len(), "a header"))
     };
     if word(4)? != 2 {
-        return Err(FaultLocation::Byte(4).fault(MeshProblem::Expected { expected: "version 2", found: word(4)?.to_string() }));
+        return Err(
+            FaultLocation::Byte(4).fault(MeshProblem::Expected { expected: "version 2", found: word(4)?.to_string() })
+        );
     }
     let mut found = [None, None];
     let mut at = 12;

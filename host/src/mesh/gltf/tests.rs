@@ -1,7 +1,9 @@
 //! glTF files by hand, through both forms and back, and broken in every way.
 
 use super::super::samples::{ball, tetrahedron};
-use super::super::{Format, Grouped, MetallicRoughness, Mesh, MeshProblem, parse_grouped, print, print_grouped, read_grouped};
+use super::super::{
+    Format, Grouped, Mesh, MeshProblem, MetallicRoughness, parse_grouped, print, print_grouped, read_grouped,
+};
 use super::*;
 use glam::{DVec2, DVec3};
 use serde_json::{Value, json};
@@ -44,7 +46,8 @@ fn both_forms_keep_triangles_normals_parameters_and_groups() {
     let mut mesh = ball(12, 8);
     mesh.surfaces = (0..mesh.triangles.len() as u32).map(|k| k % 3).collect();
     let names = vec!["front".to_owned(), "back side".to_owned()];
-    let looks = vec![None, Some(MetallicRoughness { base: DVec3::new(0.5, 0.25, 1.0), metallic: 0.125, roughness: 0.75 })];
+    let looks =
+        vec![None, Some(MetallicRoughness { base: DVec3::new(0.5, 0.25, 1.0), metallic: 0.125, roughness: 0.75 })];
     let grouped = Grouped { mesh: mesh.clone(), names, materials: looks };
     for format in [Format::Gltf, Format::Glb] {
         let back = parse_grouped(&print_grouped(&grouped, format).unwrap(), format).unwrap();

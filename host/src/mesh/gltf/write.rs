@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use serde_json::{Value, json};
 
 use super::super::groups::{Grouped, MetallicRoughness, has_groups, name_of};
-use super::super::{Fault, Mesh, FaultLocation, MeshProblem};
+use super::super::{Fault, FaultLocation, Mesh, MeshProblem};
 use super::{BINARY_CHUNK, JSON_CHUNK, MAGIC, base64};
 
 /// Types of components.
@@ -38,8 +38,13 @@ pub fn print_binary(grouped: &Grouped) -> Result<Vec<u8>, Fault> {
     binary.resize(binary.len().next_multiple_of(4), 0);
     let whole = 12 + 8 + json.len() + 8 + binary.len();
     let length = |length: usize| {
-        let too_long =
-            || FaultLocation::Mesh.fault(MeshProblem::TooMany { what: "bytes", count: whole as u64, limit: u32::MAX.into() });
+        let too_long = || {
+            FaultLocation::Mesh.fault(MeshProblem::TooMany {
+                what: "bytes",
+                count: whole as u64,
+                limit: u32::MAX.into(),
+            })
+        };
         u32::try_from(length).map_err(|_| too_long())
     };
     let mut bytes = MAGIC.to_vec();

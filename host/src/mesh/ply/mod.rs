@@ -14,12 +14,12 @@ mod table;
 
 use glam::{DVec2, DVec3};
 
-use self::header::{PlyElement, Encoding, Header, Property, Scalar};
+use self::header::{Encoding, Header, PlyElement, Property, Scalar};
 use self::table::{Binary, Table, Text};
 use super::fan::{fan, strip};
 use super::groups::{Grouped, has_groups, name_of};
 use super::triangles::MAX_COUNT;
-use super::{Fault, Mesh, FaultLocation, MeshProblem};
+use super::{Fault, FaultLocation, Mesh, MeshProblem};
 
 /// Understands a PLY file.
 pub(super) fn parse(bytes: &[u8]) -> Result<Grouped, Fault> {

@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-use super::{Hit, Octree, Ray, OctreeSettings, Walk};
+use super::{Hit, Octree, OctreeSettings, Ray, Walk};
 use crate::numeric::sampling::{RandomStream, sphere};
 use crate::numeric::triangle::Shear;
 

@@ -13,7 +13,9 @@ fn codes_are_sorted_and_none_contains_another() {
 
 #[test]
 fn points_of_the_surface_lie_in_stored_nodes() {
-    for settings in [OctreeSettings::default(), OctreeSettings { depth: 4, leaf_triangles: 1, ..OctreeSettings::default() }] {
+    for settings in
+        [OctreeSettings::default(), OctreeSettings { depth: 4, leaf_triangles: 1, ..OctreeSettings::default() }]
+    {
         let shape = torus(30);
         let octree = Octree::build(&shape.vertices, &shape.triangles, &settings).expect("a sound mesh");
         for triangle in 0..shape.triangles.len() {

@@ -5,7 +5,7 @@ mod exr;
 mod hdr;
 mod png;
 
-pub(crate) use texel::{TexelFormat, Texel};
+pub(crate) use texel::{Texel, TexelFormat};
 
 use super::{Picture, PictureError};
 use image::ImageFormat;

@@ -1,6 +1,6 @@
 //! PNG files, row by row.
 
-use super::texel::{Buffered, TexelFormat, Texel};
+use super::texel::{Buffered, Texel, TexelFormat};
 use png::{BitDepth, ColorType, Decoder, DecodingError, Limits, Reader, Transformations};
 
 /// Most bytes that the decoder may take for what is no pixel, and for rows.

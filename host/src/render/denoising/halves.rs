@@ -1,10 +1,10 @@
 //! The samples of a film in two halves: what each pixel is in both, how noisy that is, and where one holds an outlier.
 
+use super::super::features::PixelFeatures;
 use super::super::film::Film;
-use super::super::guide::PixelFeatures;
 use super::super::tally::Tally;
 use super::plane::{PixelPlane, bell, square};
-use super::regression::{RgbPlanes, MARGIN, NoisyPicture};
+use super::regression::{MARGIN, NoisyPicture, RgbPlanes};
 use crate::color::srgb::LUMINANCE;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;

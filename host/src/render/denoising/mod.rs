@@ -13,7 +13,7 @@
 //! Rousselle, Knaus and Zwicker 2012 for halves and weights; Bitterli and others 2016 for the regression. The mixture with
 //! what is not filtered is ours, for the candidates of both.
 
-mod guides;
+mod features;
 mod halves;
 mod pilot;
 mod plane;
@@ -23,7 +23,7 @@ mod tests;
 
 use super::film::Film;
 use crate::picture::{Picture, PictureError};
-use guides::feature_planes;
+use features::feature_planes;
 use halves::Halves;
 use pilot::Pilot;
 use rayon::prelude::*;

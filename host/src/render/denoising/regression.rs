@@ -354,7 +354,13 @@ macro_rules! normal_equations {
 /// # Source
 /// Bitterli and others 2016, nonlinearly weighted first-order regression.
 #[inline(always)]
-fn fit(picture: &NoisyPicture, features: &FeaturePlanes, place: [isize; 2], weights: &[[f32; LANES]], step: usize) -> [Lanes; 3] {
+fn fit(
+    picture: &NoisyPicture,
+    features: &FeaturePlanes,
+    place: [isize; 2],
+    weights: &[[f32; LANES]],
+    step: usize,
+) -> [Lanes; 3] {
     let plane = &picture.bands[0];
     let place = plane.place(place[0], place[1]);
     let values = features.values.each_ref().map(PixelPlane::values);

@@ -3,7 +3,7 @@
 use super::halves::halves;
 use super::*;
 use crate::render::PixelSample;
-use crate::render::guide::PixelFeatures;
+use crate::render::features::PixelFeatures;
 use glam::DVec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -173,7 +173,11 @@ fn halves_of_samples_are_what_the_film_holds() {
     for (number, [early, late]) in [[0.0, 1.0], [1.0, 1.0], [2.0, 1.0], [2.0, 2.0], [4.0, 1.0]].into_iter().enumerate()
     {
         let value = f64::from(1u32 << number);
-        film.rows_mut()[0].add(0, &PixelSample { radiance: DVec3::splat(value), ..PixelSample::default() }, &Default::default());
+        film.rows_mut()[0].add(
+            0,
+            &PixelSample { radiance: DVec3::splat(value), ..PixelSample::default() },
+            &Default::default(),
+        );
         let count = number as u32 + 1;
         assert_eq!(halves(count), [early, late], "{count}");
         let PixelFeatures { early: sum, .. } = film.features()[0];
@@ -187,7 +191,8 @@ fn one_bright_sample_leaves_no_trace_and_what_is_bright_in_both_halves_stays() {
     let lamp = |x: f64, y: f64| (20.0..23.0).contains(&x) && (20.0..23.0).contains(&y);
     let wall: Truth<'_> = &|x, y| (DVec3::splat(if lamp(x, y) { 50.0 } else { 0.5 }), DVec3::splat(0.5), DVec3::Z);
     let mut film = film([48, 40], 15, 0.3, wall, 3);
-    let bright = PixelSample { radiance: DVec3::splat(5e3), covered: true, albedo: DVec3::splat(0.5), ..PixelSample::default() };
+    let bright =
+        PixelSample { radiance: DVec3::splat(5e3), covered: true, albedo: DVec3::splat(0.5), ..PixelSample::default() };
     for (x, y) in [(8, 9), (35, 30), (47, 0)] {
         film.rows_mut()[y].add(x, &bright, &Default::default());
     }

@@ -1,7 +1,7 @@
 //! Where surfaces touch or pass through each other: elements end there, so that none is partly inside of something.
 
 use super::hierarchy::{Hierarchy, normal_and_area};
-use super::sight::VisibilityTester;
+use super::visibility::VisibilityTester;
 use crate::numeric::bounds::Bounds;
 use glam::DVec3;
 use rayon::prelude::*;

@@ -1,7 +1,7 @@
 //! Light that comes to elements straight from lights.
 
 use super::hierarchy::{HierarchyNode, RadiosityPatch};
-use super::sight::VisibilityTester;
+use super::visibility::VisibilityTester;
 use crate::color::Channels;
 use crate::numeric::ray::Ray;
 use crate::numeric::sequence::SobolSequence;
@@ -65,7 +65,8 @@ pub(super) fn of_parts(around: &CornerLight, sliver: Option<usize>) -> Vec<Optio
 
 /// A sum of what is known at some places, times a weight.
 fn sum(of: &[ExternalLight], weight: f64) -> ExternalLight {
-    let sum = |part: fn(&ExternalLight) -> Channels| of.iter().fold(Channels::ZERO, |sum, lit| sum + part(lit)) * weight;
+    let sum =
+        |part: fn(&ExternalLight) -> Channels| of.iter().fold(Channels::ZERO, |sum, lit| sum + part(lit)) * weight;
     ExternalLight { direct: sum(|lit| lit.direct), extra: sum(|lit| lit.extra) }
 }
 
@@ -125,7 +126,11 @@ impl VisibilityTester<'_> {
     }
 
     /// Exitance from elsewhere at a point of a patch, in the lanes that there are.
-    pub(super) fn exitance(&self, (patch, point): (&RadiosityPatch, DVec3), exitance: Option<Exitance<'_>>) -> Channels {
+    pub(super) fn exitance(
+        &self,
+        (patch, point): (&RadiosityPatch, DVec3),
+        exitance: Option<Exitance<'_>>,
+    ) -> Channels {
         let lanes = self.world.appearance.wavelengths.lanes();
         let extra = exitance.map_or(Channels::ZERO, |of| of(patch.triangle, patch.outside, point));
         Channels(std::array::from_fn(|lane| if lane < lanes { extra.0[lane] } else { 0.0 }))
@@ -191,13 +196,19 @@ impl VisibilityTester<'_> {
                         (false, _) => Channels::ONE,
                         (true, 0) => self.world.transmittance(&ray, t_max, (index, None), (0, 0.0)).0,
                         (true, _) if !appearance.has_passable => Channels::ONE,
-                        (true, wavelength_set) => self.world.transmittance(&ray, t_max, (index, None), (wavelength_set, 0.0)).0,
+                        (true, wavelength_set) => {
+                            self.world.transmittance(&ray, t_max, (index, None), (wavelength_set, 0.0)).0
+                        }
                     };
                     if transmittance == Channels::ZERO {
                         break;
                     }
                     seen += u32::from(wavelength_set == 0);
-                    let light_sample = if wavelength_set == 0 { Some(light_sample) } else { source.sample_incident(point, Some(normal), uniform, wavelength_set) };
+                    let light_sample = if wavelength_set == 0 {
+                        Some(light_sample)
+                    } else {
+                        source.sample_incident(point, Some(normal), uniform, wavelength_set)
+                    };
                     let arriving = light_sample.map_or(Channels::ZERO, |beam| beam.irradiance * transmittance * cosine);
                     part += if arriving.is_finite() { arriving } else { Channels::ZERO };
                 }

@@ -2,7 +2,7 @@
 
 use super::direct::{CornerLight, Exitance, ExternalLight, bend, of_parts};
 use super::hierarchy::{Hierarchy, HierarchyNode, RadiosityPatch, normal_and_area};
-use super::sight::VisibilityTester;
+use super::visibility::VisibilityTester;
 use crate::color::Channels;
 use crate::render::world::mean_diffuse_albedo;
 use glam::DVec3;
@@ -116,7 +116,9 @@ impl<'a> Elements<'a> {
         };
         let known: Vec<Known> = visibility.map(nodes, of);
         self.indirect.resize(self.hierarchy.nodes.len(), Channels::ZERO);
-        for (Known { reflectance, mean: ExternalLight { direct, extra }, corner_light: around }, place) in known.into_iter().zip(first..) {
+        for (Known { reflectance, mean: ExternalLight { direct, extra }, corner_light: around }, place) in
+            known.into_iter().zip(first..)
+        {
             self.reflectance.push(reflectance);
             self.direct.push(direct);
             self.extra.push(extra);
@@ -125,13 +127,23 @@ impl<'a> Elements<'a> {
         }
     }
 
-    fn known(&self, visibility: &VisibilityTester<'_>, node: &HierarchyNode, corners: Option<[ExternalLight; 3]>) -> Known {
+    fn known(
+        &self,
+        visibility: &VisibilityTester<'_>,
+        node: &HierarchyNode,
+        corners: Option<[ExternalLight; 3]>,
+    ) -> Known {
         if !node.is_leaf() || node.is_cluster() {
-            return Known { reflectance: Channels::ZERO, mean: ExternalLight::default(), corner_light: CornerLight::default() };
+            return Known {
+                reflectance: Channels::ZERO,
+                mean: ExternalLight::default(),
+                corner_light: CornerLight::default(),
+            };
         }
         let patch = &self.hierarchy.patches[node.patch as usize];
         let divisible = self.may_divide(node);
-        let (around, mean) = visibility.external_light((patch, node), corners, (self.exitance, self.shadows), divisible);
+        let (around, mean) =
+            visibility.external_light((patch, node), corners, (self.exitance, self.shadows), divisible);
         Known { reflectance: reflectance(visibility, patch, (node.corners, node.middle)), mean, corner_light: around }
     }
 
@@ -139,7 +151,11 @@ impl<'a> Elements<'a> {
     fn known_of_faces(&self, visibility: &VisibilityTester<'_>, cluster: u32) -> Known {
         let hierarchy = &self.hierarchy;
         if hierarchy.nodes[cluster as usize].is_dark {
-            return Known { reflectance: Channels::ZERO, mean: ExternalLight::default(), corner_light: CornerLight::default() };
+            return Known {
+                reflectance: Channels::ZERO,
+                mean: ExternalLight::default(),
+                corner_light: CornerLight::default(),
+            };
         }
         let at = |(turn, place): (u32, [DVec3; 2])| visibility.light_roughly(place, self.shadows, turn);
         let points = hierarchy.points(cluster);
@@ -170,7 +186,11 @@ impl<'a> Elements<'a> {
 }
 
 /// The part of light that an element reflects diffusely, in the mean.
-fn reflectance(visibility: &VisibilityTester<'_>, patch: &RadiosityPatch, ([a, b, c], middle): ([DVec3; 3], DVec3)) -> Channels {
+fn reflectance(
+    visibility: &VisibilityTester<'_>,
+    patch: &RadiosityPatch,
+    ([a, b, c], middle): ([DVec3; 3], DVec3),
+) -> Channels {
     let appearance = &visibility.world.appearance;
     let prepared = appearance.prepared;
     let triangle = patch.triangle;

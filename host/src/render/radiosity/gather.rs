@@ -9,8 +9,8 @@
 use super::corners::{ElementCorner, ElementCorners};
 use super::form_factor::{from_point, kernel};
 use super::hierarchy::{Hierarchy, NONE, POINTS};
-use super::links::AssessedLink;
-use super::sight::VisibilityTester;
+use super::refinement::AssessedLink;
+use super::visibility::VisibilityTester;
 use crate::color::Channels;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -94,7 +94,12 @@ impl<'g> Gatherer<'g, '_> {
     /// What each corner sees, divided the more the more what is seen differs.
     ///
     /// - `sent`: about what each node sends, W/m².
-    pub(super) fn views(&self, links: &[AssessedLink], corners: &'g ElementCorners, sent: &[Channels]) -> CornerViews<'g> {
+    pub(super) fn views(
+        &self,
+        links: &[AssessedLink],
+        corners: &'g ElementCorners,
+        sent: &[Channels],
+    ) -> CornerViews<'g> {
         let nodes = &self.hierarchy.nodes;
         let mut parent = vec![NONE; nodes.len()];
         for (place, node) in (0..).zip(nodes) {

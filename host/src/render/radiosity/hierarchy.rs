@@ -4,8 +4,8 @@
 //! that a cluster receives may be spread over all of it. A smooth piece of a surface of many small triangles is one
 //! element: a cluster that is not divided, a face cluster.
 
+use super::disjoint_sets::DisjointSets;
 use super::form_factor::Convex;
-use super::pieces::DisjointSets;
 use crate::color::Channels;
 use crate::numeric::triangle;
 use glam::DVec3;
@@ -175,7 +175,8 @@ impl Hierarchy {
         if hierarchy.patches.is_empty() {
             return hierarchy;
         }
-        let own: Vec<HierarchyNode> = (0..).zip(&hierarchy.patches).map(|(i, patch)| HierarchyNode::triangle(patch.corners, i)).collect();
+        let own: Vec<HierarchyNode> =
+            (0..).zip(&hierarchy.patches).map(|(i, patch)| HierarchyNode::triangle(patch.corners, i)).collect();
         let (low, high) = own.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), node| {
             (low.min(node.middle), high.max(node.middle))
         });
@@ -265,7 +266,8 @@ impl Hierarchy {
         let parent = &mut self.nodes[node as usize];
         (parent.child, parent.children) = (child, parts.len() as u32);
         let HierarchyNode { patch, is_dark, .. } = *parent;
-        self.nodes.extend(parts.iter().map(|corners| HierarchyNode { is_dark, ..HierarchyNode::triangle(*corners, patch) }));
+        self.nodes
+            .extend(parts.iter().map(|corners| HierarchyNode { is_dark, ..HierarchyNode::triangle(*corners, patch) }));
     }
 
     /// Leaves the dark out: what is left of nodes has the area of what is not dark.
@@ -468,7 +470,8 @@ mod tests {
         // Squares of two, none of which touches another, are too few.
         assert_eq!(leaves(row(0.0, 0.1).collect(), 10.0), 8);
         // A wall that rises from them faces another way.
-        let wall = row(0.0, 0.0).map(|RadiosityPatch { corners, .. }| patch(corners.map(|c| DVec3::new(c.x, 0.0, c.y))));
+        let wall =
+            row(0.0, 0.0).map(|RadiosityPatch { corners, .. }| patch(corners.map(|c| DVec3::new(c.x, 0.0, c.y))));
         assert!(leaves(row(0.0, 0.0).chain(wall).collect(), 10.0) > 1);
     }
 }

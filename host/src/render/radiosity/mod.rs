@@ -24,15 +24,15 @@ mod faces;
 mod form_factor;
 mod gather;
 mod hierarchy;
-mod links;
-mod pieces;
+mod refinement;
+mod disjoint_sets;
 mod report;
-mod sight;
+mod visibility;
 mod solver;
 mod surface;
 #[cfg(test)]
 mod tests;
-mod visible;
+mod lit_patches;
 
 pub use direct::Exitance;
 pub use report::RadiosityReport;
@@ -48,13 +48,13 @@ use contact::Contacts;
 use corners::ElementCorners;
 use elements::Elements;
 use exchange::{Exchange, ExchangeLink, LeafVisibility};
-use gather::{Gatherer, CornerViews};
+use gather::{CornerViews, Gatherer};
 use hierarchy::{RadiosityPatch, normal_and_area};
-use links::{RefinementBound, AssessedLink, refine};
-use sight::VisibilityTester;
+use refinement::{AssessedLink, RefinementBound, refine};
 use solver::solve;
 use std::time::Instant;
 use surface::SurfaceLight;
+use visibility::VisibilityTester;
 
 /// How often links are looked at with the light that was found.
 const ROUNDS: u64 = 3;
@@ -98,10 +98,11 @@ impl Radiosity {
         let diagonal = prepared.bounds.diagonal();
         let finest = (settings.finest * diagonal).max(f64::MIN_POSITIVE);
         let lengths = [finest, COARSEST * finest];
-        let contacts =
-            Contacts::new(&visibility, (diagonal, finest), |t| plan.includes_object(prepared.object_of[t as usize] as usize));
+        let contacts = Contacts::new(&visibility, (diagonal, finest), |t| {
+            plan.includes_object(prepared.object_of[t as usize] as usize)
+        });
         let patches = patches(prepared, plan, &visibility);
-        let hierarchy = visible::lit_hierarchy(&visibility, patches, &contacts, (exitance, shadows), lengths);
+        let hierarchy = lit_patches::lit_hierarchy(&visibility, patches, &contacts, (exitance, shadows), lengths);
         if hierarchy.nodes.is_empty() {
             return Ok(Radiosity { light: SurfaceLight::dark(prepared), report: RadiosityReport::default() });
         }
@@ -118,12 +119,13 @@ impl Radiosity {
             (watch.progress)(Progress::of(2 * round + 1, 2 * ROUNDS, "rounds"));
             let is_last = round + 1 == ROUNDS || stopped();
             leaves = elements.hierarchy.leaves();
-            let gatherer = Gatherer { visibility: &visibility, hierarchy: &elements.hierarchy, error: bound.irradiance };
+            let gatherer =
+                Gatherer { visibility: &visibility, hierarchy: &elements.hierarchy, error: bound.irradiance };
             let corners = is_last.then(|| ElementCorners::new(prepared, &elements.hierarchy, &leaves));
             let views = corners.as_ref().map(|corners| gatherer.views(&links, corners, &elements.sent));
-            let leaf_visibility = views
-                .as_ref()
-                .map(|views| visible::leaf_visibility(&visibility, &elements, (&leaves, views.rows()), settings.directions));
+            let leaf_visibility = views.as_ref().map(|views| {
+                lit_patches::leaf_visibility(&visibility, &elements, (&leaves, views.rows()), settings.directions)
+            });
             let tolerance = if is_last { settings.tolerance } else { 1e-2 };
             let last = leaf_visibility.as_ref().zip(views.as_ref());
             let (irradiance, light) = light(&elements, &links, last, (tolerance, &stopped), &mut report)?;
@@ -184,7 +186,8 @@ fn light(
     (tolerance, stopped): (f64, &dyn Fn() -> bool),
     report: &mut RadiosityReport,
 ) -> Result<(Vec<Channels>, Vec<Channels>), RenderError> {
-    let links: Vec<ExchangeLink> = assessed.iter().map(|judged| judged.link).filter(|link| link.exchange > 0.0).collect();
+    let links: Vec<ExchangeLink> =
+        assessed.iter().map(|judged| judged.link).filter(|link| link.exchange > 0.0).collect();
     let mut exchange = Exchange::new(&elements.hierarchy, &links);
     let leaves = exchange.leaves.clone();
     let of = |values: &[Channels]| -> Vec<Channels> { leaves.iter().map(|leaf| values[*leaf as usize]).collect() };

@@ -179,7 +179,8 @@ fn the_hierarchy_gives_what_a_full_matrix_gives() {
     let plan = Plan::new(&room, &room.view());
     let world = World::new(&room, &plan).expect("a world");
     let visibility = VisibilityTester::new(&world, None);
-    let inside: Vec<RadiosityPatch> = patches(&room, &plan, &visibility).into_iter().filter(|patch| !patch.outside).collect();
+    let inside: Vec<RadiosityPatch> =
+        patches(&room, &plan, &visibility).into_iter().filter(|patch| !patch.outside).collect();
     let mut elements = Elements::new(Hierarchy::new(inside, 0.1), &visibility, (None, true), 0.1);
     elements.divide_where_light_varies(&visibility, f64::INFINITY, 0.6);
     let mut links = Vec::new();
@@ -189,7 +190,8 @@ fn the_hierarchy_gives_what_a_full_matrix_gives() {
         refine(&visibility, &mut elements, &mut links, bound, &|| false);
         let leaves = elements.hierarchy.leaves();
         let ones = vec![1.0; leaves.len()];
-        let ones = LeafVisibility { directions: 1, seen_part: ones.clone(), row: ones, is_dark: vec![false; leaves.len()] };
+        let ones =
+            LeafVisibility { directions: 1, seen_part: ones.clone(), row: ones, is_dark: vec![false; leaves.len()] };
         let mut report = RadiosityReport::default();
         let gatherer = Gatherer { visibility: &visibility, hierarchy: &elements.hierarchy, error: bound.irradiance };
         let corners = ElementCorners::new(&room, &elements.hierarchy, &leaves);
@@ -309,7 +311,8 @@ fn a_patch_of_light_on_a_floor_lights_the_ceiling_as_the_closed_form_tells() {
             let [a, b, c] = corners;
             // Of what is off the triangle, weights are those of the nearest point.
             let off = (a * weights[0] + b * weights[1] + c * weights[2]).distance(at);
-            (faces_down && off < 1e-9).then(|| radiosity.irradiance(triangle, true, weights, IrradiancePart::Indirect).0[0])
+            (faces_down && off < 1e-9)
+                .then(|| radiosity.irradiance(triangle, true, weights, IrradiancePart::Indirect).0[0])
         });
         let found = found.expect("a place on the ceiling");
         assert!((found / exact - 1.0).abs() < 0.015, "{x} {z}: {found} {exact}");

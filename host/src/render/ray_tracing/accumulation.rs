@@ -9,7 +9,9 @@ use crate::render::film::{Film, FilmRow};
 use crate::render::state::after;
 use crate::render::tally::SHARING;
 use crate::render::two_way::{FluxBalance, PhotonEstimator};
-use crate::render::{Progress, RenderOrder, RayCounts, RenderError, Rendering, SpanCounts, StateError, Watch, denoising};
+use crate::render::{
+    Progress, RayCounts, RenderError, RenderOrder, Rendering, SpanCounts, StateError, Watch, denoising,
+};
 use crate::scene::View;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};

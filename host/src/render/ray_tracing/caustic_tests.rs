@@ -3,9 +3,9 @@
 use super::tests::{diffuse, from_above, mirror, object, red, scene};
 use super::two_way_tests::{ball, block, glass, lamp, two_way};
 use super::*;
-use crate::color::{Extrapolation, Color, Spectrum, shipped};
+use crate::color::{Color, Extrapolation, Spectrum, shipped};
 use crate::illumination::Light;
-use crate::illumination::material::{MaterialKind, RefractiveIndex, Material, Transparent};
+use crate::illumination::material::{Material, MaterialKind, RefractiveIndex, Transparent};
 use crate::numeric::bounds::Bounds;
 use crate::render::two_way::FluxBalance;
 use crate::scene::{Camera, Object, Scene, Shape};
@@ -215,7 +215,8 @@ fn a_slab_lets_through_what_fresnel_tells() {
 #[test]
 fn a_ball_of_dark_glass_absorbs_what_fresnel_and_bouguer_tell() {
     let (index, absorption) = (1.5, 0.7);
-    let glass = Transparent { absorption: Color::grey(absorption), ..Transparent::clear(RefractiveIndex::Constant(index)) };
+    let glass =
+        Transparent { absorption: Color::grey(absorption), ..Transparent::clear(RefractiveIndex::Constant(index)) };
     let found = parts(ball(1.0, DVec3::ZERO, MaterialKind::Transparent(glass)), DVec3::NEG_Y);
     // Over the disc, evenly by the square of the distance from its middle. Each chord is as long, each reflection as strong.
     let term = |k: u32| {

@@ -6,7 +6,7 @@ use crate::color::Color;
 use crate::illumination::Light;
 use crate::illumination::fresnel::Dielectric;
 use crate::illumination::light::LightShape;
-use crate::illumination::material::{MaterialKind, Finish, RefractiveIndex, Material, Metal, Transparent};
+use crate::illumination::material::{Finish, Material, MaterialKind, Metal, RefractiveIndex, Transparent};
 use crate::numeric::bounds::Bounds;
 use crate::scene::{Camera, Caustics, Interreflection, Object, Parallel, Shape};
 use crate::solid::Primitive;
@@ -52,7 +52,8 @@ fn glass_that_hardly_is_there_changes_no_light() {
     let copper = crate::color::shipped::metal("copper").expect("a metal");
     let finish = Finish::Rough { name: "GGX, all".into(), roughness: 0.5.into() };
     let metal = Material::from(MaterialKind::Metal(Metal { n: copper.n, k: copper.k, finish }));
-    let lamp = LightShape::Rectangle { corner: DVec3::new(-2.0, 9.0, -2.0), across: DVec3::X * 4.0, up: DVec3::Z * 4.0 };
+    let lamp =
+        LightShape::Rectangle { corner: DVec3::new(-2.0, 9.0, -2.0), across: DVec3::X * 4.0, up: DVec3::Z * 4.0 };
     for material in [metal, diffuse(0.7).into()] {
         let with = |slabs: Vec<Object>| {
             let floor = object(Shape::Ground { size: 60.0 }, DMat4::IDENTITY, material.clone());
@@ -74,7 +75,8 @@ fn glass_that_hardly_is_there_changes_no_light() {
 #[test]
 fn caustics_that_are_asked_for_are_not_counted_twice() {
     // The same floor under a slab of glass: with caustics, rays from the eye find the lamp behind it, which is large.
-    let lamp = LightShape::Rectangle { corner: DVec3::new(-20.0, 9.0, -20.0), across: DVec3::X * 40.0, up: DVec3::Z * 40.0 };
+    let lamp =
+        LightShape::Rectangle { corner: DVec3::new(-20.0, 9.0, -20.0), across: DVec3::X * 40.0, up: DVec3::Z * 40.0 };
     let found = [false, true].map(|caustics| {
         let floor = object(Shape::Ground { size: 60.0 }, DMat4::IDENTITY, diffuse(0.7));
         let lights = vec![Light::Area { patch: lamp, radiance: Color::grey(3.0) }];

@@ -74,7 +74,8 @@ fn direct_light_caustics_and_what_surfaces_send_each_other_are_all_the_light_of_
     use crate::color::Color;
     use crate::illumination::Light;
     use crate::illumination::light::LightShape;
-    let patch = LightShape::Rectangle { corner: DVec3::new(-0.4, 0.95, -0.4), across: DVec3::X * 0.8, up: DVec3::Z * 0.8 };
+    let patch =
+        LightShape::Rectangle { corner: DVec3::new(-0.4, 0.95, -0.4), across: DVec3::X * 0.8, up: DVec3::Z * 0.8 };
     let mut objects = room(2.0, 0.6, None);
     objects.push(ball(0.35, DVec3::new(-0.3, -0.6, 0.2), glass(1.5)));
     objects.push(block(DVec3::new(0.05, 1.2, 1.2), DVec3::new(-0.9, 0.2, -0.2), mirror(0.9)));

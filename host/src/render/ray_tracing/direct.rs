@@ -1,7 +1,7 @@
 //! Light that comes to an element from lights, without a way in between.
 
-use super::draws::SampleDimension;
-use super::encounter::{PathVertex, power_heuristic};
+use super::sampler::SampleDimension;
+use super::vertex::{PathVertex, power_heuristic};
 use crate::color::Channels;
 use crate::illumination::light::LightSample;
 use crate::illumination::optics::LobeClass;
@@ -60,10 +60,14 @@ impl<'a> DirectLighting<'a> {
             }
             let mut part = [Channels::ZERO; 2];
             for sample in 0..samples {
-                let uniform = sampler.for_one_of_several(*segment, SampleDimension::Lights, *number as u32, [sample, samples]);
-                if let Some(light_sample) =
-                    source.sample_incident(interaction.element.position, Some(interaction.element.normal), uniform, context.wavelength_set)
-                {
+                let uniform =
+                    sampler.for_one_of_several(*segment, SampleDimension::Lights, *number as u32, [sample, samples]);
+                if let Some(light_sample) = source.sample_incident(
+                    interaction.element.position,
+                    Some(interaction.element.normal),
+                    uniform,
+                    context.wavelength_set,
+                ) {
                     let arriving = self.reflected(vertex, index, &light_sample, counts);
                     part.iter_mut().zip(arriving).for_each(|(part, light)| *part += light);
                 }
@@ -78,7 +82,13 @@ impl<'a> DirectLighting<'a> {
     }
 
     /// What a beam adds by broad lobes and by narrow ones.
-    fn reflected(&self, vertex: &PathVertex<'_>, index: usize, light_sample: &LightSample, counts: &mut RayCounts) -> [Channels; 2] {
+    fn reflected(
+        &self,
+        vertex: &PathVertex<'_>,
+        index: usize,
+        light_sample: &LightSample,
+        counts: &mut RayCounts,
+    ) -> [Channels; 2] {
         let PathVertex { interaction, frame, context, selection, clamp_value, .. } = vertex;
         let bsdf = interaction.bsdf;
         let light = frame.local(light_sample.towards);
@@ -111,7 +121,8 @@ impl<'a> DirectLighting<'a> {
         counts.shadow += 1;
         let (ray, t_max) = self.ray(vertex, index, light_sample, light.z > 0.0);
         let occluders = self.world.occluders(ray.origin, index);
-        let (transmittance, is_cleared) = self.world.transmittance(&ray, t_max, (index, occluders), (context.wavelength_set, vertex.sampler.time));
+        let (transmittance, is_cleared) =
+            self.world.transmittance(&ray, t_max, (index, occluders), (context.wavelength_set, vertex.sampler.time));
         match is_cleared {
             // A further leg would be bent, and brings nothing.
             true => whole.map(|value| value * light_sample.irradiance * light.z.abs() * transmittance),

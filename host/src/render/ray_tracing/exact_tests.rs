@@ -4,12 +4,12 @@ use super::tests::{diffuse, mirror, object, scene, trace};
 use super::*;
 use crate::color::Color;
 use crate::illumination::material::Classic;
-use crate::illumination::texture::{TextureMapping, Motif, Pattern};
+use crate::illumination::texture::{Motif, Pattern, TextureMapping};
 use crate::illumination::{Light, Paint};
 use crate::numeric::ray::Ray;
 use crate::render::ray_tracer;
-use crate::render::world::{RayCone, BoundedRay};
-use crate::render::world::{SurfaceInteraction, RayHit};
+use crate::render::world::{BoundedRay, RayCone};
+use crate::render::world::{RayHit, SurfaceInteraction};
 use crate::scene::{Camera, Composite, Object, Operation, Scene, Shape};
 use crate::solid::Primitive;
 use crate::surface::{Surface, teapot};
@@ -177,8 +177,11 @@ fn a_coarse_ball_is_lit_as_the_ball_up_to_its_terminator() {
 /// A mirroring ball over a ground of clouds.
 fn mirror_ball(tolerance: f64) -> Scene {
     let paints = vec![Paint::grey(0.1), Paint::grey(0.9)];
-    let clouds =
-        Pattern { motif: Motif::Noise { octaves: 1 }, laying: TextureMapping { solid: true, ..TextureMapping::default() }, paints };
+    let clouds = Pattern {
+        motif: Motif::Noise { octaves: 1 },
+        laying: TextureMapping { solid: true, ..TextureMapping::default() },
+        paints,
+    };
     let ground = Classic { diffuse: Paint::Pattern(Box::new(clouds)), ..Classic::default() };
     let ground = object(Shape::Ground { size: 60.0 }, DMat4::from_translation(DVec3::Y * -2.0), ground);
     let ball = Object { tolerance: Some(tolerance), ..object(ball(1.0), DMat4::IDENTITY, mirror(0.9)) };

@@ -2,11 +2,13 @@
 
 use super::tests::{diffuse, from_above, mirror, object, red, scene, trace};
 use super::*;
-use crate::color::{Extrapolation, Color, Spectrum};
+use crate::color::{Color, Extrapolation, Spectrum};
 use crate::illumination::Paint;
 use crate::illumination::light::LightShape;
-use crate::illumination::material::{MaterialKind, Classic, Coated, Finish, RefractiveIndex, Material, Metal, Transparent};
-use crate::illumination::{RgbPower, Light};
+use crate::illumination::material::{
+    Classic, Coated, Finish, Material, MaterialKind, Metal, RefractiveIndex, Transparent,
+};
+use crate::illumination::{Light, RgbPower};
 use crate::picture::difference;
 use crate::scene::{Camera, Caustics, Interreflection, Parallel, Scene, Shape};
 use crate::solid::Primitive;
@@ -15,7 +17,8 @@ use std::f64::consts::PI;
 
 fn glass(index: f64, roughness: f64, absorption: f64) -> Material {
     let (index, absorption) = (RefractiveIndex::Constant(index), Color::grey(absorption));
-    MaterialKind::Transparent(Transparent { roughness: roughness.into(), absorption, ..Transparent::clear(index) }).into()
+    MaterialKind::Transparent(Transparent { roughness: roughness.into(), absorption, ..Transparent::clear(index) })
+        .into()
 }
 
 fn sky(radiance: f64) -> Light {
@@ -56,8 +59,9 @@ fn a_white_furnace_hides_what_loses_nothing() {
     let flat = |value: f64| Spectrum::regular(300.0, 600.0, vec![value; 2], Extrapolation::Held).expect("a spectrum");
     let perfect = |finish| MaterialKind::Metal(Metal { n: flat(0.0), k: flat(3.0), finish });
     let rough = Finish::Rough { name: "GGX, all".into(), roughness: 0.4.into() };
-    let coated =
-        |roughness| MaterialKind::Coated(Coated { diffuse: Paint::grey(1.0), index: 1.5, roughness: f64::into(roughness) });
+    let coated = |roughness| {
+        MaterialKind::Coated(Coated { diffuse: Paint::grey(1.0), index: 1.5, roughness: f64::into(roughness) })
+    };
     let materials: Vec<(Material, f64)> = vec![
         // Of a ball of triangles, some directions above the normal are below a triangle.
         (diffuse(1.0).into(), 5e-3),

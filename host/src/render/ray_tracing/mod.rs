@@ -6,8 +6,8 @@
 
 mod accumulation;
 mod direct;
-mod draws;
-mod encounter;
+mod sampler;
+mod vertex;
 mod explain;
 mod tracer;
 
@@ -28,7 +28,7 @@ mod nested_tests;
 #[cfg(test)]
 mod principled_tests;
 #[cfg(test)]
-mod shelf_tests;
+mod photon_store_tests;
 #[cfg(test)]
 mod texture_tests;
 #[cfg(test)]
@@ -46,16 +46,16 @@ pub use tracer::ENERGY_CUTOFF;
 
 use super::film::Film;
 use super::indirect::IndirectLight;
-use super::tally::{RadianceByClass, SHARING, PixelSample};
-use super::two_way::{PhotonEstimator, PhotonStore, PhotonMapper};
+use super::tally::{PixelSample, RadianceByClass, SHARING};
+use super::two_way::{PhotonEstimator, PhotonMapper, PhotonStore};
 use super::world::{AHEAD, CameraRays, Media, World};
-use super::{RenderOrder, RenderError, Renderer, Rendering, Watch};
+use super::{RenderError, RenderOrder, Renderer, Rendering, Watch};
 use crate::plan::{Plan, Stage};
 use crate::scene::{Prepared, View};
-use draws::{PathSampler, SampleDimension};
 use explain::PathLog;
 use glam::DVec3;
-use tracer::{FirstHit, PathTracer, PathScratch};
+use sampler::{PathSampler, SampleDimension};
+use tracer::{FirstHit, PathScratch, PathTracer};
 
 /// A ray tracer that holds a scene and its octree.
 pub struct RayTracer<'a> {
@@ -109,7 +109,12 @@ impl<'a> RayTracer<'a> {
         self.world.appearance.prepared
     }
 
-    fn tracer<'b>(&'b self, photons: Option<&'b PhotonEstimator<'b>>, eye: &CameraRays, records_features: bool) -> PathTracer<'b> {
+    fn tracer<'b>(
+        &'b self,
+        photons: Option<&'b PhotonEstimator<'b>>,
+        eye: &CameraRays,
+        records_features: bool,
+    ) -> PathTracer<'b> {
         let depth = self.world.appearance.prepared.settings.light.reflection_depth;
         let depth = if self.plan.needs(Stage::Reflection) { depth } else { 0 };
         let around = eye.place().map(|place| Media::around(&self.world, place)).unwrap_or_default();
@@ -146,22 +151,33 @@ impl<'a> RayTracer<'a> {
     ) -> (PixelSample, RadianceByClass, usize) {
         let pixel = u64::from(y) * u64::from(order.width) + u64::from(x);
         let sampler = PathSampler::new(order.seed, pixel, index, order.samples);
-        let sampler = if self.world.moves() { sampler.at_random_time(self.prepared().settings.geometry.shutter) } else { sampler };
+        let sampler = if self.world.moves() {
+            sampler.at_random_time(self.prepared().settings.geometry.shutter)
+        } else {
+            sampler
+        };
         let ([dx, dy], weight) = sampler.position(order.filter);
         let wavelengths = &self.world.appearance.wavelengths;
         let wavelength_set = wavelengths.set_at(sampler.point(SampleDimension::Wavelengths)[0]);
         let at = [f64::from(x) + dx, f64::from(y) + dy];
         let Some(bounded) = eye.ray(at, sampler.point(SampleDimension::Lens)) else {
             let background = self.world.appearance.escaped_radiance(&AHEAD, None, wavelength_set, |_, _| 1.0);
-            let radiance = if order.matte { DVec3::ZERO } else { weight * wavelengths.to_srgb(wavelength_set, background) };
+            let radiance =
+                if order.matte { DVec3::ZERO } else { weight * wavelengths.to_srgb(wavelength_set, background) };
             let classes = [radiance, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO];
-            return (PixelSample { radiance, weight, albedo: DVec3::splat(weight), ..PixelSample::default() }, classes, wavelength_set);
+            return (
+                PixelSample { radiance, weight, albedo: DVec3::splat(weight), ..PixelSample::default() },
+                classes,
+                wavelength_set,
+            );
         };
         let result = tracer.radiance(&bounded, wavelength_set, &sampler, scratch, log);
         let first =
             result.first.map(|FirstHit { distance, normal, object, material }| (distance, normal, [object, material]));
         let left_out = order.matte && !result.covered;
-        let light = |class: usize| weight * (wavelengths.to_srgb(wavelength_set, result.radiance[class]) + result.other_wavelengths[class]);
+        let light = |class: usize| {
+            weight * (wavelengths.to_srgb(wavelength_set, result.radiance[class]) + result.other_wavelengths[class])
+        };
         let classes = if left_out { RadianceByClass::default() } else { [0, 1, 2, 3].map(light) };
         let shared = if left_out { 0.0 } else { weight.abs() * result.shared_variance.sqrt() };
         let sample = PixelSample {
@@ -196,7 +212,8 @@ impl<'a> RayTracer<'a> {
             let photons = two_way.and_then(|two_way| two_way.trace_pass(&self.world, pass, &Watch::NOBODY));
             let tracer = self.tracer(photons.as_ref(), &eye, false);
             let (mut notes, mut scratch) = (Vec::new(), PathScratch::default());
-            let (sample, _, wavelength_set) = self.sample((&tracer, &eye, order), pixel, index, &mut scratch, PathLog::to(&mut notes));
+            let (sample, _, wavelength_set) =
+                self.sample((&tracer, &eye, order), pixel, index, &mut scratch, PathLog::to(&mut notes));
             let wavelengths = &self.world.appearance.wavelengths;
             let wavelengths = wavelengths.is_spectral().then(|| wavelengths.at(wavelength_set).to_vec());
             Explanation { sample: index, wavelengths, notes, radiance: sample.radiance.to_array() }

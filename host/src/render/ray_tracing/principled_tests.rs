@@ -3,8 +3,8 @@
 use super::tests::{diffuse, from_above, object, red, scene, trace};
 use crate::color::Color;
 use crate::illumination::material::{MaterialKind, Principled};
-use crate::illumination::texture::{Band, TextureMapping, Motif, NumberTexture, Pattern, Varying};
-use crate::illumination::{RgbPower, Light, Material, Paint};
+use crate::illumination::texture::{Band, Motif, NumberTexture, Pattern, TextureMapping, Varying};
+use crate::illumination::{Light, Material, Paint, RgbPower};
 use crate::scene::{Interreflection, Shape};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec3};

@@ -4,7 +4,7 @@ use super::*;
 use crate::color::Color;
 use crate::illumination::Paint;
 use crate::illumination::material::Classic;
-use crate::illumination::{RgbPower, Light, Material};
+use crate::illumination::{Light, Material, RgbPower};
 use crate::picture::{Operator, compose, difference};
 use crate::render::ray_tracer;
 use crate::scene::{Camera, Object, Projection, Scene, Settings, Shape};
@@ -93,7 +93,8 @@ fn still_life() -> Scene {
         parallel: None,
     };
     let mut scene = scene(objects, lights, 40);
-    (scene.camera, scene.ambient, scene.background) = (Some(camera), RgbPower::splat(0.05), RgbPower::new(0.3, 0.4, 0.5));
+    (scene.camera, scene.ambient, scene.background) =
+        (Some(camera), RgbPower::splat(0.05), RgbPower::new(0.3, 0.4, 0.5));
     scene.settings.image.samples = 3;
     scene
 }

@@ -5,7 +5,7 @@ use super::two_way_tests::{block, two_way};
 use super::*;
 use crate::color::Color;
 use crate::illumination::material::Classic;
-use crate::illumination::texture::{ImageContent, Image, TextureMapping, Motif, Pattern, Relief};
+use crate::illumination::texture::{Image, ImageContent, Motif, Pattern, Relief, TextureMapping};
 use crate::illumination::{Light, Material, Paint};
 use crate::picture::difference;
 use crate::render::ray_tracer;

@@ -1,17 +1,17 @@
 //! Follows the legs of a sample's way from the eye: what each meets, and where it goes on.
 
 use super::direct::DirectLighting;
-use super::draws::{PathSampler, SampleDimension};
-use super::encounter::{PathVertex, power_heuristic};
 use super::explain::{PathLog, PathNote};
+use super::sampler::{PathSampler, SampleDimension};
+use super::vertex::{PathVertex, power_heuristic};
 use crate::color::Channels;
 use crate::color::srgb::LUMINANCE;
 use crate::illumination::light::LightSource;
-use crate::illumination::optics::{LobeSelection, BsdfSample, ShadingContext};
+use crate::illumination::optics::{BsdfSample, LobeSelection, ShadingContext};
 use crate::numeric::ray::Ray;
 use crate::render::indirect::{IndirectLight, IrradiancePart};
 use crate::render::two_way::PhotonEstimator;
-use crate::render::world::{RayCone, SurfaceInteraction, Media, RayHit, BoundedRay, World, diffuse_albedo};
+use crate::render::world::{BoundedRay, Media, RayCone, RayHit, SurfaceInteraction, World, diffuse_albedo};
 use crate::render::{PathClass, RayCounts};
 use crate::scene::Caustics;
 use glam::DVec3;
@@ -211,7 +211,17 @@ impl<'a> PathTracer<'a> {
         let has_others =
             appearance.ambient.is_some() || appearance.sources.iter().any(|(_, source)| !source.emits_photons());
         let direct = DirectLighting::new(world, shadows, settings.light.samples.max(1));
-        PathTracer { world, direct, depth, caustics, photons, indirect, has_unmapped_lights: has_others, camera_media: around, records_features }
+        PathTracer {
+            world,
+            direct,
+            depth,
+            caustics,
+            photons,
+            indirect,
+            has_unmapped_lights: has_others,
+            camera_media: around,
+            records_features,
+        }
     }
 
     /// The radiance that arrives along a line of sight.
@@ -265,7 +275,11 @@ impl<'a> PathTracer<'a> {
                     log.note(|| PathNote::term(segment.depth, "meets nothing", segment.throughput * radiance));
                 }
                 RayHit::Light(index, light_hit) => {
-                    let absorbed = segment.media.transmittance(self.world, light_hit.t * direction.length() - segment.begin, wavelength_set);
+                    let absorbed = segment.media.transmittance(
+                        self.world,
+                        light_hit.t * direction.length() - segment.begin,
+                        wavelength_set,
+                    );
                     let (number, source) = &self.world.appearance.sources[index];
                     let radiance = absorbed * light_hit.radiance * self.mis_weight(&segment, source, light_hit.pdf);
                     result.add(segment.history.class(), segment.throughput * radiance);
@@ -276,7 +290,8 @@ impl<'a> PathTracer<'a> {
                 RayHit::Surface(interaction) => {
                     if segment.depth == 0 {
                         let SurfaceInteraction { depth, object, material, .. } = interaction;
-                        result.first = Some(FirstHit { distance: depth, normal: interaction.element.normal, object, material });
+                        result.first =
+                            Some(FirstHit { distance: depth, normal: interaction.element.normal, object, material });
                     }
                     result.covered = true;
                     let counting = &mut SampleRecord { counts, log: &mut log, result: &mut result };
@@ -298,16 +313,23 @@ impl<'a> PathTracer<'a> {
     ) {
         let bsdf = interaction.bsdf;
         let towards = segment.bounded.ray.direction.normalize();
-        segment.throughput *= segment.media.transmittance(self.world, interaction.distance - segment.begin, wavelength_set);
+        segment.throughput *=
+            segment.media.transmittance(self.world, interaction.distance - segment.begin, wavelength_set);
         let medium_interface = segment.media.crossing(self.world, interaction, &segment.bounded.ray);
         if !medium_interface.is_interface {
             let bounded = BoundedRay { t_min: medium_interface.last, ..segment.bounded };
-            waiting.push(PathSegment { bounded, begin: interaction.distance, media: medium_interface.media, ..segment });
+            waiting.push(PathSegment {
+                bounded,
+                begin: interaction.distance,
+                media: medium_interface.media,
+                ..segment
+            });
             return;
         }
         log.note(|| PathNote::element(segment.depth, self.world.appearance.prepared, interaction));
-        if let Some((emission, factor)) =
-            self.world.emitted(interaction, towards, wavelength_set, |source, pdf| self.mis_weight(&segment, source, pdf))
+        if let Some((emission, factor)) = self
+            .world
+            .emitted(interaction, towards, wavelength_set, |source, pdf| self.mis_weight(&segment, source, pdf))
         {
             let radiance = segment.throughput * emission * factor;
             result.add(segment.history.class(), radiance);
@@ -328,10 +350,17 @@ impl<'a> PathTracer<'a> {
         };
         let (lane, lane_throughput) = drawn.unwrap_or((segment.lane.unwrap_or(0), segment.throughput));
         let side = medium_interface.indices(self.world, wavelength_set);
-        let context = ShadingContext { view: frame.local(-towards), wavelength_set, indices: side, lane, texture_values: interaction.texture_values() };
+        let context = ShadingContext {
+            view: frame.local(-towards),
+            wavelength_set,
+            indices: side,
+            lane,
+            texture_values: interaction.texture_values(),
+        };
         if segment.for_lights {
             let sample = bsdf.straight_sample(&context);
-            waiting.extend(sample.and_then(|onward| self.straight_segment(&segment, interaction, (onward, 0), sampler)));
+            waiting
+                .extend(sample.and_then(|onward| self.straight_segment(&segment, interaction, (onward, 0), sampler)));
             return;
         }
         if segment.records_features {
@@ -349,8 +378,9 @@ impl<'a> PathTracer<'a> {
             log.note(|| PathNote::term(segment.depth, "light of other surfaces", segment.throughput * radiance));
         }
         let is_worth = |sample: BsdfSample| (segment.throughput * sample.weight).max() > LEAST_SPLIT;
-        let (count, all_worth) =
-            bsdf.specular_samples(&context).fold((0, true), |(count, all), sample| (count + 1, all && is_worth(sample)));
+        let (count, all_worth) = bsdf
+            .specular_samples(&context)
+            .fold((0, true), |(count, all), sample| (count + 1, all && is_worth(sample)));
         let directions = count + usize::from(bsdf.continues_non_delta());
         let parts = directions <= 1 || waiting.len() + directions <= MOST_WAITING && all_worth;
         let selection = if parts { LobeSelection::NonDelta } else { LobeSelection::All };
@@ -368,15 +398,21 @@ impl<'a> PathTracer<'a> {
             lane_throughput,
         };
         if bsdf.has_non_delta() {
-            let add = |number, radiance| log.note(|| PathNote::direct_light(segment.depth, number, segment.throughput * radiance));
+            let add = |number, radiance| {
+                log.note(|| PathNote::direct_light(segment.depth, number, segment.throughput * radiance))
+            };
             let light = self.direct.radiance(&vertex, counts, add);
             for (is_broad, radiance) in [true, false].into_iter().zip(light) {
                 result.add(segment.history.extended(is_broad).class(), segment.throughput * radiance);
             }
         }
         if let Some(photons) = self.photons.filter(|_| bsdf.stores_photons() && !segment.is_in_photon_map) {
-            let (light, error) =
-                photons.radiance_estimate(interaction, &vertex.context, (segment.throughput, segment.lane.is_some()), segment.history != PathHistory::NoBroad);
+            let (light, error) = photons.radiance_estimate(
+                interaction,
+                &vertex.context,
+                (segment.throughput, segment.lane.is_some()),
+                segment.history != PathHistory::NoBroad,
+            );
             let first = segment.history.extended(true).extended(false).class();
             if segment.history == PathHistory::NoBroad {
                 let to_srgb = |(radiance, other): (Channels, DVec3)| {
@@ -395,9 +431,12 @@ impl<'a> PathTracer<'a> {
             let point = sampler.for_segment(segment.number, SampleDimension::Direction, 0);
             let [choice, _] = sampler.for_segment(segment.number, SampleDimension::Choice, 0);
             if parts {
-                let drawn = bsdf.continues_non_delta().then(|| bsdf.sample(&context, choice, point, selection)).flatten();
+                let drawn =
+                    bsdf.continues_non_delta().then(|| bsdf.sample(&context, choice, point, selection)).flatten();
                 let samples = bsdf.specular_samples(&context).zip(0..).chain(drawn.map(|sample| (sample, 2)));
-                waiting.extend(samples.filter_map(|(sample, branch)| self.next_segment(&segment, &vertex, sample, branch)));
+                waiting.extend(
+                    samples.filter_map(|(sample, branch)| self.next_segment(&segment, &vertex, sample, branch)),
+                );
             } else {
                 let drawn = bsdf.sample(&context, choice, point, selection);
                 waiting.extend(drawn.and_then(|sample| self.next_segment(&segment, &vertex, sample, 0)));
@@ -410,8 +449,13 @@ impl<'a> PathTracer<'a> {
         let indirect = self.indirect.filter(|_| interaction.bsdf.is_diffuse())?;
         let corners = self.world.appearance.prepared.corners(interaction.triangle);
         let weights = crate::numeric::triangle::weights(corners, interaction.element.position);
-        let irradiance = indirect.irradiance(interaction.triangle, interaction.element.outside, weights, IrradiancePart::Indirect);
-        Some(diffuse_albedo(interaction.bsdf, wavelength_set, interaction.texture_values()) * irradiance * std::f64::consts::FRAC_1_PI)
+        let irradiance =
+            indirect.irradiance(interaction.triangle, interaction.element.outside, weights, IrradiancePart::Indirect);
+        Some(
+            diffuse_albedo(interaction.bsdf, wavelength_set, interaction.texture_values())
+                * irradiance
+                * std::f64::consts::FRAC_1_PI,
+        )
     }
 
     /// How much a light counts that a leg meets.
@@ -424,7 +468,12 @@ impl<'a> PathTracer<'a> {
             Caustics::PhotonMapped if !source.emits_photons() => power_heuristic(segment.pdf, pdf),
             Caustics::PhotonMapped if segment.is_in_photon_map => 0.0,
             // A shadow ray has gone through what is polished.
-            Caustics::LeftOut if segment.last_scattering == LastScattering::ClearInterface && self.world.appearance.has_clear_shadows => 0.0,
+            Caustics::LeftOut
+                if segment.last_scattering == LastScattering::ClearInterface
+                    && self.world.appearance.has_clear_shadows =>
+            {
+                0.0
+            }
             Caustics::LeftOut if source.is_sky() => power_heuristic(segment.pdf, pdf),
             Caustics::PhotonMapped | Caustics::LeftOut if is_caustic => 0.0,
             _ => segment.lamp_weight * power_heuristic(segment.pdf, pdf),
@@ -441,7 +490,13 @@ impl<'a> PathTracer<'a> {
     }
 
     /// The leg that goes on in a direction; none if it is not worth following.
-    fn next_segment(&self, segment: &PathSegment, vertex: &PathVertex<'_>, sample: BsdfSample, branch: u32) -> Option<PathSegment> {
+    fn next_segment(
+        &self,
+        segment: &PathSegment,
+        vertex: &PathVertex<'_>,
+        sample: BsdfSample,
+        branch: u32,
+    ) -> Option<PathSegment> {
         let PathVertex { interaction, frame, context, sampler, clamp_value, lane_throughput, .. } = *vertex;
         if sample.is_straight {
             return self.straight_segment(segment, interaction, (sample, branch), &sampler);
@@ -453,7 +508,8 @@ impl<'a> PathTracer<'a> {
         if is_last && (sample.pdf.is_none() || !self.direct.has_area_lights()) {
             return None;
         }
-        let goes_back = self.caustics == Caustics::PhotonMapped && !sample.is_broad && segment.history != PathHistory::NoBroad;
+        let goes_back =
+            self.caustics == Caustics::PhotonMapped && !sample.is_broad && segment.history != PathHistory::NoBroad;
         let is_in_photon_map = segment.is_in_photon_map || goes_back;
         if is_in_photon_map && !self.has_unmapped_lights {
             return None;
@@ -478,7 +534,9 @@ impl<'a> PathTracer<'a> {
         let origin = if through { element.through } else { element.leave };
         let turn = match (sample.pdf, segment.last_scattering) {
             (Some(_), _) => LastScattering::NonDelta,
-            (None, LastScattering::NonDelta | LastScattering::ClearInterface) if through => LastScattering::ClearInterface,
+            (None, LastScattering::NonDelta | LastScattering::ClearInterface) if through => {
+                LastScattering::ClearInterface
+            }
             _ => LastScattering::Other,
         };
         Some(PathSegment {
@@ -507,7 +565,13 @@ impl<'a> PathTracer<'a> {
     }
 
     /// The rest of a leg behind what it goes straight through: the same ray, so that lights are met as if nothing was there.
-    fn straight_segment(&self, segment: &PathSegment, interaction: &SurfaceInteraction<'_>, (sample, branch): (BsdfSample, u32), sampler: &PathSampler) -> Option<PathSegment> {
+    fn straight_segment(
+        &self,
+        segment: &PathSegment,
+        interaction: &SurfaceInteraction<'_>,
+        (sample, branch): (BsdfSample, u32),
+        sampler: &PathSampler,
+    ) -> Option<PathSegment> {
         let is_last = segment.depth >= self.depth;
         if is_last && (segment.pdf.is_none() || !self.direct.has_area_lights()) {
             return None;
@@ -516,7 +580,15 @@ impl<'a> PathTracer<'a> {
         let throughput = russian_roulette(segment.throughput * sample.weight, number, sampler)?;
         let bounded = BoundedRay { t_min: interaction.t, ..segment.bounded };
         let for_lights = segment.for_lights || is_last;
-        Some(PathSegment { bounded, throughput, begin: interaction.distance, depth: segment.depth + 1, number, for_lights, ..*segment })
+        Some(PathSegment {
+            bounded,
+            throughput,
+            begin: interaction.distance,
+            depth: segment.depth + 1,
+            number,
+            for_lights,
+            ..*segment
+        })
     }
 }
 
@@ -527,5 +599,6 @@ fn russian_roulette(throughput: Channels, number: u32, sampler: &PathSampler) ->
         return Some(throughput);
     }
     let survival = most / ENERGY_CUTOFF;
-    (most > 0.0 && sampler.for_segment(number, SampleDimension::Survival, 0)[0] < survival).then(|| throughput * survival.recip())
+    (most > 0.0 && sampler.for_segment(number, SampleDimension::Survival, 0)[0] < survival)
+        .then(|| throughput * survival.recip())
 }

@@ -253,7 +253,8 @@ fn glass_of_no_index_is_not_there() {
 #[test]
 fn a_lamp_within_a_ball_of_glass_shines_as_if_alone_but_for_what_the_glass_absorbs() {
     for (index, absorption) in [(1.5, 0.0), (2.42, 0.0), (1.5, 0.8)] {
-        let inside = Transparent { absorption: Color::grey(absorption), ..Transparent::clear(RefractiveIndex::Constant(index)) };
+        let inside =
+            Transparent { absorption: Color::grey(absorption), ..Transparent::clear(RefractiveIndex::Constant(index)) };
         let objects = vec![ball(0.5, DVec3::ZERO, MaterialKind::Transparent(inside)), floor(4.0, 3.0)];
         let scene = scene(objects, vec![lamp(DVec3::ZERO, 10.0)], 8);
         let (rendering, _) = followed(scene, Some(down_on(DVec3::NEG_Y * 3.0, 0.5, 1.0)), 100_000);

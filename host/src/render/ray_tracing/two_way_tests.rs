@@ -4,8 +4,8 @@ use super::tests::{diffuse, from_above, mirror, object, red, scene};
 use super::*;
 use crate::color::Color;
 use crate::illumination::light::LightShape;
-use crate::illumination::material::{MaterialKind, RefractiveIndex, Material, Transparent};
-use crate::illumination::{RgbPower, Light};
+use crate::illumination::material::{Material, MaterialKind, RefractiveIndex, Transparent};
+use crate::illumination::{Light, RgbPower};
 use crate::picture::difference;
 use crate::render::ray_tracer;
 use crate::scene::{Camera, Caustics, Interreflection, Object, Scene, Shape};
@@ -115,7 +115,8 @@ fn more_light_makes_it_more_right() {
 
 /// A glass ball and a mirror under a lamp that is large enough for rays from the eye to find it.
 fn ball_and_mirror() -> Scene {
-    let patch = LightShape::Rectangle { corner: DVec3::new(-1.5, 4.0, -1.5), across: DVec3::X * 3.0, up: DVec3::Z * 3.0 };
+    let patch =
+        LightShape::Rectangle { corner: DVec3::new(-1.5, 4.0, -1.5), across: DVec3::X * 3.0, up: DVec3::Z * 3.0 };
     let objects = vec![
         block(DVec3::new(8.0, 0.2, 8.0), DVec3::new(0.0, -0.1, 0.0), diffuse(0.7)),
         ball(0.8, DVec3::new(-1.0, 1.0, 0.0), glass(1.5)),

@@ -59,7 +59,8 @@ impl<'a> ShadowVolumes<'a> {
         // Across the light, so that volumes are wide in the plane.
         let up = (0..3).min_by(|a, b| offset[*a].abs().total_cmp(&offset[*b].abs())).unwrap_or(2);
         let axes = [(up + 1) % 3, (up + 2) % 3, up];
-        let mut enclosed = ShadowVolumes { casters, light, silhouettes, facing, axes, above: vec![0; groups], grid: None };
+        let mut enclosed =
+            ShadowVolumes { casters, light, silhouettes, facing, axes, above: vec![0; groups], grid: None };
         enclosed.above = enclosed.above(groups);
         enclosed
     }

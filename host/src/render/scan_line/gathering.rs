@@ -1,12 +1,12 @@
 //! Which surfaces the samples of a pixel see, and the elements in the middle of what they see.
 
 use super::shader::{PixelScratch, SampleSight, Shader};
-use super::surfaces::{PixelInteraction, SampleFragment, StripPixel, PixelSurface};
+use super::surfaces::{PixelInteraction, PixelSurface, SampleFragment, StripPixel};
 use super::visibility::{NONE, Strip};
 use crate::color::Channels;
 use crate::illumination::distribution::ShadingFrame;
 use crate::numeric::ray::{Hit, Ray};
-use crate::render::world::{SurfaceElement, BoundedRay};
+use crate::render::world::{BoundedRay, SurfaceElement};
 use crate::scene::footprint;
 use glam::DVec3;
 
@@ -151,11 +151,25 @@ impl<'a> Shader<'a> {
             element.tilt(-towards, |normal| bsdf.tilted(&place, normal));
         }
         let normal = element.normal;
-        let frame = bsdf.brushed_along.map_or_else(|| ShadingFrame::from_normal(normal), |along| ShadingFrame::brushed(normal, along));
+        let frame = bsdf
+            .brushed_along
+            .map_or_else(|| ShadingFrame::from_normal(normal), |along| ShadingFrame::brushed(normal, along));
         let curved = self.is_curved(triangle);
         let is_flat = !curved && !bsdf.is_textured();
         let seen = [object, material];
-        Some(PixelInteraction { element, curved, is_flat, frame, bsdf, distance, ids: seen, towards, triangle, weights, sides })
+        Some(PixelInteraction {
+            element,
+            curved,
+            is_flat,
+            frame,
+            bsdf,
+            distance,
+            ids: seen,
+            towards,
+            triangle,
+            weights,
+            sides,
+        })
     }
 }
 

@@ -34,7 +34,7 @@ use super::film::Film;
 use super::indirect::IndirectLight;
 use super::tally::Tally;
 use super::world::{AHEAD, Appearance, CameraRays, World};
-use super::{Progress, RenderOrder, RayCounts, RenderError, Renderer, Rendering, SpanCounts, Watch};
+use super::{Progress, RayCounts, RenderError, RenderOrder, Renderer, Rendering, SpanCounts, Watch};
 use crate::color::Channels;
 use crate::illumination::light::LightSource;
 use crate::picture::{Filter, Picture};
@@ -50,7 +50,7 @@ use screen::{Screen, Viewpoint};
 use shader::{PixelScratch, Shader};
 use shadow::Shadow;
 use sky_light::SkyLight;
-use spans::{SampleLines, MOST_LINES, rooks};
+use spans::{MOST_LINES, SampleLines, rooks};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -115,7 +115,11 @@ impl<'a> ScanLine<'a> {
         ScanLine::with_light(world.appearance, plan, Some(solution))
     }
 
-    fn with_light(appearance: Appearance<'a>, plan: &'a Plan, solution: Option<Arc<dyn IndirectLight>>) -> ScanLine<'a> {
+    fn with_light(
+        appearance: Appearance<'a>,
+        plan: &'a Plan,
+        solution: Option<Arc<dyn IndirectLight>>,
+    ) -> ScanLine<'a> {
         let prepared = appearance.prepared;
         let keeps = |triangle: &u32| plan.includes_object(prepared.object_of[*triangle as usize] as usize);
         let triangles: Vec<u32> = (0..prepared.triangles.len() as u32).filter(keeps).collect();
@@ -132,7 +136,17 @@ impl<'a> ScanLine<'a> {
             }
         }
         let sky_light = if solution.is_none() { SkyLight::new(&appearance) } else { None };
-        ScanLine { plan, appearance, casters, triangles, passable, group_transmittance: passing, lamps, sky_light, solution }
+        ScanLine {
+            plan,
+            appearance,
+            casters,
+            triangles,
+            passable,
+            group_transmittance: passing,
+            lamps,
+            sky_light,
+            solution,
+        }
     }
 
     /// The shadow volumes of a lamp.
@@ -166,7 +180,10 @@ impl<'a> ScanLine<'a> {
         let (has_surfaces, has_sky) = (sources().any(LightSource::is_surface), sources().any(LightSource::is_infinite));
         let wavelengths = &self.appearance.wavelengths;
         let background = || {
-            let seen = |wavelength_set| wavelengths.to_srgb(wavelength_set, self.appearance.escaped_radiance(&AHEAD, None, wavelength_set, |_, _| 1.0));
+            let seen = |wavelength_set| {
+                wavelengths
+                    .to_srgb(wavelength_set, self.appearance.escaped_radiance(&AHEAD, None, wavelength_set, |_, _| 1.0))
+            };
             (0..wavelengths.count()).map(seen).sum::<DVec3>() / wavelengths.count() as f64
         };
         Shader {
@@ -324,7 +341,9 @@ fn groups(appearance: &Appearance<'_>) -> (Vec<u8>, Vec<Vec<Channels>>) {
             let passes = |wavelength_set: usize| match body.zip(chord) {
                 Some((interior, chord)) => {
                     let surface = bsdf.clear_transmittance(wavelength_set, 1.0, place);
-                    surface * surface * interior.absorption.of(wavelength_set).map(|absorption| (-absorption * chord).exp())
+                    surface
+                        * surface
+                        * interior.absorption.of(wavelength_set).map(|absorption| (-absorption * chord).exp())
                 }
                 None => bsdf.straight_transmittance(wavelength_set, 1.0, place),
             };
@@ -406,6 +425,15 @@ impl Renderer for ScanLine<'_> {
         let (spans, complete) =
             pool.install(|| self.draw((&mut film, &mut picture), (view, order), &stopped, watch))?;
         let (seconds, threads) = (start.elapsed().as_secs_f64(), pool.current_num_threads());
-        Ok(Rendering { picture, film, complete, rays: RayCounts::default(), spans, flux_balance: None, seconds, threads })
+        Ok(Rendering {
+            picture,
+            film,
+            complete,
+            rays: RayCounts::default(),
+            spans,
+            flux_balance: None,
+            seconds,
+            threads,
+        })
     }
 }

@@ -49,7 +49,8 @@ pub(super) struct ClippedPolygon {
 impl ClippedPolygon {
     /// - `corners`: [`MOST_CORNERS`] at the most.
     pub(super) fn new(corners: &[ScreenPoint]) -> ClippedPolygon {
-        let mut outline = ClippedPolygon { corners: [ScreenPoint::default(); MOST_CORNERS], count: corners.len().min(MOST_CORNERS) };
+        let mut outline =
+            ClippedPolygon { corners: [ScreenPoint::default(); MOST_CORNERS], count: corners.len().min(MOST_CORNERS) };
         outline.corners[..outline.count].copy_from_slice(&corners[..outline.count]);
         outline
     }

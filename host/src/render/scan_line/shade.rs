@@ -1,17 +1,17 @@
 //! Light that comes from what samples see, once for each pixel and surface.
 
 use super::lamp::LampPoint;
-use super::shader::{PixelScratch, SampleSight, LampContribution, Shader};
-use super::surfaces::{PixelInteraction, SampleFragment, StripPixel, PixelSurface};
+use super::shader::{LampContribution, PixelScratch, SampleSight, Shader};
+use super::surfaces::{PixelInteraction, PixelSurface, SampleFragment, StripPixel};
 use super::visibility::{NONE, Strip};
 use crate::color::Channels;
-use crate::illumination::optics::{InteriorMedium, InterfaceIndices, ShadingContext};
+use crate::illumination::optics::{InterfaceIndices, InteriorMedium, ShadingContext};
 use crate::illumination::texture::TextureFootprint;
 use crate::numeric::ray::Ray;
 use crate::numeric::triangle::weights;
 use crate::render::indirect::IrradiancePart as Light;
 use crate::render::tally::{PixelSample, Tally};
-use crate::render::world::{AHEAD, SurfaceElement, BoundedRay, diffuse_albedo};
+use crate::render::world::{AHEAD, BoundedRay, SurfaceElement, diffuse_albedo};
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
 
@@ -38,7 +38,11 @@ impl<'a> Shader<'a> {
                 let Some(index) = surface.interaction else { continue };
                 let interaction = &founds[index];
                 let texture_values = mixtures[index].as_ref().map(|mixture| mixture.at(wavelength_set));
-                let context = self.context(interaction, wavelength_set, texture_values.as_ref().map_or(&[], |painting| &painting[..]));
+                let context = self.context(
+                    interaction,
+                    wavelength_set,
+                    texture_values.as_ref().map_or(&[], |painting| &painting[..]),
+                );
                 surface.unlit_radiance = self.unlit_radiance(interaction, &context);
                 surface.transmittance = straight_transmittance(interaction, &context);
                 for lit in &mut lit[surface.contributions.clone()] {
@@ -47,8 +51,13 @@ impl<'a> Shader<'a> {
             }
             for i in 0..samples.len() {
                 if samples[i].like == i {
-                    let light =
-                        self.sample((surfaces, founds, lit), (samples, parts), (strip, counts), (pixel, i), wavelength_set);
+                    let light = self.sample(
+                        (surfaces, founds, lit),
+                        (samples, parts),
+                        (strip, counts),
+                        (pixel, i),
+                        wavelength_set,
+                    );
                     samples[i].light += self.appearance.wavelengths.to_srgb(wavelength_set, light);
                 }
             }
@@ -57,8 +66,14 @@ impl<'a> Shader<'a> {
     }
 
     /// Finds what the samples of a pixel see, by the light of which lamps, and which of them get the same light.
-    fn find_visible(&self, pixel: &StripPixel<'_>, (strip, counts): (&Strip, &[Vec<i32>]), scratch: &mut PixelScratch<'a>) {
-        let PixelScratch { surfaces, parts, interactions: founds, mixtures, contributions: lit, samples, last } = scratch;
+    fn find_visible(
+        &self,
+        pixel: &StripPixel<'_>,
+        (strip, counts): (&Strip, &[Vec<i32>]),
+        scratch: &mut PixelScratch<'a>,
+    ) {
+        let PixelScratch { surfaces, parts, interactions: founds, mixtures, contributions: lit, samples, last } =
+            scratch;
         founds.clear();
         mixtures.clear();
         lit.clear();
@@ -67,9 +82,15 @@ impl<'a> Shader<'a> {
             surface.interaction = self.find_interaction(surface, own(), pixel, (founds, last));
             let begin = lit.len();
             if let Some(interaction) = surface.interaction.map(|interaction| &founds[interaction]) {
-                mixtures.push(interaction.bsdf.is_textured().then(|| interaction.bsdf.texture_mixture(&self.footprint(interaction))));
-                let is_dark =
-                    |lit: &LampContribution| own().all(|part| self.is_shaded(lit, counts, (part.fragment, strip), interaction.triangle));
+                mixtures.push(
+                    interaction
+                        .bsdf
+                        .is_textured()
+                        .then(|| interaction.bsdf.texture_mixture(&self.footprint(interaction))),
+                );
+                let is_dark = |lit: &LampContribution| {
+                    own().all(|part| self.is_shaded(lit, counts, (part.fragment, strip), interaction.triangle))
+                };
                 lit.extend(self.lights(interaction).filter(|lit| !is_dark(lit)));
             }
             surface.contributions = begin..lit.len();
@@ -77,7 +98,9 @@ impl<'a> Shader<'a> {
         for i in 0..samples.len() {
             let own = fragments_of(samples, parts, i);
             samples[i].before_light = if self.has_surfaces {
-                let before = own.iter().map(|part| (part, surfaces[part.surface].interaction.map(|interaction| &founds[interaction])));
+                let before = own
+                    .iter()
+                    .map(|part| (part, surfaces[part.surface].interaction.map(|interaction| &founds[interaction])));
                 self.fragments_before_light(pixel.place(i), before, strip)
             } else {
                 None
@@ -149,7 +172,8 @@ impl<'a> Shader<'a> {
             *last = Some(self.element(triangle, &bounded, 0.0)?);
         }
         let interaction = last.as_ref()?;
-        let texture_values = interaction.bsdf.is_textured().then(|| interaction.bsdf.texture_values(&self.footprint(interaction), 0));
+        let texture_values =
+            interaction.bsdf.is_textured().then(|| interaction.bsdf.texture_values(&self.footprint(interaction), 0));
         let context = self.context(interaction, 0, texture_values.as_ref().map_or(&[], |painting| &painting[..]));
         let mut sum = self.unlit_radiance(interaction, &context);
         for lit in self.lights(interaction).filter(|lit| !self.is_shaded(lit, counts, (pixel.first, strip), triangle)) {
@@ -176,7 +200,8 @@ impl<'a> Shader<'a> {
         let fragments = strip.fragments();
         let sees_sky = |parts: &[SampleFragment]| parts.last().is_none_or(|part| part.fragment >= strip.near.len());
         let volumes = |counts: &Vec<i32>, a: usize, b: usize| {
-            (0..self.group_transmittance.len()).all(|group| counts[group * fragments + a] == counts[group * fragments + b])
+            (0..self.group_transmittance.len())
+                .all(|group| counts[group * fragments + a] == counts[group * fragments + b])
         };
         a.len() == b.len()
             && !(self.has_sky && sees_sky(a))
@@ -210,11 +235,19 @@ impl<'a> Shader<'a> {
             let Some(interaction) = surface.interaction.map(|interaction| &founds[interaction]) else { continue };
             if let Some((interior, from)) = &mut inside {
                 let length = interaction.distance - std::mem::replace(from, interaction.distance);
-                transmittance *= interior.absorption.of(wavelength_set).map(|absorption| (-absorption * length.max(0.0)).exp());
+                transmittance *=
+                    interior.absorption.of(wavelength_set).map(|absorption| (-absorption * length.max(0.0)).exp());
             }
             let mut radiance = surface.unlit_radiance;
             for lit in &lit[surface.contributions.clone()] {
-                radiance += lit.radiance * self.lamp_transmittance(lit, counts, (part.fragment, strip), interaction.triangle, wavelength_set);
+                radiance += lit.radiance
+                    * self.lamp_transmittance(
+                        lit,
+                        counts,
+                        (part.fragment, strip),
+                        interaction.triangle,
+                        wavelength_set,
+                    );
             }
             sum += transmittance * radiance;
             if part.fragment < strip.near.len() {
@@ -255,7 +288,14 @@ impl<'a> Shader<'a> {
     }
 
     /// The part of a lamp's light that comes to a sample.
-    fn lamp_transmittance(&self, lit: &LampContribution, counts: &[Vec<i32>], sample: (usize, &Strip), triangle: u32, wavelength_set: usize) -> Channels {
+    fn lamp_transmittance(
+        &self,
+        lit: &LampContribution,
+        counts: &[Vec<i32>],
+        sample: (usize, &Strip),
+        triangle: u32,
+        wavelength_set: usize,
+    ) -> Channels {
         if self.is_shaded(lit, counts, sample, triangle) {
             return Channels::ZERO;
         }
@@ -273,7 +313,9 @@ impl<'a> Shader<'a> {
     /// radiance.
     fn nearest_light(&self, at: [f64; 2], wavelength_set: usize) -> Option<(f64, Channels)> {
         let BoundedRay { ray, t_min, t_max, .. } = self.eye.ray(at, [0.5; 2])?;
-        self.appearance.intersect_lights(&ray, t_min, t_max, wavelength_set).map(|(_, light_hit)| (light_hit.t, light_hit.radiance))
+        self.appearance
+            .intersect_lights(&ray, t_min, t_max, wavelength_set)
+            .map(|(_, light_hit)| (light_hit.t, light_hit.radiance))
     }
 
     /// How many of the parts of a line of sight are before the light that is met there; none if there is none, or something
@@ -316,13 +358,27 @@ impl<'a> Shader<'a> {
     /// How an element is looked at.
     ///
     /// - `painted`: what the patterns of its material give.
-    fn context<'p>(&self, interaction: &PixelInteraction<'_>, wavelength_set: usize, texture_values: &'p [Channels]) -> ShadingContext<'p> {
-        let index = interaction.bsdf.interior.as_ref().map_or(Channels::ONE, |interior| interior.index.of(wavelength_set));
+    fn context<'p>(
+        &self,
+        interaction: &PixelInteraction<'_>,
+        wavelength_set: usize,
+        texture_values: &'p [Channels],
+    ) -> ShadingContext<'p> {
+        let index =
+            interaction.bsdf.interior.as_ref().map_or(Channels::ONE, |interior| interior.index.of(wavelength_set));
         let side = match interaction.element.outside {
             true => InterfaceIndices { before: Channels::ONE, behind: index, inside: false },
-            false => InterfaceIndices { before: index, behind: Channels::ONE, inside: interaction.bsdf.interior.is_some() },
+            false => {
+                InterfaceIndices { before: index, behind: Channels::ONE, inside: interaction.bsdf.interior.is_some() }
+            }
         };
-        ShadingContext { view: interaction.frame.local(-interaction.towards), wavelength_set, indices: side, lane: 0, texture_values }
+        ShadingContext {
+            view: interaction.frame.local(-interaction.towards),
+            wavelength_set,
+            indices: side,
+            lane: 0,
+            texture_values,
+        }
     }
 
     /// What an element sends to the eye without lamps.
@@ -343,7 +399,8 @@ impl<'a> Shader<'a> {
             let normal = if element.normal.dot(interaction.towards) > 0.0 { -element.normal } else { element.normal };
             let mirrored = interaction.towards.reflect(normal);
             own += bsdf.diffuse_albedo(context) * sky.radiance(normal, context.wavelength_set);
-            own += bsdf.glossy_albedo(&from_outside(interaction, context)) * sky.radiance(mirrored, context.wavelength_set);
+            own += bsdf.glossy_albedo(&from_outside(interaction, context))
+                * sky.radiance(mirrored, context.wavelength_set);
         }
         own
     }
@@ -356,17 +413,29 @@ impl<'a> Shader<'a> {
     }
 
     /// What a lamp adds where nothing stands between.
-    fn lamp_radiance(&self, lit: &LampContribution, PixelInteraction { element, frame, bsdf, .. }: &PixelInteraction<'_>, context: &ShadingContext<'_>) -> Channels {
+    fn lamp_radiance(
+        &self,
+        lit: &LampContribution,
+        PixelInteraction { element, frame, bsdf, .. }: &PixelInteraction<'_>,
+        context: &ShadingContext<'_>,
+    ) -> Channels {
         let lamp = &self.lamps[lit.lamp];
         let source = &self.appearance.sources[lamp.source].1;
-        let Some(light_sample) = source.incident_from(&lamp.point, element.position, context.wavelength_set) else { return Channels::ZERO };
+        let Some(light_sample) = source.incident_from(&lamp.point, element.position, context.wavelength_set) else {
+            return Channels::ZERO;
+        };
         let light = frame.local(light_sample.towards);
         let adds = bsdf.total_value(context, light) * light_sample.irradiance * light.z.abs();
         if adds.is_finite() { adds } else { Channels::ZERO }
     }
 
     /// How shadows are counted that fall on an element by the light of a lamp.
-    fn between(&self, number: usize, lamp: &LampPoint, PixelInteraction { element, curved, .. }: &PixelInteraction<'a>) -> LampContribution {
+    fn between(
+        &self,
+        number: usize,
+        lamp: &LampPoint,
+        PixelInteraction { element, curved, .. }: &PixelInteraction<'a>,
+    ) -> LampContribution {
         let towards = lamp.position.from(element.position);
         let is_before = towards.dot(element.face) > 0.0;
         let mut lit = LampContribution { lamp: number, radiance: Channels::ZERO, turned: 0, known: None };

@@ -4,7 +4,7 @@ use super::casters::Casters;
 use super::enclosed::ShadowVolumes;
 use super::lamp::LampPoint;
 use super::sky_light::SkyLight;
-use super::surfaces::{PixelInteraction, SampleFragment, PixelSurface};
+use super::surfaces::{PixelInteraction, PixelSurface, SampleFragment};
 use crate::color::Channels;
 use crate::illumination::optics::TextureMixture;
 use crate::render::indirect::IndirectLight;

@@ -12,8 +12,8 @@ use super::casters::{Casters, Silhouette};
 use super::enclosed::ShadowVolumes;
 use super::lamp::LightPosition;
 use super::reach::Reach;
-use super::screen::{ClipCorner, MOST_CORNERS, ClippedPolygon, ScreenPoint, Screen};
-use super::spans::{SampleLines, Nearness, PictureRegion};
+use super::screen::{ClipCorner, ClippedPolygon, MOST_CORNERS, Screen, ScreenPoint};
+use super::spans::{Nearness, PictureRegion, SampleLines};
 use super::visibility::{BandLists, ScreenTriangles, Strip, lines_of};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -73,7 +73,12 @@ impl Shadow {
                     let weight = -i32::from(facing[triangle as usize]) * screen.handed();
                     // Nearer than everything.
                     let outline = outline.brought_near();
-                    polygons.push(ShadowPolygon { outline, within: PictureRegion::ALL, weight, group: casters.group(triangle) });
+                    polygons.push(ShadowPolygon {
+                        outline,
+                        within: PictureRegion::ALL,
+                        weight,
+                        group: casters.group(triangle),
+                    });
                 }
             }
         }

@@ -34,7 +34,11 @@ impl SkyLight {
             let mut sums = [Channels::ZERO; 9];
             for sky in &skies {
                 for index in 0..DIRECTIONS {
-                    let Some(light_sample) = sky.sample_incident(DVec3::ZERO, None, sequence.point(index, 0), wavelength_set) else { continue };
+                    let Some(light_sample) =
+                        sky.sample_incident(DVec3::ZERO, None, sequence.point(index, 0), wavelength_set)
+                    else {
+                        continue;
+                    };
                     let harmonics = harmonics(light_sample.towards);
                     for ((sum, harmonic), kept) in sums.iter_mut().zip(harmonics).zip(COSINE_KERNEL) {
                         *sum += light_sample.irradiance * (harmonic * kept / f64::from(DIRECTIONS));

@@ -3,11 +3,11 @@
 use super::*;
 use crate::color::Color;
 use crate::illumination::light::LightShape;
-use crate::illumination::material::{MaterialKind, Classic, RefractiveIndex, Transparent};
-use crate::illumination::texture::{TextureMapping, Motif, Pattern};
-use crate::illumination::{RgbPower, Material, Paint};
+use crate::illumination::material::{Classic, MaterialKind, RefractiveIndex, Transparent};
+use crate::illumination::texture::{Motif, Pattern, TextureMapping};
+use crate::illumination::{Material, Paint, RgbPower};
 use crate::numeric::ray::Ray;
-use crate::octree::{Octree, OctreeSettings as OctreeSettings};
+use crate::octree::{Octree, OctreeSettings};
 use crate::render::ray_tracer;
 use crate::scene::{Camera, Object, Parallel, Projection, Scene, Settings, Shape};
 use crate::solid::Primitive;

@@ -1,7 +1,7 @@
 //! Which triangles the samples of a strip of the picture see.
 
-use super::screen::{ClipCorner, ClippedPolygon, ScreenPoint, Screen};
-use super::spans::{SampleLines, Nearness, PictureRegion, Span};
+use super::screen::{ClipCorner, ClippedPolygon, Screen, ScreenPoint};
+use super::spans::{Nearness, PictureRegion, SampleLines, Span};
 use crate::scene::Prepared;
 use rayon::prelude::*;
 use std::ops::Range;

@@ -27,7 +27,7 @@ use glam::DVec3;
 use points::PointTree;
 use rayon::prelude::*;
 use tile::TileCorner;
-use tree::{TileShading, TileNode, TrianglePiece};
+use tree::{TileNode, TileShading, TrianglePiece};
 
 /// Colours of a tile may be so far from those of its elements: a step of eight bits.
 const TOLERANCE: f64 = 1.0 / 255.0;
@@ -89,7 +89,9 @@ impl Tiling {
             let tiles =
                 triangles.par_iter().zip(pieces).zip(outlines).flat_map_iter(|((triangle, pieces), outlines)| {
                     let shading = &shading;
-                    let tile = move |(piece, outline): (TrianglePiece, Vec<TileCorner>)| shading.tile(*triangle, &piece, &outline);
+                    let tile = move |(piece, outline): (TrianglePiece, Vec<TileCorner>)| {
+                        shading.tile(*triangle, &piece, &outline)
+                    };
                     pieces.into_iter().zip(outlines).filter(|(_, outline)| outline.len() > 2).map(tile)
                 });
             tiling.tiles = tiles.collect();
@@ -191,7 +193,8 @@ fn lamps(prepared: &Prepared, plan: &Plan, appearance: &Appearance<'_>) -> Vec<C
         }
         let strength = wavelengths.light(radiance);
         let sets = wavelengths.count();
-        let seen: DVec3 = (0..sets).map(|wavelength_set| wavelengths.to_srgb(wavelength_set, strength.of(wavelength_set))).sum();
+        let seen: DVec3 =
+            (0..sets).map(|wavelength_set| wavelengths.to_srgb(wavelength_set, strength.of(wavelength_set))).sum();
         let color = [srgb::encoded(seen / sets as f64), DVec3::ZERO];
         let tile = |corners: Vec<DVec3>| ColorTile { colors: vec![color; corners.len()], corners };
         patch.polygons(LAMP_SIDES).into_iter().map(tile).collect()

@@ -1,6 +1,6 @@
 //! A triangle with its elements and their colours, and which of its parts may be one tile.
 
-use super::tile::{TileCorner, ColorTile};
+use super::tile::{ColorTile, TileCorner};
 use crate::color::{Channels, srgb};
 use crate::numeric::triangle::weights;
 use crate::render::indirect::{IndirectLight, IrradiancePart};
@@ -95,7 +95,8 @@ fn parts<'d>(triangle: [DVec3; 3], piece: &TrianglePiece, sides: Sides<'d>) -> V
     };
     let is_cut = |side: Option<&ElementTree>| side.is_some_and(|side| side.is_cut);
     let leaves = |side: Option<&ElementTree>| side.map_or(0, ElementTree::leaves);
-    let whole = |corners: [DVec3; 3]| TrianglePiece { corners, weights: corners.map(|corner| weights(triangle, corner)) };
+    let whole =
+        |corners: [DVec3; 3]| TrianglePiece { corners, weights: corners.map(|corner| weights(triangle, corner)) };
     match (outer, inner) {
         (None, None) => Vec::new(),
         (outer, inner) if !is_cut(outer) && !is_cut(inner) => quarters(outer, inner),
@@ -126,7 +127,13 @@ impl TileShading<'_> {
     }
 
     /// A piece with the elements in it, of which it adds the corners and their colours.
-    fn node(&self, triangle: u32, piece: TrianglePiece, sides: Sides<'_>, samples: &mut Vec<(DVec3, Colors)>) -> TileNode {
+    fn node(
+        &self,
+        triangle: u32,
+        piece: TrianglePiece,
+        sides: Sides<'_>,
+        samples: &mut Vec<(DVec3, Colors)>,
+    ) -> TileNode {
         let center = piece.center();
         let colors = piece.weights.map(|weights| self.colors(triangle, aside(weights, center)));
         let parts = parts(self.appearance.prepared.corners(triangle), &piece, sides);
@@ -149,21 +156,31 @@ impl TileShading<'_> {
     pub(super) fn tile(&self, triangle: u32, piece: &TrianglePiece, outline: &[TileCorner]) -> ColorTile {
         let center = piece.center();
         let color = |(_, weights): &TileCorner| self.colors(triangle, aside(*weights, center)).map(Vec3::as_dvec3);
-        ColorTile { corners: outline.iter().map(|corner| corner.0).collect(), colors: outline.iter().map(color).collect() }
+        ColorTile {
+            corners: outline.iter().map(|corner| corner.0).collect(),
+            colors: outline.iter().map(color).collect(),
+        }
     }
 
     /// The colours of a place of a triangle, as a display gets them.
     fn colors(&self, triangle: u32, weights: [f64; 3]) -> Colors {
         let Appearance { prepared, wavelengths, .. } = self.appearance;
         let bsdf = self.appearance.bsdf(prepared.object_of[triangle as usize], prepared.material_number(triangle));
-        let mixture = bsdf.is_textured().then(|| bsdf.texture_mixture(&prepared.texture_place(triangle, weights, Default::default())));
-        let irradiance = [true, false].map(|outside| self.solution.irradiance(triangle, outside, weights, IrradiancePart::All));
+        let mixture = bsdf
+            .is_textured()
+            .then(|| bsdf.texture_mixture(&prepared.texture_place(triangle, weights, Default::default())));
+        let irradiance =
+            [true, false].map(|outside| self.solution.irradiance(triangle, outside, weights, IrradiancePart::All));
         let mut seen = [DVec3::ZERO; 2];
         let sets = wavelengths.count();
         for wavelength_set in 0..sets {
             let own = bsdf.emission.as_ref().map_or(Channels::ZERO, |emission| emission.of(wavelength_set));
             let texture_values = mixture.as_ref().map(|mixture| mixture.at(wavelength_set));
-            let reflectance = diffuse_albedo(bsdf, wavelength_set, texture_values.as_ref().map_or(&[], |painting| painting.as_slice()));
+            let reflectance = diffuse_albedo(
+                bsdf,
+                wavelength_set,
+                texture_values.as_ref().map_or(&[], |painting| painting.as_slice()),
+            );
             for (seen, irradiance) in seen.iter_mut().zip(irradiance) {
                 *seen += wavelengths.to_srgb(wavelength_set, own + reflectance * irradiance * FRAC_1_PI);
             }

@@ -15,17 +15,17 @@
 //! without a picture is left to the rays from the eye: it is as bright everywhere, and they find it. For it, and for ambient
 //! light, these rays do not end.
 
-mod aim;
-mod flight;
-mod gather;
-mod division;
-mod lamps;
-mod shelf;
-mod surfaces;
-mod walls;
+mod projection_map;
+mod photon_tracing;
+mod photon_map;
+mod allocation;
+mod photon_source;
+mod photon_store;
+mod smooth_surfaces;
+mod occluders;
 
-pub use flight::FluxBalance;
-pub use shelf::PhotonStore;
+pub use photon_store::PhotonStore;
+pub use photon_tracing::FluxBalance;
 
 use crate::color::{Channels, LANES};
 use crate::illumination::light::EmissionSample;
@@ -38,18 +38,18 @@ use crate::render::state::after;
 use crate::render::world::{SurfaceInteraction, World, mean_diffuse_albedo};
 use crate::render::{Progress, Watch};
 use crate::scene::Prepared;
-use aim::{DirectionPdf, BoundingSphere};
-use flight::{Photon, PhotonSampler, PhotonTracer, LEAST_BOUNCES, PhotonDimension, EmittedPhoton};
-use gather::{PhotonMap, GatherDetail, GatherPoint, GatherContext};
 use glam::DVec3;
-use lamps::{PhotonTarget, PhotonSource};
+use photon_map::{GatherContext, GatherDetail, GatherPoint, PhotonMap};
+use photon_source::{PhotonSource, PhotonTarget};
+use photon_tracing::{EmittedPhoton, LEAST_BOUNCES, Photon, PhotonDimension, PhotonSampler, PhotonTracer};
+use projection_map::{BoundingSphere, DirectionPdf};
 use rayon::prelude::*;
+use smooth_surfaces::SmoothSurfaces;
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
-use surfaces::SmoothSurfaces;
 
 /// Ways that one thread follows before it takes others.
 const CHUNK: u32 = 1024;
@@ -134,7 +134,7 @@ impl<'s> PhotonMapper<'s> {
             (keeps(object as usize), appearance.bsdf(object, prepared.material_number(triangle)))
         };
         let casts_caustics = |triangle: u32| matches!(of(triangle), (true, optics) if optics.casts_caustics());
-        let spheres = aim::bounding_spheres(prepared, casts_caustics);
+        let spheres = projection_map::bounding_spheres(prepared, casts_caustics);
         let lamps: Vec<usize> =
             (0..appearance.sources.len()).filter(|i| appearance.sources[*i].1.emits_photons()).collect();
         if spheres.is_empty() || lamps.is_empty() {
@@ -158,7 +158,7 @@ impl<'s> PhotonMapper<'s> {
             spheres,
         };
         let scatters_broad = |triangle: u32| matches!(of(triangle), (true, optics) if optics.is_broad());
-        two_way.allocate_paths(world, &lamps, aim::bounding_sphere(prepared, scatters_broad));
+        two_way.allocate_paths(world, &lamps, projection_map::bounding_sphere(prepared, scatters_broad));
         if let Some(photon_store) = photon_store {
             let (photons, lamps) = (settings.photons.count, lamps.len());
             for lamp in &mut two_way.lamps {
@@ -258,17 +258,25 @@ impl<'s> PhotonMapper<'s> {
     /// What of the light of a pass was followed in other runs.
     fn stored_blocks(&self, pass: u32, lanes: usize) -> HashMap<PathBatch, BatchResult> {
         let Some(photon_store) = self.store else { return HashMap::new() };
-        let named = self.lamps.iter().enumerate().filter_map(|(lamp, PhotonSource { name, .. })| Some((lamp, name.as_ref()?)));
+        let named =
+            self.lamps.iter().enumerate().filter_map(|(lamp, PhotonSource { name, .. })| Some((lamp, name.as_ref()?)));
         named.flat_map(|(lamp, name)| photon_store.load(&format!("{name}-{pass}"), lamp, lanes)).collect()
     }
 
     /// Keeps light of a pass for other runs, with what was kept before, of each lamp of which something is new.
-    fn store_blocks(&self, world: &World<'_>, pass: u32, now: HashMap<PathBatch, &BatchResult>, before: &HashMap<PathBatch, BatchResult>) {
+    fn store_blocks(
+        &self,
+        world: &World<'_>,
+        pass: u32,
+        now: HashMap<PathBatch, &BatchResult>,
+        before: &HashMap<PathBatch, BatchResult>,
+    ) {
         let Some(photon_store) = self.store else { return };
         for (number, lamp) in self.lamps.iter().enumerate() {
             let Some(name) = &lamp.name else { continue };
             if now.keys().any(|chunk| chunk.lamp == number && !before.contains_key(chunk)) {
-                let mut all: HashMap<PathBatch, &BatchResult> = before.iter().map(|(chunk, block)| (*chunk, block)).collect();
+                let mut all: HashMap<PathBatch, &BatchResult> =
+                    before.iter().map(|(chunk, block)| (*chunk, block)).collect();
                 all.extend(&now);
                 all.retain(|chunk, _| chunk.lamp == number);
                 let what = format!("light {}, pass {pass}", world.appearance.sources[lamp.source].0 + 1);
@@ -312,7 +320,13 @@ impl<'s> PhotonMapper<'s> {
     }
 
     /// Light as it leaves a lamp, as if this were all of it.
-    fn emit(&self, world: &World<'_>, lamp: &PhotonSource, target: &PhotonTarget, sampler: &PhotonSampler) -> Option<EmittedPhoton> {
+    fn emit(
+        &self,
+        world: &World<'_>,
+        lamp: &PhotonSource,
+        target: &PhotonTarget,
+        sampler: &PhotonSampler,
+    ) -> Option<EmittedPhoton> {
         let appearance = &world.appearance;
         let source = &appearance.sources[lamp.source].1;
         let [wavelength_set, time] = sampler.point(PhotonDimension::Wavelengths, 0);
@@ -378,7 +392,7 @@ impl PhotonEstimator<'_> {
             outside: normal,
             leave: at + normal * if outside { lift } else { -lift },
             surface,
-            side: flight::side_of(surface, outside),
+            side: photon_tracing::side_of(surface, outside),
         };
         let ([narrow, broad], _) = self.pass.map.irradiance(&place, &self.gather_context(GatherDetail::Smooth));
         let irradiance = narrow + broad;
@@ -387,7 +401,8 @@ impl PhotonEstimator<'_> {
         }
         let weights = crate::numeric::triangle::weights(corners, at);
         let size = normal.any_orthonormal_pair();
-        let place = bsdf.is_textured().then(|| prepared.texture_place(triangle, weights, [size.0 * lift, size.1 * lift]));
+        let place =
+            bsdf.is_textured().then(|| prepared.texture_place(triangle, weights, [size.0 * lift, size.1 * lift]));
         mean_diffuse_albedo(bsdf, place.as_ref(), appearance.wavelengths.count()) * irradiance
     }
 
@@ -425,7 +440,7 @@ impl PhotonEstimator<'_> {
             outside: element.face * sign,
             leave: element.leave,
             surface,
-            side: flight::side_of(surface, element.outside),
+            side: photon_tracing::side_of(surface, element.outside),
         };
         let appearance = &self.world.appearance;
         let gather_context = self.gather_context(if coarse { GatherDetail::Coarse } else { GatherDetail::Fine });
@@ -445,7 +460,8 @@ impl PhotonEstimator<'_> {
             } else {
                 // The light has other wavelengths than the ray.
                 let at = ShadingContext { wavelength_set: contribution.wavelength_set, ..*context };
-                let throughput = between(throughput, context.wavelength_set, contribution.wavelength_set, wavelengths.count());
+                let throughput =
+                    between(throughput, context.wavelength_set, contribution.wavelength_set, wavelengths.count());
                 let radiance = interaction.bsdf.non_narrow_value(&at, light) * contribution.irradiance * throughput;
                 *elsewhere += wavelengths.to_srgb(contribution.wavelength_set, radiance);
             }

@@ -3,7 +3,7 @@
 use crate::color::{Channels, SpectralTable, WavelengthSets};
 use crate::illumination::Material;
 use crate::illumination::light::{LightHit, LightSource};
-use crate::illumination::optics::{InteriorMedium, Interreflection, BsdfBuilder, Bsdf};
+use crate::illumination::optics::{Bsdf, BsdfBuilder, InteriorMedium, Interreflection};
 use crate::numeric::debug_hash;
 use crate::numeric::ray::Ray;
 use crate::plan::{Plan, Stage};
@@ -164,17 +164,25 @@ impl<'a> Appearance<'a> {
         wavelength_set: usize,
         part: impl Fn(&LightSource, f64) -> f64,
     ) -> Channels {
-        let skies = self.sources.iter().filter_map(|(_, sky)| Some((sky, sky.sky_radiance(ray, normal, wavelength_set)?)));
+        let skies =
+            self.sources.iter().filter_map(|(_, sky)| Some((sky, sky.sky_radiance(ray, normal, wavelength_set)?)));
         let sum = skies.map(|(sky, light_hit)| light_hit.radiance * part(sky, light_hit.pdf)).reduce(|a, b| a + b);
         sum.unwrap_or_else(|| self.background.of(wavelength_set))
     }
 
     /// The nearest surface that emits and is no object, and which of the lights it is.
-    pub(in crate::render) fn intersect_lights(&self, ray: &Ray, t_min: f64, t_max: f64, wavelength_set: usize) -> Option<(usize, LightHit)> {
+    pub(in crate::render) fn intersect_lights(
+        &self,
+        ray: &Ray,
+        t_min: f64,
+        t_max: f64,
+        wavelength_set: usize,
+    ) -> Option<(usize, LightHit)> {
         let mut nearest: Option<(usize, LightHit)> = None;
         for (index, (_, source)) in self.sources.iter().enumerate().filter(|(_, (_, source))| source.is_surface()) {
             let limit = nearest.map_or(t_max, |(_, light_hit)| light_hit.t);
-            nearest = source.intersect(ray, t_min, limit, wavelength_set).map(|light_hit| (index, light_hit)).or(nearest);
+            nearest =
+                source.intersect(ray, t_min, limit, wavelength_set).map(|light_hit| (index, light_hit)).or(nearest);
         }
         nearest
     }

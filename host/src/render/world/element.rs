@@ -1,7 +1,7 @@
 //! The surface element at a hit: position, normals, and where rays may leave from.
 
 use crate::numeric::ray::{Hit, Ray};
-use crate::scene::{Displacement, SurfacePoint, Prepared};
+use crate::scene::{Displacement, Prepared, SurfacePoint};
 use glam::DVec3;
 
 /// Rounding errors in units of the last place of the triangle's largest coordinate that a leaving ray keeps clear of.

@@ -1,9 +1,9 @@
 //! The geometry of a scene as rays meet it: triangles, in octrees of what stands still and of what moves.
 
 use super::appearance::Appearance;
+use super::camera_rays::BoundedRay;
 use super::element::{SurfaceElement, clearance};
-use super::eye::BoundedRay;
-use super::found::{SurfaceInteraction, RayHit};
+use super::interaction::{RayHit, SurfaceInteraction};
 use super::light_buffer::{LightBuffer, Occluders};
 use crate::color::Channels;
 use crate::illumination::light::{LightOrigin, LightSource};
@@ -128,7 +128,9 @@ impl<'a> World<'a> {
     pub(in crate::render) fn intersect(&self, bounded: &BoundedRay, wavelength_set: usize, time: f64) -> RayHit<'_> {
         let first = self.first(&bounded.ray, [bounded.t_min, bounded.t_max], time);
         let t_max = first.map_or(bounded.t_max, |(hit, ..)| hit.t);
-        if let Some((index, light_hit)) = self.appearance.intersect_lights(&bounded.ray, bounded.t_min, t_max, wavelength_set) {
+        if let Some((index, light_hit)) =
+            self.appearance.intersect_lights(&bounded.ray, bounded.t_min, t_max, wavelength_set)
+        {
             return RayHit::Light(index, light_hit);
         }
         let Some((hit, triangle, moved)) = first else { return RayHit::Nothing };
@@ -174,7 +176,18 @@ impl<'a> World<'a> {
             element.carry(&moved);
             along = along.map(|along| moved.vector(along));
         }
-        RayHit::Surface(SurfaceInteraction { element, bsdf, triangle, object, material, distance, depth, t: hit.t, texture_values, brushed_along: along })
+        RayHit::Surface(SurfaceInteraction {
+            element,
+            bsdf,
+            triangle,
+            object,
+            material,
+            distance,
+            depth,
+            t: hit.t,
+            texture_values,
+            brushed_along: along,
+        })
     }
 
     /// Where a ray met an element: where a point stands for the surface, not all rays come to one place.
@@ -311,11 +324,13 @@ impl<'a> World<'a> {
             _ => None,
         };
         let still = self.still();
-        let (mut part, mut is_cleared) =
-            still.map_or((Channels::ONE, false), |still| self.octree_transmittance(still, shaft, ray, t_max, wavelength_set));
+        let (mut part, mut is_cleared) = still.map_or((Channels::ONE, false), |still| {
+            self.octree_transmittance(still, shaft, ray, t_max, wavelength_set)
+        });
         for (motion, carried) in &self.acceleration.moving {
             if part != Channels::ZERO {
-                let (transmittance, cleared) = self.octree_transmittance(carried, None, &motion.at(time).still(ray), t_max, wavelength_set);
+                let (transmittance, cleared) =
+                    self.octree_transmittance(carried, None, &motion.at(time).still(ray), t_max, wavelength_set);
                 part *= transmittance;
                 is_cleared |= cleared;
             }
@@ -367,8 +382,9 @@ impl<'a> World<'a> {
         hits.dedup_by(|next, hit| next.t == hit.t && object(next) == object(hit));
         // Where the ray is in which body, since when.
         let mut inside: Vec<(u32, f64, &InteriorMedium)> = Vec::new();
-        let left =
-            |interior: &InteriorMedium, way: f64| interior.absorption.of(wavelength_set).map(|absorption| (-absorption * way).exp());
+        let left = |interior: &InteriorMedium, way: f64| {
+            interior.absorption.of(wavelength_set).map(|absorption| (-absorption * way).exp())
+        };
         let length = ray.direction.length();
         let mut is_cleared = false;
         let part = hits.iter().fold(Channels::ONE, |part, hit| {

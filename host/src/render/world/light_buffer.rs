@@ -12,7 +12,7 @@
 
 use crate::illumination::light::{LightOrigin, LightSource};
 use crate::numeric::bounds::Bounds;
-use crate::octree::{ShaftContents, Octree, Shaft};
+use crate::octree::{Octree, Shaft, ShaftContents};
 use glam::DVec3;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU8, AtomicUsize, Ordering};

@@ -1,10 +1,10 @@
 //! What a ray goes through: transparent bodies, some of them in one place.
 
-use super::eye::{RayCone, BoundedRay};
-use super::found::{SurfaceInteraction, RayHit};
+use super::camera_rays::{BoundedRay, RayCone};
 use super::geometry::World;
+use super::interaction::{RayHit, SurfaceInteraction};
 use crate::color::Channels;
-use crate::illumination::optics::{InteriorMedium, InterfaceIndices};
+use crate::illumination::optics::{InterfaceIndices, InteriorMedium};
 use crate::numeric::ray::Ray;
 use glam::DVec3;
 
@@ -123,7 +123,12 @@ impl Media {
     /// What becomes of it at an element, and at the other surfaces of bodies that lie in the same place.
     ///
     /// - `ray`: that met the element.
-    pub(in crate::render) fn crossing(&self, world: &World<'_>, interaction: &SurfaceInteraction<'_>, ray: &Ray) -> MediumInterface {
+    pub(in crate::render) fn crossing(
+        &self,
+        world: &World<'_>,
+        interaction: &SurfaceInteraction<'_>,
+        ray: &Ray,
+    ) -> MediumInterface {
         let mut inside = *self;
         if interaction.bsdf.interior.is_none() {
             let present = inside.present(world);

@@ -12,4 +12,4 @@ pub(super) use lists::{Contours, Indices, Numbers, Objects, PointsKind, RowsOfNu
 pub(super) use materials::{AmountKind, DistributionKind, DistributionValue, FunctionOfAngle, Reflectance};
 pub(super) use numbers::{ANY_NUMBER, Integer, Length, NumberKind, NumberOrText, NumberOrTextValue, number};
 pub(super) use vectors::{AxisKind, Factors, Lengths, NamedAxis, Powers, Vector};
-pub(super) use words::{ObjectKind, Flag, ScalarKind, TextKind, Word};
+pub(super) use words::{Flag, ObjectKind, ScalarKind, TextKind, Word};

@@ -3,14 +3,14 @@
 //! A carrier is an edge of the input, or the line in which two faces cross. Whatever lies on it is kept once, in order,
 //! for all faces that share it; so no two faces ever disagree about their border.
 
-use super::burial::BuriedTriangles;
-use super::contact::{CommonPoint, Contact, EdgeKey, ConvexFace, Feature, PointKey, crossing};
+use super::buried::BuriedTriangles;
+use super::contact::{CommonPoint, Contact, ConvexFace, EdgeKey, Feature, PointKey, crossing};
 use super::expression::Expression;
 use super::faces::{CandidateFaces, contacts, touching};
 use super::operand::Operands;
+use super::partial_evaluation::PartialEvaluation;
 use super::relevance::relevant;
-use super::standing::PartialEvaluation;
-use crate::numeric::implicit::{PointDefinition, ImplicitPoint, coincide, compare, turn};
+use crate::numeric::implicit::{ImplicitPoint, PointDefinition, coincide, compare, turn};
 use crate::solid::union_find::UnionFind;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -498,7 +498,8 @@ impl Arrangement {
         let pairs: Vec<[u32; 2]> = self.carriers.iter().flat_map(neighbours).collect();
         pairs.into_iter().for_each(|pair| self.unite(pair));
         let several = |content: &&FaceArrangement| content.partner == Some(SEVERAL);
-        let pairs: Vec<Vec<[u32; 2]>> = self.face_arrangements.par_iter().filter(several).map(|c| self.near_pairs(c)).collect();
+        let pairs: Vec<Vec<[u32; 2]>> =
+            self.face_arrangements.par_iter().filter(several).map(|c| self.near_pairs(c)).collect();
         pairs.into_iter().flatten().for_each(|pair| self.unite(pair));
     }
 

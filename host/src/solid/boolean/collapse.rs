@@ -15,7 +15,7 @@
 
 use super::fan::{Collapse, CollapseCriteria};
 use super::operand::Operands;
-use super::overlap::{PlaneTriangle, NamedTriangle, nearly_overlap};
+use super::overlap::{NamedTriangle, PlaneTriangle, nearly_overlap};
 use super::result::Outcome;
 use super::rounding::NewTriangles;
 use crate::numeric::bounds::Bounds;
@@ -394,7 +394,7 @@ impl New {
 #[cfg(test)]
 mod tests {
     use super::super::operand::{Operand, Operands};
-    use super::super::work::{Evaluation, evaluate_once};
+    use super::super::single_evaluation::{Evaluation, evaluate_once};
     use super::super::{Expression, Outcome, quad_partners};
     use super::*;
     use crate::mesh::Mesh;
@@ -485,7 +485,8 @@ mod tests {
             };
             let operands = Operands::new((0..count).map(operand).collect(), true);
             for expression in expressions(count) {
-                let Evaluation { outcome: old, new: made, self_intersects: must_settle, .. } = evaluate_once(&operands, &expression);
+                let Evaluation { outcome: old, new: made, self_intersects: must_settle, .. } =
+                    evaluate_once(&operands, &expression);
                 if must_settle {
                     continue;
                 }

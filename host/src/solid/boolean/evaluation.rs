@@ -6,9 +6,9 @@ use super::lattice::Lattice;
 use super::operand::{Operand, Operands};
 use super::overlaps::overlapping;
 use super::quads::quad_partners;
-use super::result::{Outcome, CornerTables};
+use super::result::{CornerTables, Outcome};
 use super::simple::{Resolution, resolve, without_self_intersections};
-use super::work::{Evaluation, evaluate_once};
+use super::single_evaluation::{Evaluation, evaluate_once};
 use crate::mesh::Mesh;
 use crate::octree::TriangleBvh;
 use crate::solid::SolidError;
@@ -64,10 +64,15 @@ impl Lattice {
         let back = |error: SolidError| error.brought_back(self);
         let laid = solids.par_iter().map(|solid| self.laid(solid.mesh).map_err(back));
         let laid: Vec<(Mesh, Vec<u32>)> = laid.collect::<Result<_, _>>()?;
-        let filed = laid.par_iter().map(|(mesh, _)| (TriangleBvh::new(&mesh.vertices, &mesh.triangles), quad_partners(mesh)));
+        let filed =
+            laid.par_iter().map(|(mesh, _)| (TriangleBvh::new(&mesh.vertices, &mesh.triangles), quad_partners(mesh)));
         let filed: Vec<(TriangleBvh, Vec<u32>)> = filed.collect();
-        let operands =
-            laid.iter().zip(&filed).map(|((mesh, _), (sorted, mates))| Operand { mesh, sorted, quad_partners: mates, overlaps: &[] });
+        let operands = laid.iter().zip(&filed).map(|((mesh, _), (sorted, mates))| Operand {
+            mesh,
+            sorted,
+            quad_partners: mates,
+            overlaps: &[],
+        });
         let mut outcome = evaluate_on_lattice(operands.collect(), expression).map_err(back)?;
         let source = |[operand, triangle]: [u32; 2]| [operand, laid[operand as usize].1[triangle as usize]];
         outcome.sources.iter_mut().for_each(|of| *of = source(*of));

@@ -96,7 +96,8 @@ impl CandidateFaces {
 
     /// All triangles around the vertices among some points.
     pub fn around<'a>(&self, operands: &Operands, points: impl Iterator<Item = &'a CommonPoint>) -> Vec<u32> {
-        let place = |point: &CommonPoint| if let PointKey::Vertex(name) = point.key { self.positions.get(&name) } else { None };
+        let place =
+            |point: &CommonPoint| if let PointKey::Vertex(name) = point.key { self.positions.get(&name) } else { None };
         let places: FxHashSet<[u64; 3]> = points.filter_map(place).map(|place| crate::mesh::bits(*place)).collect();
         let is_at =
             |triangle: &u32| operands.corners(*triangle).1.iter().any(|c| places.contains(&crate::mesh::bits(*c)));

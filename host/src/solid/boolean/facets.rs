@@ -1,8 +1,8 @@
 //! Touched faces, divided along all that lies in them.
 
 use super::arrangement::Arrangement;
-use super::triangulation::{NONE, TYPICAL_POINTS, IncrementalTriangulation};
-use crate::numeric::implicit::{PointDefinition, ImplicitPoint, others};
+use super::triangulation::{IncrementalTriangulation, NONE, TYPICAL_POINTS};
+use crate::numeric::implicit::{ImplicitPoint, PointDefinition, others};
 use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};

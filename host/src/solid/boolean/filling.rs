@@ -2,8 +2,8 @@
 
 use super::contact::planar_orientation;
 use super::facets::around;
-use super::triangulation::{NONE, IncrementalTriangulation};
-use crate::numeric::implicit::{PointDefinition, ImplicitPoint, others};
+use super::triangulation::{IncrementalTriangulation, NONE};
+use crate::numeric::implicit::{ImplicitPoint, PointDefinition, others};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
@@ -22,7 +22,8 @@ pub fn filled(axis: usize, places: &[DVec3], loops: &[&[u32]]) -> Option<Vec<[u3
     }
     let used: Vec<u32> = loops.iter().flat_map(|points| points.iter().copied()).collect();
     let helpers = around(axis, used.iter().map(|&point| places[point as usize]));
-    let points: Vec<ImplicitPoint> = used.iter().map(|&point| ImplicitPoint::new(PointDefinition::Given(places[point as usize]))).collect();
+    let points: Vec<ImplicitPoint> =
+        used.iter().map(|&point| ImplicitPoint::new(PointDefinition::Given(places[point as usize]))).collect();
     let mut triangulation = IncrementalTriangulation::new(axis, &helpers.each_ref());
     // Number inside by point, and point by number inside.
     let mut inside: FxHashMap<u32, u32> = FxHashMap::default();

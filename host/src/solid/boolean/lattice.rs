@@ -110,7 +110,9 @@ impl SolidError {
                 *volume = lattice.volume(*volume);
                 *near = lattice.from_lattice(*near);
             }
-            SolidError::Crossing { near, .. } | SolidError::SelfIntersecting { near, .. } => *near = lattice.from_lattice(*near),
+            SolidError::Crossing { near, .. } | SolidError::SelfIntersecting { near, .. } => {
+                *near = lattice.from_lattice(*near)
+            }
         }
         self
     }

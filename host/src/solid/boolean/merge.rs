@@ -6,9 +6,9 @@
 
 use super::arrangement::Arrangement;
 use super::facets::{Facet, PlanarRegion};
+use super::half_edges::{HalfEdges, of_triangles};
 use super::operand::Operands;
 use super::parts::{FaceClassification, Parts};
-use super::sides::{HalfEdges, of_triangles};
 use crate::numeric::implicit::side;
 use crate::solid::union_find::UnionFind;
 use rayon::prelude::*;
@@ -28,11 +28,17 @@ pub struct ResultTriangle {
 }
 
 /// The facets that stay, in as few pieces as their points and borders allow.
-pub fn result_triangles(operands: &Operands, arrangement: &Arrangement, facets: &[Facet], parts: &Parts) -> Vec<ResultTriangle> {
+pub fn result_triangles(
+    operands: &Operands,
+    arrangement: &Arrangement,
+    facets: &[Facet],
+    parts: &Parts,
+) -> Vec<ResultTriangle> {
     let selected: Vec<ResultTriangle> =
         facets.iter().enumerate().filter_map(|(index, facet)| result_triangle(facet, parts.of_facet(index))).collect();
     let plan = MergePlan::new(operands, arrangement, &selected);
-    let mut members: Vec<(u32, u32)> = (0..selected.len() as u32).map(|index| (plan.regions.root(index), index)).collect();
+    let mut members: Vec<(u32, u32)> =
+        (0..selected.len() as u32).map(|index| (plan.regions.root(index), index)).collect();
     members.par_sort_unstable();
     let regions: Vec<&[(u32, u32)]> = members.chunk_by(|a, b| a.0 == b.0).collect();
     let merged = regions.par_iter().with_min_len(64).fold(Vec::new, |mut merged, members| {
@@ -117,7 +123,13 @@ impl MergePlan {
     /// Adds the pieces of a region, made anew if a point is not needed.
     ///
     /// - `members`: the old pieces, each after the number of the region.
-    fn merge(&self, arrangement: &Arrangement, selected: &[ResultTriangle], members: &[(u32, u32)], merged: &mut Vec<ResultTriangle>) {
+    fn merge(
+        &self,
+        arrangement: &Arrangement,
+        selected: &[ResultTriangle],
+        members: &[(u32, u32)],
+        merged: &mut Vec<ResultTriangle>,
+    ) {
         let old = members.iter().map(|&(_, member)| selected[member as usize]);
         let is_needed = |point: u32| !self.needless.contains(&point);
         if self.needless.is_empty() || old.clone().flat_map(|piece| piece.corners).all(is_needed) {
@@ -151,7 +163,12 @@ impl MergePlan {
         let face_at = |point: u32| at[at.partition_point(|(other, _)| *other < point)].1;
         let first = old[0];
         let triangles = PlanarRegion { face: first.face, points: &points, borders: &straight }.triangles(arrangement);
-        Some(triangles.into_iter().map(|corners| ResultTriangle { corners, corner_faces: corners.map(face_at), ..first }).collect())
+        Some(
+            triangles
+                .into_iter()
+                .map(|corners| ResultTriangle { corners, corner_faces: corners.map(face_at), ..first })
+                .collect(),
+        )
     }
 }
 

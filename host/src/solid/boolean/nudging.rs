@@ -64,7 +64,14 @@ impl<'a> Search<'a> {
         for (corners, triangle) in mesh.triangles.iter().zip(0..) {
             corners.iter().for_each(|&vertex| at.entry(vertex).or_default().push(triangle));
         }
-        Search { mesh, sorted, triangles_at: at, triangles_near: FxHashMap::default(), original: FxHashMap::default(), most }
+        Search {
+            mesh,
+            sorted,
+            triangles_at: at,
+            triangles_near: FxHashMap::default(),
+            original: FxHashMap::default(),
+            most,
+        }
     }
 
     fn named_triangle(&self, triangle: u32) -> NamedTriangle {

@@ -121,7 +121,9 @@ impl PlaneTriangle {
             && [[0, 1], [1, 2], [2, 0]].into_iter().any(|[p, q]| {
                 (0..3).all(|k| {
                     let is_end = |end: usize| other.names[k] == names[end] || other.corners[k] == corners[end];
-                    is_end(p) || is_end(q) || planar_orientation(axis, corners[p], corners[q], other.corners[k]) * facing < 0.0
+                    is_end(p)
+                        || is_end(q)
+                        || planar_orientation(axis, corners[p], corners[q], other.corners[k]) * facing < 0.0
                 })
             })
     }
@@ -130,7 +132,11 @@ impl PlaneTriangle {
 /// Whether two triangles with an area have more in common than corners, and the edge between two of these.
 ///
 /// - `plane_two`: gives the second with its plane, where it is needed.
-pub fn overlap<P: Borrow<PlaneTriangle>>(one: &PlaneTriangle, two: &NamedTriangle, plane_two: impl FnOnce() -> P) -> bool {
+pub fn overlap<P: Borrow<PlaneTriangle>>(
+    one: &PlaneTriangle,
+    two: &NamedTriangle,
+    plane_two: impl FnOnce() -> P,
+) -> bool {
     overlap_of(one, two, one.triangle.others_in(two), plane_two)
 }
 
@@ -138,7 +144,11 @@ pub fn overlap<P: Borrow<PlaneTriangle>>(one: &PlaneTriangle, two: &NamedTriangl
 ///
 /// - `plane_two`: gives the second with its plane, where it is needed.
 #[inline(always)]
-pub fn nearly_overlap<P: Borrow<PlaneTriangle>>(one: &PlaneTriangle, two: &NamedTriangle, plane_two: impl FnOnce() -> P) -> bool {
+pub fn nearly_overlap<P: Borrow<PlaneTriangle>>(
+    one: &PlaneTriangle,
+    two: &NamedTriangle,
+    plane_two: impl FnOnce() -> P,
+) -> bool {
     let own = one.triangle.others_in(two);
     own.count_ones() == 1 && one.is_folded_onto(two) || overlap_of(one, two, own, plane_two)
 }
@@ -147,7 +157,12 @@ pub fn nearly_overlap<P: Borrow<PlaneTriangle>>(one: &PlaneTriangle, two: &Named
 ///
 /// - `own`: the corners of the second that are none of the first, a bit for each.
 #[inline(always)]
-fn overlap_of<P: Borrow<PlaneTriangle>>(one: &PlaneTriangle, two: &NamedTriangle, own: u8, plane_two: impl FnOnce() -> P) -> bool {
+fn overlap_of<P: Borrow<PlaneTriangle>>(
+    one: &PlaneTriangle,
+    two: &NamedTriangle,
+    own: u8,
+    plane_two: impl FnOnce() -> P,
+) -> bool {
     if own == 0 {
         return true;
     }
@@ -177,7 +192,9 @@ fn overlap_exactly(one: [DVec3; 3], two: [DVec3; 3]) -> bool {
         return true;
     }
     let names = [0, 1, 2].map(|k| shared[k].map_or(3 + k as u32, |own| own as u32));
-    let (Some(one), Some(two)) = (ConvexFace::new(0, [0, 1, 2], one), ConvexFace::new(1, names, two)) else { return false };
+    let (Some(one), Some(two)) = (ConvexFace::new(0, [0, 1, 2], one), ConvexFace::new(1, names, two)) else {
+        return false;
+    };
     let contact = Contact::of(&one, &two);
     contact.points.len() > 2
         || contact.points.iter().any(|point| !matches!(point.features, [Feature::Corner(_), Feature::Corner(_)]))

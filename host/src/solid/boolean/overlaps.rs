@@ -46,8 +46,10 @@ fn corners(mesh: &Mesh, triangle: usize) -> Corners {
 }
 
 fn do_overlap(mesh: &Mesh, one: u32, two: u32) -> bool {
-    let tile =
-        |triangle: u32| NamedTriangle { names: mesh.triangles[triangle as usize], corners: mesh.corners(triangle as usize) };
+    let tile = |triangle: u32| NamedTriangle {
+        names: mesh.triangles[triangle as usize],
+        corners: mesh.corners(triangle as usize),
+    };
     overlap(&tile(one).with_plane(), &tile(two), || tile(two).with_plane())
 }
 

@@ -2,10 +2,10 @@
 
 use super::arrangement::Arrangement;
 use super::facets::Facet;
+use super::half_edges::{HalfEdges, of_triangles};
 use super::operand::Operands;
-use super::sides::{HalfEdges, of_triangles};
 use super::winding::winding;
-use crate::numeric::implicit::{PointDefinition, ImplicitPoint, turn};
+use crate::numeric::implicit::{ImplicitPoint, PointDefinition, turn};
 use crate::solid::union_find::UnionFind;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -207,7 +207,12 @@ fn windings(
         (Some(triangle), _) => {
             steps[operands.of_triangle(triangle) as usize] = 1;
             let corners = operands.corners(triangle).1;
-            (ImplicitPoint::middle(corners.map(|corner| ImplicitPoint::new(PointDefinition::Given(corner))).each_ref()), corners)
+            (
+                ImplicitPoint::middle(
+                    corners.map(|corner| ImplicitPoint::new(PointDefinition::Given(corner))).each_ref(),
+                ),
+                corners,
+            )
         }
         (None, Some(facet)) => {
             let facet = &facets[facet as usize];

@@ -4,7 +4,7 @@
 //! drawn where they were only divided.
 
 use super::contact::ConvexFace;
-use super::sides::HalfEdges;
+use super::half_edges::HalfEdges;
 use crate::mesh::Mesh;
 use rayon::prelude::*;
 

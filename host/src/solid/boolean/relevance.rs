@@ -4,11 +4,11 @@
 //! operand or outside another, and the expression then no longer depends on the operand of the triangle, neither the
 //! triangle nor what it crosses need be looked at: on both sides of a line that it would draw the result is the same.
 
-use super::burial::BuriedTriangles;
+use super::buried::BuriedTriangles;
 use super::operand::Operands;
-use super::standing::PartialEvaluation;
+use super::partial_evaluation::PartialEvaluation;
 use super::winding::winding;
-use crate::numeric::implicit::{PointDefinition, ImplicitPoint};
+use crate::numeric::implicit::{ImplicitPoint, PointDefinition};
 use crate::solid::union_find::UnionFind;
 use rayon::prelude::*;
 
@@ -16,7 +16,12 @@ use rayon::prelude::*;
 ///
 /// - `standing`: of a point outside all operands.
 /// - `touching`: pairs of triangles of different operands that have a point in common, none of them buried.
-pub fn relevant(operands: &Operands, evaluation: &PartialEvaluation, buried: &BuriedTriangles, touching: &[[u32; 2]]) -> Vec<bool> {
+pub fn relevant(
+    operands: &Operands,
+    evaluation: &PartialEvaluation,
+    buried: &BuriedTriangles,
+    touching: &[[u32; 2]],
+) -> Vec<bool> {
     let count = operands.meshes().len();
     if count < 3 {
         return vec![true; operands.triangle_count()];

@@ -5,7 +5,7 @@ use super::facets::Facet;
 use super::merge::result_triangles;
 use super::operand::Operands;
 use super::parts::{FaceClassification, Parts};
-use super::rounding::{self, WholeTriangles, NewTriangles};
+use super::rounding::{self, NewTriangles, WholeTriangles};
 use crate::mesh::Mesh;
 use crate::numeric::triangle;
 use crate::solid::cleaning::cleaned;

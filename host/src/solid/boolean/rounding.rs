@@ -1,7 +1,7 @@
 //! Whether rounded points made a surface cross itself, or may have turned a part of it inside out.
 
 use super::operand::Operands;
-use super::overlap::{PlaneTriangle, NamedTriangle, nearly_overlap};
+use super::overlap::{NamedTriangle, PlaneTriangle, nearly_overlap};
 use super::parts::FaceClassification;
 use crate::mesh::Mesh;
 use crate::octree::TriangleBvh;

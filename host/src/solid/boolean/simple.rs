@@ -4,13 +4,13 @@
 //! the points that it winds around more than not at all.
 
 use super::expression::Expression;
+use super::half_edges::HalfEdges;
 use super::nudging::nudge;
 use super::operand::{Operand, Operands};
 use super::overlaps::{Overlaps, overlapping};
 use super::result::Outcome;
-use super::sides::HalfEdges;
+use super::single_evaluation::{Evaluation, evaluate_once};
 use super::snapping::{Scope, snapped};
-use super::work::{Evaluation, evaluate_once};
 use crate::mesh::{Mesh, bits};
 use crate::numeric::bounds::Bounds;
 use crate::numeric::triangle;

@@ -11,11 +11,11 @@
 //! # Cost
 //! n log n in the triangles that are drawn together and the pairs of them that are near each other.
 
-use super::result::{Outcome, CornerTables};
+use super::result::{CornerTables, Outcome};
 use super::triangulation::IncrementalTriangulation;
 use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
-use crate::numeric::implicit::{PointDefinition, ImplicitPoint};
+use crate::numeric::implicit::{ImplicitPoint, PointDefinition};
 use crate::octree::TriangleBvh;
 use glam::DVec3;
 use rustc_hash::FxHashMap;
@@ -184,7 +184,8 @@ impl Incidences {
         let mut vertices: Vec<u32> = self.edges.as_flattened().to_vec();
         vertices.sort_unstable();
         vertices.dedup();
-        let of_edges = sorted_boxes(self.edges.iter().map(|edge| reach.around(&edge.map(|v| mesh.vertices[v as usize]))));
+        let of_edges =
+            sorted_boxes(self.edges.iter().map(|edge| reach.around(&edge.map(|v| mesh.vertices[v as usize]))));
         self.pass_near(mesh, &vertices, &of_edges, reach);
         let new = self.meet(mesh, &of_edges, reach);
         self.pass_near(mesh, &new, &of_edges, reach);

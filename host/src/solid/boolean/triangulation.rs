@@ -56,10 +56,16 @@ impl<'a> IncrementalTriangulation<'a> {
         IncrementalTriangulation {
             axis,
             points: with_capacity(corners, TYPICAL_POINTS),
-            sides: with_capacity(if is_quad { &[0b1001, 0b0011, 0b0110, 0b1100] } else { &[0b101, 0b011, 0b110] }, TYPICAL_POINTS),
+            sides: with_capacity(
+                if is_quad { &[0b1001, 0b0011, 0b0110, 0b1100] } else { &[0b101, 0b011, 0b110] },
+                TYPICAL_POINTS,
+            ),
             corners: corners.len() as u32,
             triangles: with_capacity(if is_quad { &[[0, 1, 2], [2, 3, 0]] } else { &[[0, 1, 2]] }, 2 * TYPICAL_POINTS),
-            beyond: with_capacity(if is_quad { &[[NONE, NONE, 1], [NONE, NONE, 0]] } else { &[[NONE; 3]] }, 2 * TYPICAL_POINTS),
+            beyond: with_capacity(
+                if is_quad { &[[NONE, NONE, 1], [NONE, NONE, 0]] } else { &[[NONE; 3]] },
+                2 * TYPICAL_POINTS,
+            ),
             at: with_capacity(&[0, 0, 0, 1][..corners.len()], TYPICAL_POINTS),
             fixed: FxHashSet::default(),
             last: 0,

@@ -3,7 +3,7 @@
 use super::contact::planar_orientation;
 use super::operand::Operands;
 use crate::numeric::bounds::Bounds;
-use crate::numeric::implicit::{PointDefinition, ImplicitPoint, side_of, turn};
+use crate::numeric::implicit::{ImplicitPoint, PointDefinition, side_of, turn};
 use glam::DVec3;
 
 /// How often an operand winds around a point that is not on its surface.
@@ -35,7 +35,12 @@ pub fn passes(point: &ImplicitPoint, corners: [DVec3; 3]) -> i32 {
     for (p, q) in [(a, b), (b, c), (c, a)] {
         let mut turns = match point.definition() {
             &PointDefinition::Given(point) => planar_orientation(0, point, p, q),
-            _ => turn(0, point, &ImplicitPoint::new(PointDefinition::Given(p)), &ImplicitPoint::new(PointDefinition::Given(q))),
+            _ => turn(
+                0,
+                point,
+                &ImplicitPoint::new(PointDefinition::Given(p)),
+                &ImplicitPoint::new(PointDefinition::Given(q)),
+            ),
         };
         if turns == 0.0 {
             // The derivatives of the turn by y and by z.

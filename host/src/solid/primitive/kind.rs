@@ -169,8 +169,12 @@ impl Primitive {
             Primitive::Cylinder { radius, height } => cylinder(*radius, *height),
             Primitive::Cone { radius, top, height } => frustum(*radius, *top, *height),
             Primitive::Paraboloid { radius, height } => paraboloid(*radius, *height),
-            Primitive::HyperboloidOfOneSheet { waist, radius, height } => hyperboloid_of_one_sheet(*waist, *radius, *height),
-            Primitive::HyperboloidOfTwoSheets { gap, radius, height } => hyperboloid_of_two_sheets(*gap, *radius, *height),
+            Primitive::HyperboloidOfOneSheet { waist, radius, height } => {
+                hyperboloid_of_one_sheet(*waist, *radius, *height)
+            }
+            Primitive::HyperboloidOfTwoSheets { gap, radius, height } => {
+                hyperboloid_of_two_sheets(*gap, *radius, *height)
+            }
             Primitive::Torus { ring, tube } => torus(*ring, *tube),
             Primitive::Revolution { profile } => revolution(profile),
             Primitive::SmoothRevolution { profile } => smooth_revolution(profile),

@@ -17,8 +17,10 @@ pub use flat::{block, prism, pyramid, wedge};
 pub use half_space::half_space;
 pub use kind::Primitive;
 pub use patches::sculptured;
-pub use revolution::{revolution, smooth_revolution, revolved_polygon};
-pub use round::{hyperboloid_of_two_sheets, cylinder, ellipsoid, frustum, hyperboloid_of_one_sheet, paraboloid, sphere, torus};
+pub use revolution::{revolution, revolved_polygon, smooth_revolution};
+pub use round::{
+    cylinder, ellipsoid, frustum, hyperboloid_of_one_sheet, hyperboloid_of_two_sheets, paraboloid, sphere, torus,
+};
 pub use sweep::{path, sweep};
 
 #[cfg(test)]

@@ -149,7 +149,8 @@ pub fn revolved_polygon<C: AsRef<[DVec2]>>(contours: &[C], turn: f64) -> Result<
     }
     let mut faces = Vec::new();
     if turn < 1.0 {
-        let at = |turns: f64| corners.iter().map(|corner| SurfaceOfRevolution::revolve(*corner, turns)).collect::<Vec<_>>();
+        let at =
+            |turns: f64| corners.iter().map(|corner| SurfaceOfRevolution::revolve(*corner, turns)).collect::<Vec<_>>();
         let turned = base.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
         faces = vec![Face::new(at(0.0), base.triangles.clone()), Face::new(at(turn), turned)];
     }

@@ -258,7 +258,9 @@ fn closed_sweeps_come_back_to_where_they_began() {
         })
         .collect();
     for turns in [0.0, 2.0] {
-        let body = sweep(&[square(0.5)], path(&control, true).unwrap(), TwistAndTaper { twist_turns: turns, scale: 1.0 }).unwrap();
+        let body =
+            sweep(&[square(0.5)], path(&control, true).unwrap(), TwistAndTaper { twist_turns: turns, scale: 1.0 })
+                .unwrap();
         let solid = solid(&body, 0.02);
         assert_eq!(solid.mesh().edge_report().euler_characteristic(), 0);
     }

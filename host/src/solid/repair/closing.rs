@@ -3,7 +3,7 @@
 use super::super::boolean::{NamedTriangle, overlap};
 use super::super::error::OpenLoop;
 use super::super::union_find::UnionFind;
-use super::patches::{ThirdCorners, LoopPlane, Method, ClosingPatch};
+use super::patches::{ClosingPatch, LoopPlane, Method, ThirdCorners};
 use crate::mesh::edges::EdgeTable;
 use crate::mesh::{BoundaryLoop, Mesh};
 use crate::octree::TriangleBvh;

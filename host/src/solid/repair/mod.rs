@@ -12,9 +12,9 @@ mod orientation;
 mod patches;
 mod surplus;
 
-use super::bodies::Shells;
 use super::cleaning::{check_edges, without_collapsed};
 use super::import::{imported_on_lattice, on_lattice};
+use super::shells::Shells;
 use super::{Solid, SolidError};
 use crate::mesh::{BoundaryLoop, Mesh};
 use crate::octree::TriangleBvh;
@@ -22,7 +22,7 @@ use joining::join_near;
 use orientation::{turn, turn_alike};
 use serde::Serialize;
 use std::fmt;
-use surplus::{remove_duplicates, remove_dangling};
+use surplus::{remove_dangling, remove_duplicates};
 
 /// What was done to a mesh to make it a solid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -60,7 +60,17 @@ impl Repair {
 impl fmt::Display for Repair {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let s = |count: usize| if count == 1 { "" } else { "s" };
-        let Repair { joined, collapsed, duplicates, dangling: fins, reoriented: turned, loops, added, bodies, is_resolved } = *self;
+        let Repair {
+            joined,
+            collapsed,
+            duplicates,
+            dangling: fins,
+            reoriented: turned,
+            loops,
+            added,
+            bodies,
+            is_resolved,
+        } = *self;
         let (vertices, triangles) = (if joined == 1 { "vertex" } else { "vertices" }, s(collapsed));
         let done = [
             (joined, format!("{joined} {vertices} joined at boundaries that were apart by rounding")),

@@ -215,7 +215,9 @@ mod tests {
                 assert_eq!(plane.is_flat, is_flat);
                 assert_eq!(plane.normal.z > 0.0, !back);
                 for method in Method::of(&boundary, &plane) {
-                    let patch = method.patch(&[&boundary], &plane, &positions, &ThirdCorners::new()).expect("the loop is plain");
+                    let patch = method
+                        .patch(&[&boundary], &plane, &positions, &ThirdCorners::new())
+                        .expect("the loop is plain");
                     assert!(closes(&boundary, &patch), "{method:?}");
                     assert_eq!(patch.triangles.len(), if *method == Method::Fan { 40 } else { 38 });
                 }

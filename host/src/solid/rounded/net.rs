@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::error::RoundingError;
-use super::faces::{PolygonFace, PolygonFaces, HalfEdge};
+use super::faces::{HalfEdge, PolygonFace, PolygonFaces};
 use crate::polygon::{TriangulationKind, triangulate_in_space};
 use crate::subdivision::Polyhedron;
 

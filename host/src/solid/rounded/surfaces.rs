@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use super::faces::{SolidEdge, PolygonFaces, to_segment};
+use super::faces::{PolygonFaces, SolidEdge, to_segment};
 use crate::mesh::Mesh;
 use crate::numeric::triangle::weights;
 use crate::solid::ExactSolid;
@@ -46,7 +46,12 @@ impl Rounding {
 /// its u from face to face and v along the edge, each about 0 to 1. Around a corner the nearest edge counts.
 ///
 /// Returns the surfaces; those of edges are not known exactly.
-pub fn assign(mesh: &mut Mesh, solid: &ExactSolid, faces: &PolygonFaces, rounded: &[usize]) -> Vec<Option<Arc<dyn Surface>>> {
+pub fn assign(
+    mesh: &mut Mesh,
+    solid: &ExactSolid,
+    faces: &PolygonFaces,
+    rounded: &[usize],
+) -> Vec<Option<Arc<dyn Surface>>> {
     let before = solid.solid().mesh();
     let roundings: Vec<Rounding> =
         rounded.iter().map(|edge| Rounding::new(&faces.edges[*edge], faces, &before.vertices)).collect();

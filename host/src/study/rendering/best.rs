@@ -1,7 +1,7 @@
 //! The knobs of a renderer in a scene: which of them change anything, and all of them at their best.
 
 use super::knob::{RENDER_KNOBS, RenderKnob};
-use super::setup::{StudiedScene, Setup};
+use super::setup::{Setup, StudiedScene};
 use crate::plan::Stage;
 use crate::render::Technique;
 

@@ -1,6 +1,6 @@
 //! The knobs of the renderers: one row each, from which the sweep, the help and the tables are derived.
 
-use super::setup::{StudiedScene, Setup};
+use super::setup::{Setup, StudiedScene};
 use crate::illumination::Light;
 use crate::illumination::optics::Interreflection;
 use crate::octree::MAX_POINT_DEPTH;

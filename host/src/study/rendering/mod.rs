@@ -4,7 +4,7 @@
 //! longer that of the knob: then the study says what else it is.
 
 mod best;
-mod bend;
+mod error_floor;
 mod knob;
 mod measure;
 mod results;
@@ -13,7 +13,7 @@ mod setup;
 #[cfg(test)]
 mod tests;
 
-pub use bend::ErrorFloor;
+pub use error_floor::ErrorFloor;
 pub use knob::{RENDER_KNOBS, RenderKnob};
 pub use measure::ErrorMeasures;
 pub use results::{KnobStudy, RenderRow, RenderStudy};
@@ -23,10 +23,10 @@ use super::{Options, StudyError};
 use crate::picture::Picture;
 use crate::render::{Progress, Technique, Watch};
 use crate::scene::Scene;
-use bend::error_floor;
 use best::knobs_of;
+use error_floor::error_floor;
 use measure::ReferencePicture;
-use setup::{StudiedScene, Setup, TimedRendering};
+use setup::{Setup, StudiedScene, TimedRendering};
 
 /// A setting is tried again, for its shortest time, while it took less than this many seconds in all.
 const SHORT_SECONDS: f64 = 0.25;
@@ -174,8 +174,9 @@ impl Bench<'_> {
         reference: usize,
     ) -> Result<(RenderRow, Picture), StudyError> {
         let spent = |shots: &[TimedRendering]| shots.iter().map(|shot| shot.render).sum::<f64>();
-        let is_enough =
-            |shots: &[TimedRendering]| shots.len() >= 2 && (spent(shots) >= SHORT_SECONDS || shots.len() >= MOST_TRIALS);
+        let is_enough = |shots: &[TimedRendering]| {
+            shots.len() >= 2 && (spent(shots) >= SHORT_SECONDS || shots.len() >= MOST_TRIALS)
+        };
         let mut shots = self.base.trials(setup, &is_enough, self.watch)?;
         let least = |of: &dyn Fn(&TimedRendering) -> f64| shots.iter().map(of).fold(f64::INFINITY, f64::min);
         let seconds = least(&|shot| if knob.remodels { shot.build + shot.render } else { shot.render });

@@ -1,6 +1,6 @@
 //! A study of renderers as text, comma-separated values and plots.
 
-use super::bend::ErrorFloor;
+use super::error_floor::ErrorFloor;
 use super::results::{KnobStudy, RenderRow, RenderStudy};
 use crate::study::plot::{Axis, Plot, PlotPoint, Series};
 use crate::study::sweep::short;

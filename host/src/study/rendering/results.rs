@@ -1,6 +1,6 @@
 //! What a study of renderers found: rows of settings, and a verdict for each knob.
 
-use super::bend::ErrorFloor;
+use super::error_floor::ErrorFloor;
 use super::measure::ErrorMeasures;
 use crate::render::Technique;
 use serde::Serialize;

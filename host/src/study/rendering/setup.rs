@@ -3,7 +3,7 @@
 use crate::picture::Picture;
 use crate::plan::{Plan, Stage};
 use crate::render::two_way::greatest_gather_radius;
-use crate::render::{Memo, RenderOrder, RENDERERS, PreparedRenderer, Task, Technique, Watch};
+use crate::render::{Memo, PreparedRenderer, RENDERERS, RenderOrder, Task, Technique, Watch};
 use crate::scene::{Caustics, Prepared, Scene, Settings};
 use crate::study::options::resized;
 use crate::study::{Options, StudyError};
@@ -101,7 +101,8 @@ impl StudiedScene {
         if technique.row().always_maps_photons {
             (technique.row().require)(&mut settings);
         }
-        settings.photons.radius = Some(settings.photons.radius.unwrap_or_else(|| greatest_gather_radius(&self.prepared)));
+        settings.photons.radius =
+            Some(settings.photons.radius.unwrap_or_else(|| greatest_gather_radius(&self.prepared)));
         Setup { technique, settings, target: None, denoise: false, own_tolerances: true }
     }
 

@@ -1,10 +1,10 @@
 //! Facts about studies of renderers: closed forms first, then every row of the table.
 
 use super::*;
-use crate::color::{Extrapolation, Color, Spectrum};
+use crate::color::{Color, Extrapolation, Spectrum};
 use crate::illumination::light::LightShape;
 use crate::illumination::material::{Classic, Material};
-use crate::illumination::texture::{TextureMapping, Motif, Pattern};
+use crate::illumination::texture::{Motif, Pattern, TextureMapping};
 use crate::illumination::{Light, Paint};
 use crate::numeric::ray::Ray;
 use crate::render::RENDERERS;
@@ -59,8 +59,10 @@ fn eight_settings_of_samples_need_one_octree() {
 
 /// Every knob has something to do: a ball that mirrors, on tiles beside a colored wall, under a lamp with a spectrum.
 fn all_knobs() -> Scene {
-    let (paints, laying) =
-        (vec![Paint::grey(0.2), Paint::grey(0.8)], TextureMapping { size: DVec3::splat(0.07), ..TextureMapping::default() });
+    let (paints, laying) = (
+        vec![Paint::grey(0.2), Paint::grey(0.8)],
+        TextureMapping { size: DVec3::splat(0.07), ..TextureMapping::default() },
+    );
     let tiles = Paint::Pattern(Box::new(Pattern { motif: Motif::Checker, laying, paints }));
     let red = Paint::Plain(Color::Bands(DVec3::new(0.7, 0.15, 0.1)));
     let wall = DMat4::from_translation(DVec3::new(-1.2, 1.0, 0.0));
@@ -241,7 +243,8 @@ fn every_knob_changes_the_picture_or_says_why_not() {
 #[test]
 fn denoising_lowers_the_error_of_a_picture_with_noise() {
     // A ball in the soft shadow of a large lamp, and light between it and the floor.
-    let patch = LightShape::Rectangle { corner: DVec3::new(-2.0, 3.0, -2.0), across: DVec3::X * 4.0, up: DVec3::Z * 4.0 };
+    let patch =
+        LightShape::Rectangle { corner: DVec3::new(-2.0, 3.0, -2.0), across: DVec3::X * 4.0, up: DVec3::Z * 4.0 };
     let ball = DMat4::from_translation(DVec3::Y * 0.7);
     let objects = vec![
         object(Shape::Ground { size: 8.0 }, DMat4::IDENTITY, diffuse(0.6)),

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::super::border::SharedCurves;
+use super::super::shared_curves::SharedCurves;
 use super::super::{Curved, Surface, Tolerance, joint, tessellate, tessellate_adaptively};
 use super::*;
 use crate::mesh::Mesh;

@@ -4,8 +4,8 @@
 //! integrals over all directions of light that a surface needs to know what is missing: that of S, and that of S times the
 //! greater E of viewer and light.
 
-use super::super::interface::beta;
-use crate::illumination::distribution::{SlopeDistribution, Microfacet};
+use super::super::dielectric::beta;
+use crate::illumination::distribution::{Microfacet, SlopeDistribution};
 use crate::illumination::fresnel::Dielectric;
 use crate::numeric::cubature::{GAUSS, unit_square};
 use glam::{DVec2, DVec3};
@@ -217,13 +217,15 @@ pub(super) enum InterfaceSide {
 impl Albedo {
     /// - `transmits`: whether what comes through counts; if not, all that is known of it is 0.
     pub(super) fn new(interface: AlbedoInterface, coat: Option<CoatAlbedo>, transmits: bool) -> Albedo {
-        let mut albedo = Albedo { interface, coat, tables: None, means: [DirectionalAlbedos::default(); 2], fresnel: [0.0; 3] };
+        let mut albedo =
+            Albedo { interface, coat, tables: None, means: [DirectionalAlbedos::default(); 2], fresnel: [0.0; 3] };
         if let Some(m) = interface.roughness {
             let table = |from: InterfaceSide| Table::new(m, |cosine| albedo.rough(from, cosine, transmits));
             let tables = [InterfaceSide::Outside, InterfaceSide::Inside].map(table);
             albedo.tables = Some(tables);
         }
-        albedo.means = [InterfaceSide::Outside, InterfaceSide::Inside].map(|from| mean(|c| albedo.at(from, c)).unwrap_or_default());
+        albedo.means = [InterfaceSide::Outside, InterfaceSide::Inside]
+            .map(|from| mean(|c| albedo.at(from, c)).unwrap_or_default());
         let surface = interface.surface;
         let square = surface.index().powi(2);
         if transmits {
@@ -298,7 +300,11 @@ impl Albedo {
             InterfaceSide::Inside => {
                 let beyond = surface.refracted(slanted(cosine), DVec3::Z).map_or(0.0, |light| -light.z);
                 let through = surface.transmittance(cosine).mean();
-                DirectionalAlbedos { sent: 1.0, sent_coat: self.coat(beyond) * through, ..DirectionalAlbedos::default() }
+                DirectionalAlbedos {
+                    sent: 1.0,
+                    sent_coat: self.coat(beyond) * through,
+                    ..DirectionalAlbedos::default()
+                }
             }
         }
     }

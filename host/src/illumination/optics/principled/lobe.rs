@@ -1,7 +1,7 @@
 //! A part of a principled material as a lobe.
 
+use super::super::context::{BsdfSample, ShadingContext};
 use super::super::lobe::{Flags, Lobe, NARROW};
-use super::super::sighting::{BsdfSample, ShadingContext};
 use super::surface::{PrincipledPart, PrincipledSurface};
 use crate::color::Channels;
 use glam::DVec3;

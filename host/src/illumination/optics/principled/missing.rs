@@ -1,8 +1,8 @@
 //! What of all light is missing when facets have reflected and refracted once, and on which side it comes back.
 
-use super::super::sighting::ShadingContext;
-use super::albedo::{InterfaceSide, DirectionalAlbedos};
-use super::surface::{PrincipledValues, PrincipledSurface};
+use super::super::context::ShadingContext;
+use super::albedo::{DirectionalAlbedos, InterfaceSide};
+use super::surface::{PrincipledSurface, PrincipledValues};
 
 /// The part of all light that surfaces miss when facets have reflected and refracted once.
 #[derive(Clone, Copy)]
@@ -29,7 +29,13 @@ impl PrincipledSurface {
     }
 
     /// - `outside`: shares from outside. `side`: those on the side that is meant.
-    pub(super) fn missing_of(&self, at: &PrincipledValues, seen: InterfaceSide, outside: &DirectionalAlbedos, side: &DirectionalAlbedos) -> MissingEnergy {
+    pub(super) fn missing_of(
+        &self,
+        at: &PrincipledValues,
+        seen: InterfaceSide,
+        outside: &DirectionalAlbedos,
+        side: &DirectionalAlbedos,
+    ) -> MissingEnergy {
         let s = at.specular;
         // From inside, what is no transparent body has no coat.
         let c = if seen == InterfaceSide::Outside { at.coat } else { 0.0 };

@@ -1,12 +1,12 @@
 //! The surface of a principled material: its parts, what each sends to a viewer, and how directions of light are drawn.
 
-use super::super::interface::{beta, interface, reflected};
-use super::super::shade::{PreparedNumber, PreparedPaint};
-use super::super::sighting::{BsdfSample, ShadingContext};
-use super::albedo::{Albedo, CoatAlbedo, AlbedoInterface, InterfaceSide, pane};
+use super::super::context::{BsdfSample, ShadingContext};
+use super::super::dielectric::{beta, interface, reflected};
+use super::super::prepared_textures::{PreparedNumber, PreparedPaint};
+use super::albedo::{Albedo, AlbedoInterface, CoatAlbedo, InterfaceSide, pane};
 use super::sheen::Sheen;
 use crate::color::Channels;
-use crate::illumination::distribution::{Distribution, SlopeDistribution, Microfacet};
+use crate::illumination::distribution::{Distribution, Microfacet, SlopeDistribution};
 use crate::illumination::fresnel::Dielectric;
 use crate::illumination::material::MaterialError;
 use crate::numeric::sampling::cosine_hemisphere;
@@ -121,8 +121,9 @@ impl PrincipledSurface {
         let surface = Dielectric::new(1.0, make.index)?;
         let coat_surface = Dielectric::new(1.0, make.coat_index)?;
         let facets = |m: Option<f64>| m.map(|m| Microfacet::new(SlopeDistribution::Ggx, DVec2::splat(m))).transpose();
-        let below =
-            make.has_coat.then(|| CoatAlbedo::new(AlbedoInterface { roughness: make.coat_roughness, surface: coat_surface }));
+        let below = make
+            .has_coat
+            .then(|| CoatAlbedo::new(AlbedoInterface { roughness: make.coat_roughness, surface: coat_surface }));
         let transmits = make.transmits && !make.thin;
         let albedo = Albedo::new(AlbedoInterface { roughness: make.roughness, surface }, below, transmits);
         Ok(PrincipledSurface {
@@ -350,7 +351,8 @@ impl PrincipledSurface {
                 let at = self.at(context);
                 let chance = self.chance(&self.fresnel(&at, context, facet.dot(view)));
                 let chance = if light.z > 0.0 { chance } else { 1.0 - chance };
-                let seen = facet.dot(view) * SlopeDistribution::Ggx.area(facet, *m) / SlopeDistribution::Ggx.projected(view, *m);
+                let seen = facet.dot(view) * SlopeDistribution::Ggx.area(facet, *m)
+                    / SlopeDistribution::Ggx.projected(view, *m);
                 chance * seen * self.jacobian(context, light, facet)
             }
             PrincipledPart::Spread => {
@@ -366,7 +368,13 @@ impl PrincipledSurface {
     }
 
     /// Draws a direction of light.
-    pub(super) fn sample(&self, part: PrincipledPart, context: &ShadingContext, choice: f64, point: [f64; 2]) -> Option<DVec3> {
+    pub(super) fn sample(
+        &self,
+        part: PrincipledPart,
+        context: &ShadingContext,
+        choice: f64,
+        point: [f64; 2],
+    ) -> Option<DVec3> {
         let view = context.view;
         match part {
             PrincipledPart::Facets => {
@@ -400,7 +408,8 @@ impl PrincipledSurface {
     /// How much is spread alike to the viewer from above, and from below.
     pub(super) fn spread_shares(&self, at: &PrincipledValues, context: &ShadingContext) -> [f64; 2] {
         let missing = self.missing(at, at.side, context.view.z);
-        let further = if at.metallic > 0.0 { at.further(self.albedo.mean(InterfaceSide::Outside).all).max() } else { 0.0 };
+        let further =
+            if at.metallic > 0.0 { at.further(self.albedo.mean(InterfaceSide::Outside).all).max() } else { 0.0 };
         let color = at.base.max();
         let cloth = at.cloth.max() * (1.0 - at.clear()) * (1.0 - at.rim.albedo(context.view.z));
         let above = at.opaque() * color * missing.opaque + at.metallic * further * missing.metal + cloth * color;
@@ -447,7 +456,12 @@ impl PrincipledSurface {
     }
 
     /// One of the single directions, by its part.
-    pub(super) fn specular_sample(&self, part: PrincipledPart, context: &ShadingContext, choice: f64) -> Option<BsdfSample> {
+    pub(super) fn specular_sample(
+        &self,
+        part: PrincipledPart,
+        context: &ShadingContext,
+        choice: f64,
+    ) -> Option<BsdfSample> {
         let [reflection, through] = self.specular_samples(part, context);
         let (Some(reflection), Some(through)) = (reflection, through) else { return reflection.or(through) };
         let chance = reflection.weight.max() / (reflection.weight.max() + through.weight.max());
@@ -484,7 +498,9 @@ impl PrincipledSurface {
         let at = self.at(context);
         let cosine = context.view.z.clamp(0.0, 1.0);
         match part {
-            PrincipledPart::Coat if at.side == InterfaceSide::Outside => self.beside_cloth(&at) * (at.coat * self.albedo.coat(cosine)),
+            PrincipledPart::Coat if at.side == InterfaceSide::Outside => {
+                self.beside_cloth(&at) * (at.coat * self.albedo.coat(cosine))
+            }
             PrincipledPart::Facets => {
                 let FacetFresnel { ground, clear, .. } = self.fresnel(&at, context, cosine);
                 (ground * (Channels::ONE - at.cloth) + clear) * self.under(&at, cosine)

@@ -1,7 +1,7 @@
 //! Facts about the principled material: furnaces over all of its numbers, samples against densities, light to and fro.
 
-use super::super::shade::{PreparedNumber, PreparedPaint};
-use super::super::sighting::ShadingContext;
+use super::super::context::ShadingContext;
+use super::super::prepared_textures::{PreparedNumber, PreparedPaint};
 use super::surface::*;
 use crate::color::Channels;
 use crate::color::WavelengthSets;
@@ -200,8 +200,8 @@ fn light_to_and_fro_is_the_same() {
             let [mut there, mut back] = [0.0; 2];
             for part in [PrincipledPart::Sheen, PrincipledPart::Coat, PrincipledPart::Facets, PrincipledPart::Spread] {
                 let of = context(&numbers, view, false);
-                there +=
-                    surface.value(part, &of, light).0[0] * of.indices.behind.0[0].powi(if light.z < 0.0 { 2 } else { 0 });
+                there += surface.value(part, &of, light).0[0]
+                    * of.indices.behind.0[0].powi(if light.z < 0.0 { 2 } else { 0 });
                 back += if light.z > 0.0 {
                     surface.value(part, &context(&numbers, light, false), view).0[0]
                 } else {

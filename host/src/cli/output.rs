@@ -1,0 +1,85 @@
+//! Text for standard output, which nobody may be reading any more, and for standard error.
+//!
+//! Texts may come from a script or a file of somebody else: characters that would command the terminal are shown as
+//! escapes.
+
+use super::exit::Exit;
+use super::progress;
+use crate::memory;
+use serde_json::Value;
+use std::{borrow::Cow, fmt::Arguments, io::Write};
+
+/// Writes to standard output. When the reader has gone, as in `peris ... | head`, the program ends quietly.
+pub(super) fn write(text: Arguments<'_>) {
+    progress::clear();
+    let mut out = std::io::stdout().lock();
+    if out.write_all(escaped(&text.to_string()).as_bytes()).and_then(|()| out.flush()).is_err() {
+        std::process::exit(Exit::Done as i32);
+    }
+}
+
+/// Writes a line to standard error.
+pub(super) fn write_error(text: &str) {
+    progress::clear();
+    eprintln!("{}", escaped(text));
+}
+
+/// Says on standard error what is probably not meant.
+pub(super) fn warn(text: &str) {
+    write_error(&format!("warning: {text}"));
+}
+
+/// A text whose control characters are escapes, but for the ends of lines and tabulators.
+fn escaped(text: &str) -> Cow<'_, str> {
+    let is_control = |c: char| c.is_control() && c != '\n' && c != '\t';
+    if !text.contains(is_control) {
+        return text.into();
+    }
+    text.chars()
+        .fold(String::with_capacity(text.len()), |mut shown, c| {
+            if is_control(c) {
+                shown.extend(c.escape_default())
+            } else {
+                shown.push(c)
+            }
+            shown
+        })
+        .into()
+}
+
+/// Writes what `--json` asks for: what a command found, one object or several, and the most memory that it held.
+pub(super) fn report(mut known: Value) {
+    let objects = match &mut known {
+        Value::Array(several) => several.as_mut_slice(),
+        one => std::slice::from_mut(one),
+    };
+    for object in objects.iter_mut().filter_map(Value::as_object_mut) {
+        object.insert("peak_memory_bytes".into(), memory::peak().into());
+    }
+    write(format_args!("{known:#}\n"));
+}
+
+/// Writes a line to standard output.
+macro_rules! say {
+    ($($text:tt)*) => {
+        $crate::cli::output::write(format_args!("{}\n", format_args!($($text)*)))
+    };
+}
+
+/// Writes text to standard output without ending the line.
+macro_rules! say_on {
+    ($($text:tt)*) => {
+        $crate::cli::output::write(format_args!($($text)*))
+    };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_would_command_a_terminal_is_shown_as_an_escape() {
+        assert_eq!(escaped("a\tb\nc ä"), "a\tb\nc ä");
+        assert_eq!(escaped("\x1b[2J\u{9b}31m\r\x07"), "\\u{1b}[2J\\u{9b}31m\\r\\u{7}");
+    }
+}

@@ -1,0 +1,290 @@
+//! The index: wide nodes over the triangles in the order of their codes, for rays that start at the top.
+
+use std::ops::Range;
+
+use glam::DVec3;
+use rayon::current_num_threads;
+use rayon::prelude::*;
+use wide::f32x4;
+
+use super::build::OctreeBuilder;
+use super::items::{self, Item};
+use super::lanes::{Eight, LANES, Lanes};
+use super::packet::Packet;
+use super::partition::{ItemGroup, divide};
+use super::prepared_ray::SinglePrecisionRay;
+use crate::memory::prefer_large_pages;
+use crate::numeric::bounds::Bounds;
+
+/// So many cells or fewer are divided by their items.
+const FEW_CELLS: usize = 64;
+
+/// So many triangles or fewer are not divided.
+const LEAF: usize = 12;
+
+/// Set where a child is not a node.
+const PACKETS: u32 = 1 << 31;
+
+/// Behind that, the number of packets less one; then the place.
+const PLACE_BITS: u32 = 28;
+
+/// What is below a box: a node, or a few successive packets, by its place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Child(pub u32);
+
+impl Child {
+    fn packets(places: Range<usize>) -> Self {
+        Self(PACKETS | (places.len() as u32 - 1) << PLACE_BITS | places.start as u32)
+    }
+
+    /// The places of packets, or else that of a node.
+    #[inline(always)]
+    pub fn place(self) -> Result<Range<usize>, usize> {
+        if self.0 & PACKETS == 0 {
+            return Err(self.0 as usize);
+        }
+        let first = (self.0 & ((1 << PLACE_BITS) - 1)) as usize;
+        Ok(first..first + ((self.0 & !PACKETS) >> PLACE_BITS) as usize + 1)
+    }
+
+    /// This reference when so many nodes and packets come before; what is the top, or nothing, stays.
+    fn moved(self, nodes: usize, packets: usize) -> Self {
+        match self.0 {
+            0 => self,
+            bits if bits & PACKETS != 0 => Self(bits + packets as u32),
+            bits => Self(bits + nodes as u32),
+        }
+    }
+}
+
+/// Up to eight boxes, each of a node or of packets.
+#[derive(Clone, Debug)]
+#[repr(align(64))]
+pub struct BvhNode {
+    /// By axis, then low and high.
+    bounds: [[Eight; 2]; 3],
+    /// What is in each.
+    pub children: [Child; LANES],
+}
+
+impl BvhNode {
+    const EMPTY: Self = Self {
+        bounds: [[Eight([f32::INFINITY; LANES]), Eight([f32::NEG_INFINITY; LANES])]; 3],
+        children: [Child(0); LANES],
+    };
+
+    fn set(&mut self, lane: usize, around: &Item, child: Child) {
+        let (low, high) = (around.low.to_array(), around.high.to_array());
+        for axis in 0..3 {
+            self.bounds[axis][0].0[lane] = low[axis];
+            self.bounds[axis][1].0[lane] = high[axis];
+        }
+        self.children[lane] = child;
+    }
+
+    /// Its boxes, in local coordinates, and what is in each.
+    pub fn boxes(&self) -> impl Iterator<Item = (Bounds, Child)> {
+        let corner = |side: usize, lane: usize| {
+            DVec3::from_array([0, 1, 2].map(|axis| f64::from(self.bounds[axis][side].0[lane])))
+        };
+        (0..LANES)
+            .map(move |lane| (Bounds { min: corner(0, lane), max: corner(1, lane) }, self.children[lane]))
+            .filter(|(bounds, _)| !bounds.is_empty())
+    }
+
+    /// The children that the ray may meet up to a limit, one bit each, and where it enters them.
+    #[inline(always)]
+    pub fn meets<L: Lanes>(&self, frame: &SinglePrecisionRay, limit: f32) -> (u32, L) {
+        let [x, y, z] = &self.bounds;
+        let near_z = near::<L>(z, 2, frame).most(L::splat(0.0));
+        let enter = near::<L>(x, 0, frame).most(near(y, 1, frame)).most(near_z);
+        let far_z = far::<L>(z, 2, frame).least(L::splat(limit));
+        let exit = far::<L>(x, 0, frame).least(far(y, 1, frame)).least(far_z);
+        (enter.is_at_most(exit), enter)
+    }
+}
+
+/// Lengths to the near sides of boxes.
+#[inline(always)]
+fn near<L: Lanes>(sides: &[Eight; 2], axis: usize, frame: &SinglePrecisionRay) -> L {
+    let side = L::load(&sides[usize::from(frame.down[axis])]);
+    side.times_plus(L::splat(frame.inverse[axis]), L::splat(frame.near[axis]))
+}
+
+/// Lengths to the far sides of boxes.
+#[inline(always)]
+fn far<L: Lanes>(sides: &[Eight; 2], axis: usize, frame: &SinglePrecisionRay) -> L {
+    let side = L::load(&sides[usize::from(!frame.down[axis])]);
+    side.times_plus(L::splat(frame.inverse[axis]), L::splat(frame.far[axis]))
+}
+
+/// The index over items: nodes and packets.
+#[derive(Clone, Debug, Default)]
+pub struct WideBvh {
+    /// The first is the top. None for no items.
+    pub nodes: Vec<BvhNode>,
+    /// Triangles in the order of the leaves of the tree.
+    pub packets: Vec<Packet>,
+}
+
+impl WideBvh {
+    /// Builds it; the result does not depend on the number of threads.
+    pub fn new(division: &OctreeBuilder<'_>) -> Self {
+        let local = items::local(division);
+        let (items, mut cells) = items::items(division, &local);
+        let mut index = Self::default();
+        if items.is_empty() {
+            return index;
+        }
+        let builder =
+            Builder { vertices: division.vertices, triangles: division.triangles, local: &local, items: &items };
+        let mut groups = Vec::new();
+        let part = ItemGroup::of(&cells);
+        index.of_cells(&mut cells, &part, &mut groups);
+        let build = |cells: &[Item], index: &mut Self| builder.of_group(cells, index);
+        if current_num_threads() == 1 {
+            index.reserve(items.len() / 24, items.len() / 4);
+            for (cells, place) in groups {
+                let child = build(cells, &mut index);
+                index.attach(child, place);
+            }
+        } else {
+            let made: Vec<Self> = groups
+                .par_iter()
+                .map(|(cells, _)| {
+                    let mut made = Self::default();
+                    build(cells, &mut made);
+                    made
+                })
+                .collect();
+            let sum = |of: fn(&Self) -> usize| made.iter().map(of).sum();
+            index.reserve(sum(|made| made.nodes.len()), sum(|made| made.packets.len()));
+            for (made, (_, place)) in made.iter().zip(groups) {
+                let child = index.append(made);
+                index.attach(child, place);
+            }
+        }
+        index
+    }
+
+    /// Adds the nodes of many cells, and collects groups of few with the places that wait for their nodes.
+    fn of_cells<'a>(&mut self, cells: &'a mut [Item], part: &ItemGroup, groups: &mut Vec<Group<'a>>) -> Child {
+        let is_few = |part: &ItemGroup| part.items <= FEW_CELLS;
+        if is_few(part) {
+            groups.push((cells, None));
+            return Child(0);
+        }
+        let node = Child(self.nodes.len() as u32);
+        self.nodes.push(BvhNode::EMPTY);
+        for (lane, (share, part)) in shares(cells, part).into_iter().enumerate() {
+            let place = (node.0 as usize, lane);
+            self.nodes[place.0].set(lane, &part.around, Child(0));
+            if is_few(&part) {
+                groups.push((share, Some(place)));
+            } else {
+                let child = self.of_cells(share, &part, groups);
+                self.attach(child, Some(place));
+            }
+        }
+        node
+    }
+
+    /// Puts a child in its place.
+    fn attach(&mut self, child: Child, place: Option<(usize, usize)>) {
+        if let Some((node, lane)) = place {
+            self.nodes[node].children[lane] = child;
+        }
+    }
+
+    /// Gets memory for so many more.
+    fn reserve(&mut self, nodes: usize, packets: usize) {
+        self.nodes.reserve(nodes);
+        self.packets.reserve(packets);
+        prefer_large_pages(self.nodes.spare_capacity_mut());
+        prefer_large_pages(self.packets.spare_capacity_mut());
+    }
+
+    /// Adds what another one holds; returns its top.
+    fn append(&mut self, other: &Self) -> Child {
+        let (nodes, packets) = (self.nodes.len(), self.packets.len());
+        self.packets.extend_from_slice(&other.packets);
+        self.nodes.extend(other.nodes.iter().cloned().map(|mut node| {
+            node.children = node.children.map(|child| child.moved(nodes, packets));
+            node
+        }));
+        Child(nodes as u32)
+    }
+}
+
+/// Some cells, and the lane of the node that they are below.
+type Group<'a> = (&'a mut [Item], Option<(usize, usize)>);
+
+/// Divides the largest part of some items again and again until a node is full.
+fn shares<'a>(mut items: &'a mut [Item], part: &ItemGroup) -> Vec<(&'a mut [Item], ItemGroup)> {
+    let mut parts = Vec::with_capacity(LANES);
+    parts.push(*part);
+    while parts.len() < LANES {
+        let mut largest = (0.0, None);
+        let mut first = 0;
+        for (slot, part) in parts.iter().enumerate() {
+            let area = part.around.half_area();
+            if part.weight > LEAF && part.items > 1 && area >= largest.0 {
+                largest = (area, Some((slot, first)));
+            }
+            first += part.items;
+        }
+        let Some((slot, first)) = largest.1 else { break };
+        let [left, right] = divide(&mut items[first..first + parts[slot].items], &parts[slot]);
+        parts[slot] = left;
+        parts.insert(slot + 1, right);
+    }
+    let share = |part: ItemGroup| {
+        let (share, rest) = std::mem::take(&mut items).split_at_mut(part.items);
+        items = rest;
+        (share, part)
+    };
+    parts.into_iter().map(share).collect()
+}
+
+/// What all nodes are made of.
+struct Builder<'a> {
+    vertices: &'a [DVec3],
+    triangles: &'a [[u32; 3]],
+    local: &'a [f32x4],
+    items: &'a [Item],
+}
+
+impl Builder<'_> {
+    /// Adds the nodes of the items of some cells.
+    fn of_group(&self, cells: &[Item], index: &mut WideBvh) -> Child {
+        let mut items = Vec::with_capacity(cells.iter().map(Item::weight).sum());
+        for cell in cells {
+            let first = cell.number() as usize;
+            items.extend_from_slice(&self.items[first..first + cell.weight()]);
+        }
+        let part = ItemGroup::of(&items);
+        self.node(&mut items, &part, index)
+    }
+
+    fn node(&self, items: &mut [Item], part: &ItemGroup, index: &mut WideBvh) -> Child {
+        let node = index.nodes.len();
+        index.nodes.push(BvhNode::EMPTY);
+        for (lane, (share, part)) in shares(items, part).into_iter().enumerate() {
+            let child = if part.items > LEAF { self.node(share, &part, index) } else { self.packets(share, index) };
+            index.nodes[node].set(lane, &part.around, child);
+        }
+        Child(node as u32)
+    }
+
+    fn packets(&self, items: &[Item], index: &mut WideBvh) -> Child {
+        let place = |vertex: u32| {
+            let [x, y, z, _] = self.local[vertex as usize].to_array();
+            [x, y, z]
+        };
+        let packet =
+            |items: &[Item]| Packet::new(items.iter().map(Item::number), (self.vertices, self.triangles), place);
+        let first = index.packets.len();
+        index.packets.extend(items.chunks(LANES).map(packet));
+        Child::packets(first..index.packets.len())
+    }
+}

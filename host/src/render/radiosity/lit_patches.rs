@@ -1,0 +1,169 @@
+//! What sees what: which patches light can come to, and how much of what elements see exchanges light.
+
+use super::contact::Contacts;
+use super::direct::Exitance;
+use super::disjoint_sets::DisjointSets;
+use super::elements::Elements;
+use super::exchange::LeafVisibility;
+use super::hierarchy::{Hierarchy, HierarchyNode, NONE, RadiosityPatch};
+use super::visibility::{RayTarget, VisibilityTester};
+use glam::DVec3;
+
+/// Directions in which a patch looks around for each of its parts, and at the most.
+const DIRECTIONS: u32 = 16;
+const MOST_DIRECTIONS: u32 = 1024;
+
+/// The hierarchy of the patches to which light comes, straight or from others; elements of them to which none comes are dark.
+///
+/// - `finest`, `coarsest`: lengths; patches are looked at in parts of the second.
+pub(super) fn lit_hierarchy(
+    visibility: &VisibilityTester<'_>,
+    patches: Vec<RadiosityPatch>,
+    contacts: &Contacts,
+    (exitance, shadows): (Option<Exitance<'_>>, bool),
+    [finest, coarsest]: [f64; 2],
+) -> Hierarchy {
+    let mut all = Hierarchy::new(patches, finest);
+    all.cut(contacts, finest);
+    let is_dark = dark(visibility, &all, (exitance, shadows), coarsest);
+    all.darken(&is_dark);
+    let is_lit = |patch: usize| !all.nodes[all.node_of[patch] as usize].is_dark;
+    if (0..all.patches.len()).all(is_lit) {
+        return all;
+    }
+    let lit: Vec<usize> = (0..all.patches.len()).filter(|patch| is_lit(*patch)).collect();
+    let mut hierarchy = Hierarchy::new(lit.iter().map(|patch| all.patches[*patch]).collect(), finest);
+    hierarchy.cut(contacts, finest);
+    // Patches are divided as they were before.
+    let mut is_dark = vec![false; hierarchy.nodes.len()];
+    let mut pairs: Vec<[u32; 2]> =
+        lit.iter().zip(&hierarchy.node_of).map(|(patch, node)| [all.node_of[*patch], *node]).collect();
+    while let Some([before, now]) = pairs.pop() {
+        let (before, node) = (&all.nodes[before as usize], &hierarchy.nodes[now as usize]);
+        is_dark[now as usize] = before.is_dark;
+        pairs.extend(before.children().zip(node.children()).map(|(a, b)| [a as u32, b as u32]));
+    }
+    hierarchy.darken(&is_dark);
+    hierarchy
+}
+
+/// Of each node that is a leaf, whether no light comes to it.
+fn dark(
+    visibility: &VisibilityTester<'_>,
+    hierarchy: &Hierarchy,
+    (exitance, shadows): (Option<Exitance<'_>>, bool),
+    coarsest: f64,
+) -> Vec<bool> {
+    let nodes = &hierarchy.nodes;
+    let is_lit = |number: u32| {
+        let node = &nodes[number as usize];
+        let sends = |patch: u32, point: DVec3| {
+            let patch = &hierarchy.patches[patch as usize];
+            exitance.is_some_and(|of| of(patch.triangle, patch.outside, point).max() > 0.0)
+        };
+        let takes = |place: [DVec3; 2]| visibility.light_at(place, shadows).max() > 0.0;
+        if !node.is_leaf() {
+            false
+        } else if node.is_cluster() {
+            let middle = |patch: u32| hierarchy.patches[patch as usize].middle();
+            let mut members = hierarchy.members(number).iter();
+            hierarchy.points(number).into_iter().any(takes) || members.any(|patch| sends(*patch, middle(*patch)))
+        } else {
+            is_any_lit(node.corners, coarsest, &|point| sends(node.patch, point) || takes([point, node.normal]))
+        }
+    };
+    let patch_of = numbers(visibility, &hierarchy.patches);
+    let looked = |number: usize, node: &HierarchyNode| {
+        let number = number as u32;
+        if !node.is_leaf() {
+            return Vec::new();
+        }
+        let parts = (node.area / (coarsest * coarsest)).ceil().max(1.0);
+        let count = (f64::from(DIRECTIONS) * parts).min(f64::from(MOST_DIRECTIONS)) as u32;
+        let of = |seen: RayTarget| element(hierarchy, &patch_of, seen);
+        let seen = visibility.trace_hemisphere(
+            |index, uniform| hierarchy.place(number, index, uniform),
+            u64::from(number),
+            count,
+        );
+        let mut seen: Vec<u32> = seen.into_iter().map(of).filter(|node| *node != NONE).collect();
+        seen.sort_unstable();
+        seen.dedup();
+        seen
+    };
+    let seen: Vec<Vec<u32>> = visibility.map(nodes, looked);
+    let mut joined = DisjointSets::new(nodes.len());
+    for (number, seen) in (0..).zip(&seen) {
+        seen.iter().for_each(|other| joined.join(number, *other));
+    }
+    joined.joined_to_lit(|some| visibility.map(some, |_, node| is_lit(*node))).iter().map(|alight| !alight).collect()
+}
+
+fn is_any_lit(corners: [DVec3; 3], coarsest: f64, at: &impl Fn(DVec3) -> bool) -> bool {
+    let [a, b, c] = corners;
+    let middle = (a + b + c) / 3.0;
+    if at(middle) || corners.iter().any(|corner| at(*corner * 0.8 + middle * 0.2)) {
+        return true;
+    }
+    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+    let [ab, bc, ca] = [0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)];
+    longest > coarsest
+        && [[a, ab, ca], [ab, b, bc], [ca, bc, c], [bc, ca, ab]].iter().any(|part| is_any_lit(*part, coarsest, at))
+}
+
+/// The patch of each side of each triangle, outer and inner.
+fn numbers(visibility: &VisibilityTester<'_>, patches: &[RadiosityPatch]) -> Vec<[u32; 2]> {
+    let mut numbers = vec![[NONE; 2]; visibility.world.appearance.prepared.triangles.len()];
+    for (number, patch) in (0..).zip(patches) {
+        numbers[patch.triangle as usize][usize::from(!patch.outside)] = number;
+    }
+    numbers
+}
+
+/// The element that is seen.
+fn element(hierarchy: &Hierarchy, patch_of: &[[u32; 2]], seen: RayTarget) -> u32 {
+    let RayTarget::Side { triangle, outside, weights } = seen else { return NONE };
+    match patch_of[triangle as usize][usize::from(!outside)] {
+        NONE => NONE,
+        patch => hierarchy.leaf_at(patch, hierarchy.patches[patch as usize].weights(weights)).0,
+    }
+}
+
+/// What leaves see.
+///
+/// - `row`: for each leaf, the part of all that it sees that exchanges light.
+pub(super) fn leaf_visibility(
+    visibility: &VisibilityTester<'_>,
+    elements: &Elements<'_>,
+    (leaves, row): (&[u32], Vec<f64>),
+    directions: u32,
+) -> LeafVisibility {
+    let directions = directions.max(1);
+    let hierarchy: &Hierarchy = &elements.hierarchy;
+    let patch_of = numbers(visibility, &hierarchy.patches);
+    let mut place = vec![NONE; hierarchy.nodes.len()];
+    (0..).zip(leaves).for_each(|(number, leaf)| place[*leaf as usize] = number);
+    let looked = |number: usize, leaf: &u32| {
+        // Beyond the numbers of all patches.
+        let own = (1 << 40) + number as u64;
+        let of = |seen: RayTarget| match element(hierarchy, &patch_of, seen) {
+            NONE => NONE,
+            leaf => place[leaf as usize],
+        };
+        visibility
+            .trace_hemisphere(|index, uniform| hierarchy.place(*leaf, index, uniform), own, directions)
+            .into_iter()
+            .map(of)
+            .collect::<Vec<u32>>()
+    };
+    let seen: Vec<Vec<u32>> = visibility.map(leaves, looked);
+    let mut joined = DisjointSets::new(leaves.len());
+    for (number, seen) in (0..).zip(&seen) {
+        seen.iter().filter(|other| **other != NONE).for_each(|other| joined.join(number, *other));
+    }
+    let sends = |leaf: u32| (elements.direct[leaf as usize] + elements.extra[leaf as usize]).max() > 0.0;
+    let alight = joined.joined_to_lit(|some| some.iter().map(|number| sends(leaves[*number as usize])).collect());
+    let part = |seen: &Vec<u32>| seen.iter().filter(|other| **other != NONE).count() as f64 / f64::from(directions);
+    let (part, is_dark) = (seen.iter().map(part).collect(), alight.iter().map(|alight| !alight).collect());
+    LeafVisibility { directions, seen_part: part, row, is_dark }
+}

@@ -1,0 +1,128 @@
+//! How ways of light are divided among lamps, and what they are aimed at.
+//!
+//! What a lamp sends to where is found for each lamp by itself; only how many ways it gets depends on the others. Where other
+//! lamps change, its ways thus stay the same, though there may be fewer or more of them.
+
+use super::photon_source::{PhotonSource, PhotonTarget};
+use super::photon_tracing::{PhotonDimension, PhotonSampler};
+use super::projection_map::{BoundingSphere, ProjectionMap};
+use super::{PathBatch, PhotonMapper};
+use crate::render::world::World;
+use rayon::prelude::*;
+
+/// Ways that are followed first, to see where light goes: an eighth of those of a pass, within limits.
+const PILOT: std::ops::RangeInclusive<u32> = 1 << 12..=1 << 14;
+/// What stands for a pass when they are followed.
+const PILOT_PASS: u64 = u64::MAX;
+/// The least of them for each lamp and ball.
+const LEAST_PILOT: u32 = 32;
+/// Of the ways of a lamp and ball, the least part of the mean of all, however little came of them.
+const LEAST_PART: f64 = 0.05;
+/// A spot of which the cosine of the half angle is above this is aimed at as a whole, too.
+const NARROW: f64 = 0.9;
+
+/// What a few ways from a lamp to a ball brought.
+struct PilotResult {
+    /// Flux, W.
+    stored: f64,
+    /// The root mean square of what a way adds to it. With ways in proportion to this, chance shows least in all together.
+    ///
+    /// # Source
+    /// Neyman 1934, optimal allocation.
+    deviation: f64,
+    /// Where they have to be sent.
+    map: ProjectionMap,
+}
+
+impl PhotonMapper<'_> {
+    /// How many ways from each of so many lamps, and to each of so many balls, are followed first.
+    pub(super) fn pilot_paths(photons: u32, lamps: usize, spheres: usize) -> u32 {
+        let pilot = (photons / 8).clamp(*PILOT.start(), *PILOT.end());
+        // A lamp more or less seldom matters to the others.
+        let each = pilot >> lamps.next_power_of_two().trailing_zeros().min(31);
+        (each / spheres as u32).max(LEAST_PILOT)
+    }
+
+    /// Divides the ways among lamps and balls, as a few of them are of use.
+    ///
+    /// - `lamps`: indices into the sources. `everything`: the ball around what sends light on by broad turns; none if
+    ///   nothing does.
+    pub(super) fn allocate_paths(&mut self, world: &World<'_>, lamps: &[usize], everything: Option<BoundingSphere>) {
+        let photons = world.appearance.prepared.settings.photons.count;
+        let wide = everything.map(|sphere| {
+            self.spheres.push(sphere);
+            self.spheres.len() - 1
+        });
+        let all = self.spheres.len();
+        for lamp in lamps {
+            let mut spheres: Vec<usize> = (0..all).collect();
+            // In the cone of a spot, however thin it is.
+            let cone = world.appearance.sources[*lamp].1.cone().filter(|(.., cosine)| *cosine > NARROW);
+            if let Some((at, axis, cosine)) = cone {
+                let far = world.appearance.prepared.bounds.diagonal();
+                spheres.push(self.spheres.len());
+                self.spheres.push(BoundingSphere::in_cone(at, axis * far, cosine));
+            }
+            let (part, count) =
+                (1.0 / spheres.len() as f64, PhotonMapper::pilot_paths(photons, lamps.len(), spheres.len()));
+            let targets = spheres
+                .into_iter()
+                .map(|sphere| PhotonTarget { sphere, part, count, map: ProjectionMap::even() })
+                .collect();
+            self.lamps.push(PhotonSource { source: *lamp, targets, stored_flux: None, name: None });
+        }
+        let chunks = (0..self.lamps.len())
+            .flat_map(|lamp| (0..self.lamps[lamp].targets.len()).map(move |target| (lamp, target)));
+        let chunks: Vec<PathBatch> = chunks.map(|(lamp, target)| PathBatch { lamp, aim: target, number: 0 }).collect();
+        let found: Vec<PilotResult> = chunks.par_iter().map(|chunk| self.trace_pilot(world, chunk, wide)).collect();
+        let all: f64 = found.iter().map(|explored| explored.deviation).sum();
+        if all <= 0.0 {
+            self.lamps.clear();
+            return;
+        }
+        let mut found = found.into_iter();
+        let mut shares: Vec<f64> = Vec::with_capacity(self.lamps.len());
+        for lamp in &mut self.lamps {
+            let found: Vec<PilotResult> = found.by_ref().take(lamp.targets.len()).collect();
+            let deviation: f64 = found.iter().map(|explored| explored.deviation).sum();
+            lamp.stored_flux = Some(found.iter().map(|explored| explored.stored).sum()).filter(|flux| *flux > 0.0);
+            let least = LEAST_PART / found.len() as f64;
+            let part = |explored: &PilotResult| (explored.deviation / deviation.max(f64::MIN_POSITIVE)).max(least);
+            let sum: f64 = found.iter().map(part).sum();
+            for (target, explored) in lamp.targets.iter_mut().zip(found) {
+                (target.part, target.map) = (part(&explored) / sum, explored.map);
+            }
+            shares.push((deviation / all).max(LEAST_PART / lamps.len() as f64));
+        }
+        let sum: f64 = shares.iter().sum();
+        for (lamp, share) in self.lamps.iter_mut().zip(shares) {
+            for target in &mut lamp.targets {
+                target.count = (target.part * share / sum * f64::from(photons)).ceil() as u32;
+            }
+        }
+    }
+
+    /// Follows a few ways from a lamp to a ball: what they bring, and where they have to be sent.
+    fn trace_pilot(&self, world: &World<'_>, chunk: &PathBatch, wide: Option<usize>) -> PilotResult {
+        let PhotonTarget { sphere, count, part, .. } = self.lamps[chunk.lamp].targets[chunk.aim];
+        let mut used = Vec::new();
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for index in 0..count {
+            let balance = self.trace_batch(world, PILOT_PASS, chunk, index..index + 1).balance;
+            // What goes everywhere is of use everywhere: what little of it is found tells too little.
+            let is_of_use = if Some(sphere) == wide { balance.sent > 0.0 } else { balance.stored > 0.0 };
+            if is_of_use {
+                let sampler = PhotonSampler::new(self.sequence(world, PILOT_PASS, chunk), index);
+                used.push(sampler.point(PhotonDimension::Aim, 0));
+            }
+            sum += balance.stored;
+            squares += balance.stored * balance.stored;
+        }
+        let count = f64::from(count);
+        PilotResult {
+            stored: part * sum / count,
+            deviation: part * (squares / count).sqrt(),
+            map: ProjectionMap::around(&used),
+        }
+    }
+}
