@@ -35,7 +35,7 @@ impl DisplayArguments {
     /// What the command line says, and for the rest another transform.
     ///
     /// # Errors
-    /// [`Exit::Usage`] as a [`Failure`] for impossible numbers.
+    /// [`Exit::Usage`] as a [`CommandFailure`] for impossible numbers.
     pub(super) fn over(&self, other: DisplayTransform) -> Result<DisplayTransform, CommandFailure> {
         let display = DisplayTransform {
             exposure: self.exposure.unwrap_or(other.exposure),

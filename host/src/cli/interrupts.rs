@@ -2,7 +2,7 @@
 //!
 //! Files are written whole or not at all, databases keep their last transaction, and a PS 340 of our own ends when its
 //! orders do. So the program may end at any time, and does so at once, unless there is work in memory that is worth
-//! keeping: whoever holds such work says so by [`Keeping`], and is then asked to stop and to write it.
+//! keeping: whoever holds such work says so by [`InterruptGuard`], and is then asked to stop and to write it.
 //!
 //! It ends in the same way where more memory is wanted than it may hold.
 

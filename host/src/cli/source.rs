@@ -44,7 +44,7 @@ pub(super) fn is_mesh(name: &Path) -> bool {
 /// has no light is lit, of which a line tells.
 ///
 /// # Errors
-/// A [`Failure`] with [`super::Exit::Scene`], if the script is wrong or the mesh cannot be read.
+/// A [`CommandFailure`] with [`super::Exit::Scene`], if the script is wrong or the mesh cannot be read.
 pub(super) fn load_lit(name: &str, definitions: &ScriptArguments) -> Result<Evaluated, CommandFailure> {
     lit(load(name, definitions)?)
 }
@@ -52,7 +52,7 @@ pub(super) fn load_lit(name: &str, definitions: &ScriptArguments) -> Result<Eval
 /// What [`load`] gave, to be looked at, as [`load_lit`] says it.
 ///
 /// # Errors
-/// A [`Failure`] with [`super::Exit::Scene`].
+/// A [`CommandFailure`] with [`super::Exit::Scene`].
 pub(super) fn lit(evaluated: Evaluated) -> Result<Evaluated, CommandFailure> {
     let count = evaluated.scene.lights.len();
     let is_lit_by_studio = evaluated.scene.studio == Some(Studio::Lit);
@@ -74,7 +74,7 @@ pub(super) fn warn_of_emptiness(scene: &Scene) {
 /// script prints goes to standard error.
 ///
 /// # Errors
-/// A [`Failure`] with [`super::Exit::Scene`].
+/// A [`CommandFailure`] with [`super::Exit::Scene`].
 pub fn load(name: &str, definitions: &ScriptArguments) -> Result<Evaluated, CommandFailure> {
     let path = Path::new(name);
     if is_mesh(path) {

@@ -2,7 +2,7 @@
 //!
 //! A renderer carries one number for each bin. Means have no noise, but a mean of products is not the product of
 //! means: the error falls with the square of the width of the bins. Wavelengths drawn in the bins have noise and no
-//! such error. Three bands of a screen are [`super::srgb`] of what is [`super::observer::seen`].
+//! such error. Three bands of a screen are [`super::srgb`] of what is [`super::observer::surface_tristimulus`].
 
 use super::observer::{VISIBLE, functions};
 use super::{ColorError, Spectrum, integral};

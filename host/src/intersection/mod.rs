@@ -14,7 +14,7 @@
 //! are from them. Their polylines are cut off around such places, and the exact curves are followed through.
 //!
 //! # Accuracy
-//! Residuals are below [`Precision::newton`] times the size of the bodies, but not below a few roundings of the coordinates.
+//! Residuals are below [`CurvePrecision::newton`] times the size of the bodies, but not below a few roundings of the coordinates.
 //! Across the curve, the error of a position is the residual over the sine of the angle of the surfaces.
 //!
 //! # Cost

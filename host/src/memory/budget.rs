@@ -27,7 +27,7 @@ pub struct MemoryExceeded {
 }
 
 /// From now on the process may hold this many bytes, code, stacks and gaps between blocks included. Memory beyond is
-/// refused before it is taken: see [`ask`].
+/// refused before it is taken: see [`reserve`].
 ///
 /// It counts only in a program whose global allocator is [`super::Counted`].
 ///
@@ -54,7 +54,7 @@ pub fn left() -> u64 {
 /// - `what`: the subject of the sentence that refuses them.
 ///
 /// # Errors
-/// [`Excess`] where fewer are left.
+/// [`MemoryExceeded`] where fewer are left.
 pub fn reserve(bytes: u64, what: impl FnOnce() -> String) -> Result<(), MemoryExceeded> {
     let left = left();
     if bytes <= left {

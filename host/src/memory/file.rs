@@ -9,7 +9,7 @@ use std::path::Path;
 /// - `most`: bytes that it may have.
 ///
 /// # Errors
-/// Those of [`files::read`], and [`super::Excess`] as another error.
+/// Those of [`files::read`], and [`super::MemoryExceeded`] as another error.
 pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     reserve_for(path, most)?;
     files::read(path, most)
@@ -20,7 +20,7 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// - `most`: bytes that it may have.
 ///
 /// # Errors
-/// Those of [`files::read_text`], and [`super::Excess`] as another error.
+/// Those of [`files::read_text`], and [`super::MemoryExceeded`] as another error.
 pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
     reserve_for(path, most)?;
     files::read_text(path, most)

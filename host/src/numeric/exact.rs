@@ -1,7 +1,7 @@
 //! Numbers for predicates: one that knows its error, and one that has none.
 //!
-//! A formula is written once over [`Number`]. It is first evaluated with [`Rounded`], whose error bound says whether the
-//! sign is certain, and only if it is not with [`Exact`].
+//! A formula is written once over [`Arithmetic`]. It is first evaluated with [`RoundedNumber`], whose error bound says whether the
+//! sign is certain, and only if it is not with [`ExactNumber`].
 
 use dashu_int::{IBig, Sign, UBig, ops::BitTest};
 use std::ops::{Add, Mul, Sub};

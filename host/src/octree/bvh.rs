@@ -91,7 +91,7 @@ impl Group {
     }
 }
 
-/// A box of a [`Sorted`]: on level 0 that of a triangle.
+/// A box of a [`TriangleBvh`]: on level 0 that of a triangle.
 #[derive(Clone, Copy)]
 struct Place {
     level: u32,
@@ -218,7 +218,7 @@ impl TriangleBvh {
         self.pairs_within_until(|| false, keep)
     }
 
-    /// Pairs of triangles of this set as [`Sorted::pairs_within`] gives them; some of them where `is_enough` becomes true
+    /// Pairs of triangles of this set as [`TriangleBvh::pairs_within`] gives them; some of them where `is_enough` becomes true
     /// before all are found.
     pub fn pairs_within_until(
         &self,

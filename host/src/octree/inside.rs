@@ -26,7 +26,7 @@ impl Octree {
     /// a little along y and much less along z, so that it meets neither edge nor corner. Triangles without an area are
     /// not looked at.
     ///
-    /// - Returns [`Side::Outside`] for a point that is not finite, and [`Side::Inside`] wherever the surface winds around
+    /// - Returns [`Containment::Outside`] for a point that is not finite, and [`Containment::Inside`] wherever the surface winds around
     ///   the point, however often and whichever way.
     pub fn containment(&self, point: DVec3) -> Containment {
         let Some(mut voxel) = self.cube.voxel(point) else { return Containment::Outside };
@@ -51,7 +51,7 @@ impl Octree {
 }
 
 impl TriangleBvh {
-    /// Says on which side of the triangles a point lies, as [`Octree::side`] does.
+    /// Says on which side of the triangles a point lies, as [`Octree::containment`] does.
     ///
     /// - `corners`: the corners of a triangle.
     pub fn containment(&self, point: DVec3, corners: impl Fn(u32) -> [DVec3; 3]) -> Containment {

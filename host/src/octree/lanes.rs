@@ -128,7 +128,7 @@ pub use wide::AvxLanes;
 
 #[cfg(target_arch = "x86_64")]
 mod wide {
-    //! SAFETY of all that is unsafe here: [`Wide`] is made and used only in functions that are compiled for AVX2 and FMA,
+    //! SAFETY of all that is unsafe here: [`AvxLanes`] is made and used only in functions that are compiled for AVX2 and FMA,
     //! which are called only where the processor has them. Loads and stores go to memory of the right size and alignment.
 
     use super::{Eight, Lanes};

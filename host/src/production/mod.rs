@@ -279,7 +279,7 @@ impl Production {
 
 /// Solves for the light of a scene by radiosity, as tiles for a [`Model`].
 ///
-/// - `threads`: as in [`Order`].
+/// - `threads`: as in [`RenderOrder`].
 ///
 /// # Errors
 /// [`ProductionError`]; more polygons than the machine renders are one.

@@ -54,7 +54,7 @@ pub struct Meter {
 
 impl Meter {
     /// - `settings`: of the scene, whose width and height tell the sides of its pictures, whatever size they are made in.
-    /// - `display`: how pictures are shown. `threads`: as in [`Order`].
+    /// - `display`: how pictures are shown. `threads`: as in [`RenderOrder`].
     pub fn new(settings: &Settings, display: &DisplayTransform, threads: Option<NonZeroUsize>) -> Meter {
         let shorter = settings.image.width.min(settings.image.height).max(1);
         let side = |side: u32| {

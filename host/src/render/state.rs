@@ -1,7 +1,7 @@
 //! The state of a rendering in a file, so that an interrupted one goes on where it stopped.
 //!
 //! Layout: eight bytes of name and version; a [`Head`]; the [`Tally`] of each pixel; in version 5, which is that of a film to
-//! be denoised, the [`Guide`] of each pixel; where adaptive sampling is in the middle of a pass, the goal of each pixel
+//! be denoised, the [`PixelFeatures`] of each pixel; where adaptive sampling is in the middle of a pass, the goal of each pixel
 //! (u32); and a checksum of all before it (CRC-32, u32). Numbers are little-endian.
 
 use super::RenderOrder;

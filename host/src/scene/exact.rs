@@ -18,7 +18,7 @@ const REVERSED: u32 = 1 << 31;
 #[derive(Clone, Default)]
 pub(super) struct ExactSurfaces {
     surfaces: Vec<Arc<dyn Surface>>,
-    /// By the triangles of the objects that have any, with [`TURNED`].
+    /// By the triangles of the objects that have any, with [`REVERSED`].
     surface_of: Vec<u32>,
 }
 

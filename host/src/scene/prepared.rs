@@ -37,7 +37,7 @@ pub struct Contents {
     pub triangles: Arc<Vec<[u32; 3]>>,
     /// The object that each triangle belongs to, an index into `objects`.
     pub object_of: Vec<u32>,
-    /// Unit normals at the corners, for the triangles of curved objects only; see [`Prepared::corner_normals`].
+    /// Unit normals at the corners, for the triangles of curved objects only.
     normals: Vec<[Vec3; 3]>,
     /// Parameters of the corners, for the triangles of objects whose textures or exact surfaces need them.
     parameters: Vec<[DVec2; 3]>,

@@ -8,7 +8,7 @@ impl Solid {
     /// Evaluates an expression over some solids at once. The result may be empty.
     ///
     /// # Errors
-    /// [`SolidError::Unsettled`] if the result crosses itself when it is rounded, and that could not be mended.
+    /// [`SolidError::SelfIntersecting`] if the result crosses itself when it is rounded, and that could not be mended.
     pub fn evaluate(operands: &[&Solid], expression: &Expression) -> Result<(Solid, Outcome), SolidError> {
         // All on threads of the pool, so that this one does not wait for them at each step.
         let mut outcome = rayon::scope(|_| {

@@ -13,7 +13,7 @@ const MOST_PAIRS: usize = 500_000;
 /// Pairs of triangles of a mesh, the lower first, that have more in common than corners and the edges between.
 ///
 /// # Errors
-/// [`SolidError::Tangled`] where there are too many, or three of them cross each other too often.
+/// [`SolidError::TooManyIntersections`] where there are too many, or three of them cross each other too often.
 pub(super) fn overlaps(mesh: &Mesh, sorted: &TriangleBvh) -> Result<Vec<[u32; 2]>, SolidError> {
     let pairs = overlapping_up_to(mesh, sorted, MOST_PAIRS);
     let too_many =

@@ -1,6 +1,6 @@
 //! Surfaces that are known exactly, and the meshes that approximate them to a tolerance.
 //!
-//! A [`Turned`] surface is what a [`Profile`] makes around an axis: cylinder, cone, disc, torus, paraboloid, hyperboloid.
+//! A [`SurfaceOfRevolution`] surface is what a [`Profile`] makes around an axis: cylinder, cone, disc, torus, paraboloid, hyperboloid.
 //! A [`Swept`] surface is what a straight edge makes that a curve carries along.
 //! A [`SplineSurface`] is a mesh of control points over a [`crate::curve::Basis`] in each direction; its
 //! [`SplineSurface::patches`] are what is tessellated. [`tessellate`] makes grids, the better choice for even surfaces;

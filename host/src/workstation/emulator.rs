@@ -99,8 +99,8 @@ impl Emulator {
     /// Gives an order to the operator line, and returns the reply without its `ok`.
     ///
     /// # Errors
-    /// [`WorkstationError::Order`] if the order is refused, [`WorkstationError::Silent`] if there is no reply within
-    /// [`Patience::order`], [`WorkstationError::Ended`] if the process is gone.
+    /// [`WorkstationError::OperatorCommand`] if the order is refused, [`WorkstationError::Timeout`] if there is no reply within
+    /// [`Timeouts::operator_command`], [`WorkstationError::Ended`] if the process is gone.
     pub fn operator_command(&mut self, order: &str) -> Result<String, WorkstationError> {
         self.send_operator_command(order)?;
         match self.replies.recv_timeout(self.timeouts.operator_command) {

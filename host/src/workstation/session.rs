@@ -157,7 +157,7 @@ impl Session {
     /// Brings everything on its way to the workstation.
     ///
     /// # Errors
-    /// [`WorkstationError::Silent`] if it does not read, [`WorkstationError::Closed`].
+    /// [`WorkstationError::Timeout`] if it does not read, [`WorkstationError::Closed`].
     pub fn flush(&mut self) -> Result<(), WorkstationError> {
         let written = self.line.write_all(&self.out).and_then(|()| self.line.flush());
         self.out.clear();
@@ -173,7 +173,7 @@ impl Session {
     /// The next message from the workstation.
     ///
     /// # Errors
-    /// [`WorkstationError::Silent`] if none comes within `patience`, [`WorkstationError::Closed`].
+    /// [`WorkstationError::Timeout`] if none comes within `patience`, [`WorkstationError::Closed`].
     pub fn message(&mut self, timeout: Duration, what: &str) -> Result<Vec<u8>, WorkstationError> {
         self.next(&Wait::begin(what, timeout))
     }
@@ -209,7 +209,7 @@ impl Session {
     /// Waits until the workstation has carried out everything sent so far: a message goes round.
     ///
     /// # Errors
-    /// [`WorkstationError::Silent`], [`WorkstationError::Closed`].
+    /// [`WorkstationError::Timeout`], [`WorkstationError::Closed`].
     pub fn synchronize(&mut self) -> Result<(), WorkstationError> {
         self.marks += 1;
         let mark = format!("PERIS MARK {}", self.marks);
@@ -234,7 +234,7 @@ impl Session {
     /// Returns scene coordinates (z negated) to clip space, in the glam form of [`protocol::Value`].
     ///
     /// # Errors
-    /// [`WorkstationError::Silent`], [`WorkstationError::Closed`], [`WorkstationError::Answer`].
+    /// [`WorkstationError::Timeout`], [`WorkstationError::Closed`], [`WorkstationError::Answer`].
     pub fn view(&mut self) -> Result<DMat4, WorkstationError> {
         self.commands(&network::request_view())?;
         let mut lines = Vec::new();

@@ -26,7 +26,7 @@ impl Saved<'_> {
     /// - `every`: time from one writing to the next.
     ///
     /// # Errors
-    /// [`StateError`] as [`Failure`]: the file is damaged, or of another rendering.
+    /// [`StateError`] as [`CommandFailure`]: the file is damaged, or of another rendering.
     pub(super) fn read<'a>(
         arguments: &RenderArguments,
         every: Duration,
@@ -105,7 +105,7 @@ impl Intermediate {
     /// What was found for radiosity.
     ///
     /// # Errors
-    /// [`StateError`] as [`Failure`].
+    /// [`StateError`] as [`CommandFailure`].
     pub(super) fn memo(
         &self,
         arguments: &RenderArguments,

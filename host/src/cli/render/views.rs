@@ -50,7 +50,7 @@ impl ViewBatch<'_> {
     /// Renders the views, writes them and reports on them.
     ///
     /// # Errors
-    /// [`Failure`], also for a picture that was interrupted, or has pixels that miss the error that was asked for.
+    /// [`CommandFailure`], also for a picture that was interrupted, or has pixels that miss the error that was asked for.
     pub(super) fn render(mut self, render: &mut Render<'_>) -> Result<(), CommandFailure> {
         let mut reports = Vec::new();
         let ended = self.render_all(render, &mut reports);

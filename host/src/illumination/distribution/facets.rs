@@ -66,7 +66,7 @@ impl SlopeDistribution {
         }
     }
 
-    /// The normal of a facet, with a density of (L·H) times its area over [`Facets::projected`]: as `towards` sees them.
+    /// The normal of a facet, with a density of (L·H) times its area over [`SlopeDistribution::projected`]: as `towards` sees them.
     ///
     /// - `towards`: unit length, z above 0. `point`: of the unit square.
     ///

@@ -239,7 +239,7 @@ impl LightShape {
         SphericalRectangle::new(corner - point, across, up).filter(|seen| seen.solid_angle() > SMALL)
     }
 
-    /// The density with which [`Patch::draw`] draws a direction in which the patch is met at a distance, 1/sr.
+    /// The density with which [`LightShape::sample`] draws a direction in which the patch is met at a distance, 1/sr.
     pub(super) fn pdf(&self, point: DVec3, towards: DVec3, distance: f64) -> f64 {
         match *self {
             LightShape::Sphere { center, radius } => {

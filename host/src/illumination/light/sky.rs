@@ -91,12 +91,12 @@ impl Sky {
         Some((towards, self.pdf(point, towards, normal))).filter(|(_, pdf)| *pdf > 0.0)
     }
 
-    /// The density with which [`Sky::draw`] draws a direction, 1/sr.
+    /// The density with which [`Sky::sample`] draws a direction, 1/sr.
     pub(super) fn pdf(&self, point: DVec3, towards: DVec3, normal: Option<DVec3>) -> f64 {
         self.portals.pdf(point, towards, self.pdf_anywhere(towards, normal))
     }
 
-    /// A direction, about as bright as it is; the normal as in [`Sky::draw`].
+    /// A direction, about as bright as it is; the normal as in [`Sky::sample`].
     fn sample_anywhere(&self, normal: Option<DVec3>, uniform: [f64; 2]) -> Option<DVec3> {
         match (&self.disc, &self.map, normal) {
             (Some(disc), ..) => Some(self.forth(disc.sample(uniform))),
@@ -106,7 +106,7 @@ impl Sky {
         }
     }
 
-    /// The density with which [`Sky::draw_anywhere`] draws a direction, 1/sr.
+    /// The density with which [`Sky::sample_anywhere`] draws a direction, 1/sr.
     fn pdf_anywhere(&self, towards: DVec3, normal: Option<DVec3>) -> f64 {
         if let Some(disc) = &self.disc {
             return if self.is_beside(towards) { 0.0 } else { disc.pdf };

@@ -127,7 +127,7 @@ impl LightSource {
         self.0.emitter().points(count.max(1))
     }
 
-    /// Light that arrives from one of [`Source::points`] if nothing stands between.
+    /// Light that arrives from one of [`LightSource::points`] if nothing stands between.
     #[inline]
     pub fn incident_from(&self, from: &LightPoint, point: DVec3, wavelength_set: usize) -> Option<LightSample> {
         self.0.emitter().incident_from(from, point, wavelength_set)
@@ -145,7 +145,7 @@ impl LightSource {
         self.0.emitter().sample_emission(uniform, wavelength_set)
     }
 
-    /// Flux in each solid angle that leaves a place of [`Source::start`] in a direction, over the density of the place,
+    /// Flux in each solid angle that leaves a place of [`LightSource::sample_emission`] in a direction, over the density of the place,
     /// W/sr.
     ///
     /// - `normal`: of the surface there, if it is one. `direction`: where it goes, unit length.
@@ -167,13 +167,13 @@ impl LightSource {
     /// What is seen of a sky; none of another light, and beside a disc.
     ///
     /// - `ray`: of unit length, from the point from which it is seen.
-    /// - `normal`: of the element from which it is seen, as in [`Source::beam`].
+    /// - `normal`: of the element from which it is seen, as in [`LightSource::sample_incident`].
     #[inline]
     pub fn sky_radiance(&self, ray: &Ray, normal: Option<DVec3>, wavelength_set: usize) -> Option<LightHit> {
         self.0.emitter().sky_radiance(ray, normal, wavelength_set)
     }
 
-    /// The density with which [`Source::beam`] draws a direction in which emitting triangles are met, 1/sr.
+    /// The density with which [`LightSource::sample_incident`] draws a direction in which emitting triangles are met, 1/sr.
     ///
     /// - `cosine`: between the direction and the normal of the triangle, any sign.
     pub fn pdf_on_triangle(&self, distance: f64, cosine: f64) -> f64 {

@@ -89,7 +89,7 @@ impl LobeClass {
 pub enum LobeSelection {
     /// All that carry rays from the eye on.
     All,
-    /// Those whose directions are not all known: [`Optics::mirrored`] gives the others.
+    /// Those whose directions are not all known: [`Bsdf::specular_samples`] gives the others.
     NonDelta,
     /// The narrow ones.
     Narrow,
@@ -213,7 +213,7 @@ impl Bsdf {
         self.lobes.iter().fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.value(context, light))
     }
 
-    /// The density with which [`Optics::onward`] draws a direction by broad or by narrow lobes, 1/sr.
+    /// The density with which [`Bsdf::sample`] draws a direction by broad or by narrow lobes, 1/sr.
     ///
     /// - `among`: as there.
     pub fn pdf(&self, class: LobeClass, context: &ShadingContext, light: DVec3, selection: LobeSelection) -> f64 {
@@ -222,7 +222,7 @@ impl Bsdf {
         members.map(|(member, share)| share * member.lobe.pdf(context, light)).sum()
     }
 
-    /// The density with which [`Optics::onward`] draws a direction among lobes, 1/sr.
+    /// The density with which [`Bsdf::sample`] draws a direction among lobes, 1/sr.
     pub fn pdf_among(&self, selection: LobeSelection, context: &ShadingContext, light: DVec3) -> f64 {
         let members = self.lobes.iter().zip(self.shares(context, selection)).filter(|(_, share)| *share > 0.0);
         members.map(|(member, share)| share * member.lobe.pdf(context, light)).sum()

@@ -1,7 +1,7 @@
 //! Interfaces between transparent media: what is reflected, and what goes through.
 //!
 //! Indices may differ from lane to lane. A direction that one lane is refracted to is then not that of the others: where
-//! it is drawn, it is drawn for the lane of the [`Sighting`], and a renderer keeps that lane alone.
+//! it is drawn, it is drawn for the lane of the [`ShadingContext`], and a renderer keeps that lane alone.
 
 use super::context::{BsdfSample, ShadingContext};
 use super::lobe::{Flags, Lobe};

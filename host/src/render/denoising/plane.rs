@@ -55,7 +55,7 @@ impl PixelPlane {
         &self.values[self.place(x, y)..]
     }
 
-    /// All numbers, row by row, those beyond the edges included: see [`Plane::place`].
+    /// All numbers, row by row, those beyond the edges included: see [`PixelPlane::place`].
     #[inline(always)]
     pub(super) fn values(&self) -> &[f32] {
         &self.values

@@ -51,7 +51,7 @@ const OF_QUARTERS: [[usize; 3]; 4] = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [4, 5, 3]
 
 /// What is known at the corners of the parts into which a node is divided.
 ///
-/// - `sliver`: as [`Node::sliver`] has it.
+/// - `sliver`: as [`HierarchyNode::sliver`] has it.
 pub(super) fn of_parts(around: &CornerLight, sliver: Option<usize>) -> Vec<Option<[ExternalLight; 3]>> {
     let of = |places: [usize; 3]| (around.len() == 6).then(|| places.map(|place| around[place]));
     match sliver {

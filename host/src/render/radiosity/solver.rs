@@ -48,7 +48,7 @@ struct System<'a> {
 /// - `stopped`: asked before each step.
 ///
 /// # Errors
-/// [`Unsolvable`].
+/// [`RadiosityError`].
 pub(super) fn solve(
     exchange: &Exchange<'_>,
     reflectance: &[Channels],

@@ -69,7 +69,7 @@ impl ClippedPolygon {
 
 /// Places points of the scene in the picture.
 pub(super) struct Screen {
-    /// Rows of the matrix to a [`Corner`], for points relative to `base`.
+    /// Rows of the matrix to a [`ClipCorner`], for points relative to `base`.
     rows: [DVec4; 6],
     base: DVec3,
     pub(super) viewpoint: Viewpoint,

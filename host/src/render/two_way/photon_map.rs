@@ -66,7 +66,7 @@ pub(super) struct GatherPoint {
     /// Where rays from there to other places of the surface begin.
     pub(super) leave: DVec3,
     pub(super) surface: u32,
-    /// The side, as [`super::flight::side_of`] numbers them.
+    /// The side, as [`super::photon_tracing::side_of`] numbers them.
     pub(super) side: u32,
 }
 
@@ -223,7 +223,7 @@ impl PhotonMap {
     }
 
     /// The irradiance around a place, W/m²: by light that took narrow turns only, and by light that took broad ones among
-    /// them; and the standard error, as [`Captured::each`] has it. Wherever it comes from and whatever its comb is.
+    /// them; and the standard error, as [`PhotonMap::each`] has it. Wherever it comes from and whatever its comb is.
     pub(super) fn irradiance(
         &self,
         gather_point: &GatherPoint,

@@ -67,7 +67,7 @@ impl BoundingSphere {
         0.5 * (direction - offset.normalize()).length_squared() <= cap * WIDER
     }
 
-    /// The density of [`Ball::direction`], 1/sr, and the point of the square that gives a direction; none beside the ball.
+    /// The density of [`BoundingSphere::direction`], 1/sr, and the point of the square that gives a direction; none beside the ball.
     pub(super) fn pdf(&self, from: DVec3, direction: DVec3) -> Option<DirectionPdf> {
         let offset = self.center - from;
         let Some(cap) = self.cap(offset) else { return Some((0.5 / TAU, sphere_inverse(direction))) };
@@ -90,7 +90,7 @@ impl BoundingSphere {
         self.center + (u * x + v * y) * self.radius
     }
 
-    /// The density of [`Ball::line`], one over an area, and the point of the square that gives a line; none beside the ball.
+    /// The density of [`BoundingSphere::line`], one over an area, and the point of the square that gives a line; none beside the ball.
     pub(super) fn line_pdf(&self, direction: DVec3, on: DVec3) -> Option<DirectionPdf> {
         let offset = on - self.center;
         let aside = offset - direction * offset.dot(direction);
@@ -197,7 +197,7 @@ impl ProjectionMap {
         [(column as f64 + x) / ProjectionMap::SIDE as f64, (row as f64 + y) / ProjectionMap::SIDE as f64]
     }
 
-    /// The density of [`Guide::draw`].
+    /// The density of [`ProjectionMap::sample`].
     pub(super) fn pdf(&self, place: [f64; 2]) -> f64 {
         let [column, row] = place.map(|c| (c * ProjectionMap::SIDE as f64) as usize);
         let part = |below: &[f64], i: usize| below[i] - if i == 0 { 0.0 } else { below[i - 1] };

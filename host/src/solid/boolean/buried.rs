@@ -1,6 +1,6 @@
 //! Triangles that lie so deep in other operands that they need not even be compared with others.
 //!
-//! In a union of many solids most of the surface of each lies deep inside others. A triangle in the [`Core`] of operands
+//! In a union of many solids most of the surface of each lies deep inside others. A triangle in the [`InteriorGrid`] of operands
 //! is known to lie in these; where the expression then no longer depends on its own operand, it is buried. What would
 //! cross it draws no line that matters: on both sides of that the result is the same.
 

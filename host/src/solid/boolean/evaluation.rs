@@ -17,7 +17,7 @@ use rayon::prelude::*;
 /// Evaluates an expression over meshes that bound solids simply.
 ///
 /// # Errors
-/// [`SolidError::Unsettled`].
+/// [`SolidError::SelfIntersecting`].
 pub fn evaluate(solids: Vec<Operand<'_>>, expression: &Expression) -> Result<Outcome, SolidError> {
     match Lattice::of(solids.iter().map(|solid| solid.mesh)) {
         Some(lattice) => lattice.evaluate(&solids, expression),
@@ -59,7 +59,7 @@ impl Lattice {
     /// Evaluates an expression over solids that are put on the lattice.
     ///
     /// # Errors
-    /// [`SolidError::Unsettled`].
+    /// [`SolidError::SelfIntersecting`].
     pub fn evaluate(&self, solids: &[Operand<'_>], expression: &Expression) -> Result<Outcome, SolidError> {
         let back = |error: SolidError| error.brought_back(self);
         let laid = solids.par_iter().map(|solid| self.laid(solid.mesh).map_err(back));

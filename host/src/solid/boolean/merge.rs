@@ -23,7 +23,7 @@ pub struct ResultTriangle {
     pub face: u32,
     /// A face of that surface that each corner lies in.
     pub corner_faces: [u32; 3],
-    /// [`Fate::Kept`] or [`Fate::Turned`], seen from that face.
+    /// [`FaceClassification::Kept`] or [`FaceClassification::Reversed`], seen from that face.
     pub classification: FaceClassification,
 }
 

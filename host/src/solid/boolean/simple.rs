@@ -64,7 +64,7 @@ pub struct Resolution {
 /// - `overlaps`: pairs of its triangles that overlap, the lower first.
 ///
 /// # Errors
-/// [`SolidError::Unsettled`].
+/// [`SolidError::SelfIntersecting`].
 pub fn resolve(mesh: &Mesh, overlaps: &[[u32; 2]]) -> Result<Resolution, SolidError> {
     let mesh = separated(mesh);
     let Evaluation { mut outcome, is_unchanged: is_all_kept, improper_winding: odd, .. } = divided(&mesh, overlaps);
@@ -84,7 +84,7 @@ pub fn resolve(mesh: &Mesh, overlaps: &[[u32; 2]]) -> Result<Resolution, SolidEr
 /// besides looking once at all triangles, and in each turn at those that were changed.
 ///
 /// # Errors
-/// [`SolidError::Unsettled`] if none of the attempts succeeds.
+/// [`SolidError::SelfIntersecting`] if none of the attempts succeeds.
 pub fn without_self_intersections(mut outcome: Outcome) -> Result<Outcome, SolidError> {
     outcome.clean();
     let first = overlapping(&outcome.mesh);

@@ -116,7 +116,7 @@ pub(super) fn length_or_zero(what: &'static str, value: f64) -> Result<f64, Prim
 }
 
 /// # Errors
-/// [`PrimitiveError::Order`] unless `value` is greater than `other`.
+/// [`PrimitiveError::Contradiction`] unless `value` is greater than `other`.
 pub(super) fn above(what: &'static str, value: f64, than: &'static str, other: f64) -> Result<(), PrimitiveError> {
     if value > other { Ok(()) } else { Err(PrimitiveError::Contradiction { what, value, than, other }) }
 }

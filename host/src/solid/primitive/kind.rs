@@ -72,7 +72,7 @@ pub enum Primitive {
         /// Its height along y.
         height: f64,
     },
-    /// A hyperboloid of one sheet; see [`hyperboloid`].
+    /// A hyperboloid of one sheet; see [`hyperboloid_of_one_sheet`].
     #[serde(rename = "hyperboloid")]
     HyperboloidOfOneSheet {
         /// Its least radius.
@@ -82,7 +82,7 @@ pub enum Primitive {
         /// Its height along y.
         height: f64,
     },
-    /// A hyperboloid of two sheets; see [`bowls`].
+    /// A hyperboloid of two sheets; see [`hyperboloid_of_two_sheets`].
     #[serde(rename = "bowls")]
     HyperboloidOfTwoSheets {
         /// Between the tips.
@@ -110,7 +110,7 @@ pub enum Primitive {
         /// Control points (r, y).
         profile: Vec<DVec2>,
     },
-    /// A polygon that turned about the y axis; see [`turned_polygon`].
+    /// A polygon that turned about the y axis; see [`revolved_polygon`].
     #[serde(rename = "turning")]
     RevolvedPolygon {
         /// Corners of the polygon.

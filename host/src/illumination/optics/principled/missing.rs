@@ -23,7 +23,7 @@ impl PrincipledSurface {
         self.missing_of(at, seen, &outside, &side)
     }
 
-    /// The mean of [`Surface::missing`] over all directions, weighted with the cosine.
+    /// The mean of [`PrincipledSurface::missing`] over all directions, weighted with the cosine.
     pub(super) fn mean_missing(&self, at: &PrincipledValues, seen: InterfaceSide) -> MissingEnergy {
         self.missing_of(at, seen, self.albedo.mean(InterfaceSide::Outside), self.albedo.mean(seen))
     }
