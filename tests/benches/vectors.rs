@@ -7,8 +7,8 @@ use ps340::{
     machine::{Input, Machine, Settings},
     matrices,
     port::ObjectId,
-    structure::{Member, Node, Operation, Structures},
-    traversal::{self, Clipper, Requests, State, Stroke, Update},
+    structure::{Member, Node, Operation, State, Structures},
+    traversal::{self, Clipper, Requests, Stroke, Update},
 };
 use std::time::Instant;
 
@@ -96,7 +96,7 @@ fn node(points: &[[f32; 4]]) -> Node {
 }
 
 fn operate(operation: Operation) -> Member {
-    Member::Unnamed(Node::Operate { operation, descendant: None })
+    Member::Unnamed(Node::operate(operation, None))
 }
 
 /// A display of `count` vectors in lists of `length`, in perspective; the same number below a condition that is off.

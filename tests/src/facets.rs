@@ -41,8 +41,8 @@ pub fn view(from: DVec3) -> Vec<Operation> {
 pub fn facets(polygons: Vec<Polygon>, solid: bool, above: &[Operation]) -> Facets {
     let mut structures = Structures::default();
     let [root, rendering] = [ObjectId::new(0), ObjectId::new(1)];
-    let operate = |operation| Node::Operate { operation, descendant: None };
-    structures.define(rendering, operate(Operation::Rendering { solid, rendered: None }));
+    let operate = |operation| Node::operate(operation, None);
+    structures.define(rendering, operate(Operation::Rendering { solid }));
     let attributes = vec![None; polygons.len()];
     let mut members: Vec<Member> = above.iter().cloned().map(|o| Member::Unnamed(operate(o))).collect();
     members.push(Member::Named(rendering));

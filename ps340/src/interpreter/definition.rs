@@ -84,7 +84,8 @@ impl Content {
                 Content::Object(Object::Polygons(polygons))
             }
             Object::Operate { operate, applied_to } => {
-                if !matches!(operate, Operate::CharacterFont(_)) {
+                // What a name means is known only where the definition ends up.
+                if Operation::named_in(&operate).is_none() {
                     Operation::new(&operate, None, 0).map_err(|e| range(e.to_string()))?;
                 }
                 Content::Object(Object::Operate { operate, applied_to })
@@ -156,10 +157,10 @@ pub(super) fn node(content: Content, scope: Scope<'_>, memory: &mut MassMemory) 
             labels: labels.labels.into_iter().map(|label| (label, true)).collect(),
             step: DVec2::X,
         })),
-        Object::Operate { operate, applied_to } => Node::Operate {
-            operation: operation(name_of_operate(&operate), &operate, scope, memory)?,
-            descendant: applied_to.map(|below| scope.object(&below, memory)).transpose()?,
-        },
+        Object::Operate { operate, applied_to } => {
+            let operation = operation(name_of_operate(&operate), &operate, scope, memory)?;
+            Node::operate(operation, applied_to.map(|below| scope.object(&below, memory)).transpose()?)
+        }
         Object::Polygons(polygons) => Node::Polygons(Box::new(self::polygons(polygons, scope, memory)?)),
         Object::Attributes(attributes) => Node::Attributes(attributes),
         Object::Illumination(light) => Node::Illumination(light),
@@ -190,10 +191,7 @@ pub(super) fn operation(
     scope: Scope<'_>,
     memory: &mut MassMemory,
 ) -> Result<Operation, Message> {
-    let font = match operate {
-        Operate::CharacterFont(font) => Some(scope.object(font, memory)?),
-        _ => None,
-    };
+    let font = Operation::named_in(operate).map(|font| scope.object(font, memory)).transpose()?;
     let made = Operation::new(operate, font, memory.structures.frame());
     made.map_err(|e| Message::Range { of: of.into(), text: e.to_string() })
 }

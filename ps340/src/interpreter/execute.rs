@@ -3,12 +3,14 @@
 use super::{
     Interpreter, MAX_BEGINS, Message,
     definition::{self, Content, Scope},
-    doubt,
     draft::Draft,
     edit, flow, service,
     session::Font,
 };
-use crate::memory::{MASS_MEMORY, MassMemory, Refusal};
+use crate::{
+    memory::{MASS_MEMORY, MassMemory, Refusal},
+    structure::Operation,
+};
 use protocol::{
     Name,
     command::{Command, FontCharacter, Initialize, Object, Operate, reference::name_of_object},
@@ -17,7 +19,7 @@ use std::collections::BTreeMap;
 
 /// The warning about numbers of an operate command that are probably not meant.
 fn doubtful(operate: &Operate, of: impl Fn() -> String) -> Option<Message> {
-    doubt::doubt(operate).map(|text| Message::Doubtful { of: of(), text })
+    Operation::doubt(operate).map(|text| Message::Doubtful { of: of(), text })
 }
 
 impl Interpreter {

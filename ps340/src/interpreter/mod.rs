@@ -2,7 +2,6 @@
 
 mod message;
 mod definition;
-mod doubt;
 mod draft;
 mod edit;
 mod flow;

@@ -1,7 +1,10 @@
 //! One program: what its commands define, use, connect and send.
 
 use super::source::{Place, first_place, last_place};
-use crate::functions::{self, FunctionRow, Shape};
+use crate::{
+    functions::{self, FunctionRow, Shape},
+    structure::Operation,
+};
 use protocol::{
     Name, Value,
     command::{
@@ -268,8 +271,8 @@ impl Program {
     }
 
     fn operate(&mut self, operate: &Operate, text: &[u8], place: Place) {
-        if let Operate::CharacterFont(font) = operate {
-            self.used(font, "CHARACTER FONT", Place { at: place.at + last_place(text, font.as_str()), ..place });
+        if let Some(name) = Operation::named_in(operate) {
+            self.used(name, operate.kind().name(), Place { at: place.at + last_place(text, name.as_str()), ..place });
         }
     }
 

@@ -3,9 +3,9 @@
 use crate::{
     memory::MassMemory,
     port::ObjectId,
-    structure::{Member, Node, Operation},
+    structure::{Member, Node, Operation, Rendered},
 };
-use protocol::{Value, command::CharacterOrientation};
+use protocol::Value;
 use std::fmt::Write;
 
 /// Members, names and labels that are shown of each object.
@@ -50,8 +50,8 @@ fn of_node(memory: &MassMemory, node: &Node) -> String {
             let texts = block.labels.iter().take(SHOWN).map(|(l, _)| format!("'{}'", String::from_utf8_lossy(&l.text)));
             format!("LABELS, {}: {}", block.labels.len(), texts.collect::<Vec<_>>().join(" "))
         }
-        Node::Operate { operation, descendant } => {
-            let mut text = of_operation(memory, operation);
+        Node::Operate { operation, descendant, rendered } => {
+            let mut text = of_operation(memory, operation, rendered.as_deref());
             if let Some(below) = descendant {
                 let _ = write!(text, " APPLIED TO {}", of_descendant(memory, *below));
             }
@@ -124,81 +124,14 @@ fn names(memory: &MassMemory, ids: &[ObjectId]) -> String {
     ids.iter().take(SHOWN).map(|id| memory.title(*id)).collect::<Vec<_>>().join(", ")
 }
 
-/// The word of an operation with its values.
-fn of_operation(memory: &MassMemory, operation: &Operation) -> String {
-    let values = match operation {
-        Operation::Font(Some(font)) => memory.objects.name(*font).to_owned(),
-        operation => values(operation),
+/// The word of an operation with its values, or with what it refers to or shows.
+fn of_operation(memory: &MassMemory, operation: &Operation, rendered: Option<&Rendered>) -> String {
+    let values = match (operation.reference(), rendered) {
+        (Some(object), _) => memory.objects.name(object).to_owned(),
+        (None, Some(Rendered { shown: true, .. })) => "shows its rendering".into(),
+        (None, Some(_)) => "shows the original, has a rendering".into(),
+        (None, None) => operation.values(),
     };
     let word = operation.word();
     if values.is_empty() { word.into() } else { format!("{word} {values}") }
-}
-
-const fn on(on: bool) -> &'static str {
-    if on { "ON" } else { "OFF" }
-}
-
-/// Numbers with commas between, rows with two blanks.
-fn rows(rows: &[&[f64]]) -> String {
-    let row = |c: &&[f64]| c.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
-    rows.iter().map(row).collect::<Vec<_>>().join("  ")
-}
-
-/// The values, matrices row by row as the machine has them; empty for an operation without values.
-fn values(operation: &Operation) -> String {
-    match operation {
-        Operation::Character(m) => rows(&[&m.x_axis.to_array(), &m.y_axis.to_array()]),
-        Operation::Linear(m) => rows(&[&m.x_axis.to_array(), &m.y_axis.to_array(), &m.z_axis.to_array()]),
-        Operation::Affine(m) => {
-            let c = m.to_cols_array_2d();
-            rows(&[&c[0][..3], &c[1][..3], &c[2][..3], &c[3][..3]])
-        }
-        Operation::Projective(m) => {
-            let c = m.to_cols_array_2d();
-            rows(&[&c[0], &c[1], &c[2], &c[3]])
-        }
-        Operation::Translate(by) => rows(&[&by.to_array()]),
-        Operation::Viewport { horizontal, vertical, intensity }
-        | Operation::LoadViewport { horizontal, vertical, intensity } => {
-            rows(&[horizontal, vertical, intensity.as_ref().map_or(&[], |i| &i[..])])
-        }
-        Operation::Color { hue, saturation } => rows(&[&[*hue, *saturation]]),
-        Operation::Intensity { on: used, range } => format!("{} {}", on(*used), rows(&[range])),
-        Operation::TextSize(x) | Operation::ColorBlending(x) | Operation::Contrast(x) => x.to_string(),
-        Operation::DepthClipping(x)
-        | Operation::Csm(x)
-        | Operation::Picking(x)
-        | Operation::ExternalRate(x)
-        | Operation::Blinking(x)
-        | Operation::Plotter(x)
-        | Operation::IfPhase(x) => on(*x).into(),
-        Operation::Displays { scopes, on: lit } => {
-            let screens = (0..4).filter(|n| scopes & (1 << n) != 0).map(|n| n.to_string()).collect::<Vec<_>>();
-            format!("{} {}", screens.join(","), on(*lit))
-        }
-        Operation::Orientation(CharacterOrientation::World) => "WORLD_ORIENTED".into(),
-        Operation::Orientation(CharacterOrientation::Screen) => "SCREEN_ORIENTED".into(),
-        Operation::Orientation(CharacterOrientation::ScreenFixed) => "SCREEN_ORIENTED/FIXED".into(),
-        Operation::PickIdentifier(id) => id.to_string(),
-        Operation::PickLocation { center, size } => rows(&[&center.to_array(), &size.to_array()]),
-        Operation::LevelOfDetail(level) => level.to_string(),
-        Operation::ConditionalBit { bit, on: set } => format!("{bit} {}", on(*set)),
-        Operation::IfBit { bit, on: set } => format!("{bit} IS {}", on(*set)),
-        Operation::IfLevel { comparison, level } => format!("{} {level}", comparison.sign()),
-        Operation::Rate { rate, .. } => format!("{} {} {} {}", rate.on, rate.off, on(rate.initial), rate.delay),
-        Operation::BlinkRate(frames) => frames.to_string(),
-        Operation::Priority(priority) => priority.to_string(),
-        Operation::LineTexture { texture, .. } => texture.to_string(),
-        Operation::Rendering { rendered: Some(rendered), .. } => {
-            if rendered.shown { "shows its rendering" } else { "shows the original, has a rendering" }.into()
-        }
-        Operation::Font(_)
-        | Operation::ChangeLevelOfDetail(_)
-        | Operation::XformMatrix
-        | Operation::XformVector
-        | Operation::CancelXform
-        | Operation::WriteBack
-        | Operation::Rendering { .. }
-        | Operation::SectioningPlane => String::new(),
-    }
 }

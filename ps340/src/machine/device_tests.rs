@@ -242,7 +242,7 @@ fn the_pick_box_follows_the_tablet_also_after_initialize() {
         center: glam::DVec2::new(0.5, 0.25),
         size: glam::DVec2::new(0.02, 0.03),
     };
-    let expected = crate::structure::Node::Operate { operation, descendant: None };
+    let expected = crate::structure::Node::operate(operation, None);
     assert_eq!(machine.memory.structures.node(id), Some(&expected));
     assert_eq!(machine.memory.structures.version(), version, "the picture does not depend on it");
     tell(&mut machine, "DISCONNECT TABLETIN<1>:<1>PICK_LOCATION; PICK_LOCATION := F:NOP;");

@@ -24,7 +24,7 @@ const PICK_BOX: DVec2 = DVec2::new(0.01, 0.01);
 fn define_structures(memory: &mut MassMemory) -> Result<(), Refusal> {
     memory.define_initial_node("CURSOR", Node::Vectors(Box::new(cross().into())))?;
     let operation = Operation::PickLocation { center: DVec2::ZERO, size: PICK_BOX };
-    memory.define_initial_node("PICK_LOCATION", Node::Operate { operation, descendant: None })?;
+    memory.define_initial_node("PICK_LOCATION", Node::operate(operation, None))?;
     memory.connect_initial("TABLETIN", 1, "PICK_LOCATION", Input::Number(1));
     Ok(())
 }

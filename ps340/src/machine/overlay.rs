@@ -12,8 +12,9 @@ use super::{
 };
 use crate::{
     interpreter::Message,
+    structure::State,
     terminal::{MESSAGE_ROW, text_line},
-    traversal::{self, State, Stroke, Update},
+    traversal::{self, Stroke, Update},
 };
 use glam::{DMat4, DVec3};
 use std::borrow::Cow;

@@ -152,10 +152,7 @@ impl Machine {
 
     fn pick_request(&self, pick: &Pick) -> PickRequest {
         let location = self.memory.objects.find("PICK_LOCATION").and_then(|id| self.memory.structures.node(id));
-        let half_size = match location {
-            Some(Node::Operate { operation: Operation::PickLocation { size, .. }, .. }) => *size,
-            _ => DVec2::ZERO,
-        };
+        let half_size = location.and_then(Node::operation).and_then(Operation::pick_box_size).unwrap_or(DVec2::ZERO);
         PickRequest { center: pick.at, half_size, coordinates: pick.coordinates }
     }
 
@@ -188,7 +185,7 @@ fn all(data: &Transformed) -> TransformedVectors {
 }
 
 fn matrix_node(matrix: DMat4) -> Node {
-    Node::Operate { operation: Operation::Projective(matrix), descendant: None }
+    Node::operate(Operation::Projective(matrix), None)
 }
 
 fn vector_node(data: &TransformedVectors) -> Node {

@@ -67,12 +67,12 @@ mod tests {
         let mut memory = MassMemory::default();
         let data = memory.define_node(&name("V"), Node::Nil).unwrap();
         let operation = Operation::Color { hue: 0.0, saturation: 1.0 };
-        let color = Node::Operate { operation: operation.clone(), descendant: Some(data) };
+        let color = Node::operate(operation.clone(), Some(data));
         let group = Node::Group(vec![Member::Unnamed(color), Member::Included(data)]);
         let id = memory.define_node(&name("S"), group).unwrap();
         memory.delete(vec![data]);
         memory.reuse_deleted();
-        let color = Node::Operate { operation, descendant: Some(ObjectId::NOTHING) };
+        let color = Node::operate(operation, Some(ObjectId::NOTHING));
         assert_eq!(memory.structures.node(id), Some(&Node::Group(vec![Member::Unnamed(color)])));
         assert!(memory.structures.node(ObjectId::NOTHING).is_none());
         assert_eq!(memory.title(ObjectId::NOTHING), "nothing");

@@ -51,6 +51,6 @@ impl MassMemory {
     }
 
     fn is_write_back(&self, id: ObjectId) -> bool {
-        matches!(self.structures.node(id), Some(Node::Operate { operation: Operation::WriteBack, .. }))
+        self.structures.node(id).and_then(Node::operation).is_some_and(Operation::writes_back)
     }
 }

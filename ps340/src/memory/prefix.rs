@@ -29,7 +29,7 @@ impl MassMemory {
         let group = if leaking { self.structures.home(id) } else { None };
         let below = self.objects.anonymous().map_err(|_| Refusal::Full)?;
         let descendant = if group.is_some() { None } else { Some(below) };
-        if let Some(before) = self.structures.define(id, Node::Operate { operation, descendant }) {
+        if let Some(before) = self.structures.define(id, Node::operate(operation, descendant)) {
             self.structures.define(below, before);
         }
         if let Some(group) = group {
@@ -52,7 +52,7 @@ impl MassMemory {
             Some(Node::Group(members)) if self.begins_with_operate(members) => (None, Some(id), None),
             _ => return Err(no_operate),
         };
-        let node = self.add_anonymous(Node::Operate { operation, descendant })?;
+        let node = self.add_anonymous(Node::operate(operation, descendant))?;
         match group {
             Some(group) => self.structures.insert_behind(group, anchor, node),
             None => self.structures.set_descendant(id, Some(node)),

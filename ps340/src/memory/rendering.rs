@@ -6,17 +6,14 @@
 use super::{MassMemory, Refusal};
 use crate::{
     port::{Effect, ObjectId, Rendering, RenderingRequest},
-    structure::{Member, Node, NodeFault, Operation},
+    structure::{Member, Node, NodeFault},
 };
 use protocol::{Name, Value, command::Input};
 
 impl MassMemory {
     /// Whether a node is a rendering node of solids (true) or surfaces (false); none if it is none.
     pub fn rendering_node(&self, id: ObjectId) -> Option<bool> {
-        match self.structures.node(id) {
-            Some(Node::Operate { operation: Operation::Rendering { solid, .. }, .. }) => Some(*solid),
-            _ => None,
-        }
+        self.structures.node(id)?.operation()?.renders_solids()
     }
 
     /// A message for input `<1>` of a rendering node, which becomes a request to the machine.

@@ -101,7 +101,7 @@ mod tests {
     fn an_object_without_a_name_is_called_by_what_it_is_and_where() {
         let mut memory = memory(&["A"]);
         let lone = memory.add_anonymous(Node::Nil).unwrap();
-        let color = Node::Operate { operation: Operation::Color { hue: 0.0, saturation: 1.0 }, descendant: None };
+        let color = Node::operate(Operation::Color { hue: 0.0, saturation: 1.0 }, None);
         let color = memory.add_anonymous(color).unwrap();
         let inner = memory.add_anonymous(Node::Group(vec![Member::Named(color)])).unwrap();
         let robot = Name::new("ROBOT").unwrap();

@@ -181,11 +181,9 @@ fn refer(node: &Node, descendants: &mut Vec<ObjectId>, references: &mut Vec<Obje
                 }
             }
         }
-        Node::Operate { operation, descendant } => {
+        Node::Operate { operation, descendant, .. } => {
             descendants.extend(descendant);
-            if let crate::structure::Operation::Font(Some(font)) = operation {
-                references.push(*font);
-            }
+            references.extend(operation.reference());
         }
         Node::Polygons(polygons) => references.extend(polygons.attributes.iter().flatten()),
         _ => {}

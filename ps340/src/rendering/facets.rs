@@ -16,8 +16,8 @@ use super::{
 };
 use crate::{
     port::ObjectId,
-    structure::{Node, Polygons, Structures},
-    traversal::{Gathered, Plane, Sight, State, newell},
+    structure::{Node, Polygons, Sight, State, Structures},
+    traversal::{Gathered, Plane, newell},
 };
 use glam::{DMat3, DMat4, DVec3, DVec4};
 use protocol::command::Polygon;

@@ -14,7 +14,7 @@ pub fn members(mut segments: Vec<Segment>, at_node: [f64; 2]) -> Vec<Member> {
         let (now, later): (Vec<Segment>, Vec<Segment>) = segments.into_iter().partition(|s| s.color == color);
         if color != at_node {
             let operation = Operation::Color { hue: color[0], saturation: color[1] };
-            members.push(Member::Unnamed(Node::Operate { operation, descendant: None }));
+            members.push(Member::Unnamed(Node::operate(operation, None)));
         }
         if !now.is_empty() {
             members.push(Member::Unnamed(list(&now)));

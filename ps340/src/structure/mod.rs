@@ -1,8 +1,13 @@
-//! The display structure: nodes, what they accept as message sinks, and the list of displayed roots.
+//! The display structure: nodes, what they do to the state below them and accept as message sinks, and the list of
+//! displayed roots.
 
-mod node;
-mod operation;
 mod fault;
+mod value;
+mod sight;
+mod identifiers;
+mod state;
+mod operation;
+mod node;
 mod inputs;
 mod copy;
 mod physical;
@@ -10,9 +15,12 @@ mod word;
 
 pub use copy::{CopyFault, copy};
 pub use fault::NodeFault;
-pub use node::{Labels, Member, Node, Operation, Polygons, Rendered, Vectors};
-pub use operation::{CONDITIONAL_BITS, Degenerate, MAX_LEVEL};
+pub use identifiers::{IdentifierChains, Identifiers};
+pub use node::{Labels, Member, Node, Polygons, Rendered, Vectors};
+pub use operation::{Asked, Degenerate, Operation};
 pub use physical::{PhysicalFault, VECTOR_WORDS};
+pub use sight::Sight;
+pub use state::{ALL_SCOPES, State};
 
 use crate::{
     pattern::{self, PatternFault},
@@ -111,7 +119,7 @@ impl Structures {
         let frame = self.frame;
         let node = self.node_mut(id).ok_or(NodeFault::Undefined { input })?;
         // Neither a variable nor the place of the pick box is part of the picture.
-        let pick_box = matches!(node, Node::Operate { operation: Operation::PickLocation { .. }, .. });
+        let pick_box = node.operation().is_some_and(|operation| operation.pick_box_size().is_some());
         let shown = !pick_box && !matches!(node, Node::Variable(_));
         let grown = inputs::accept(node, input, value, frame)?;
         self.grow(id, grown);
@@ -207,32 +215,27 @@ impl Structures {
 
     /// The last rendering in vectors of a rendering node; none if there is none.
     pub fn rendered(&self, id: ObjectId) -> Option<&Rendered> {
-        match self.node(id) {
-            Some(Node::Operate { operation: Operation::Rendering { rendered, .. }, .. }) => rendered.as_deref(),
-            _ => None,
-        }
+        if let Some(Node::Operate { rendered, .. }) = self.node(id) { rendered.as_deref() } else { None }
     }
 
     /// Gives a rendering node a rendering in vectors, which it shows in the place of the original. Harmless for other
     /// nodes.
     pub fn set_rendered(&mut self, id: ObjectId, members: Vec<Member>) {
-        let size = |members: &[Member]| members.iter().map(Member::bytes).sum::<usize>();
-        let bytes = size(&members);
-        if let Some(Node::Operate { operation: Operation::Rendering { rendered, .. }, .. }) = self.node_mut(id) {
-            let before = rendered.replace(Box::new(Rendered { members, shown: true }));
+        if let Some(Node::Operate { operation, rendered, .. }) = self.node_mut(id)
+            && operation.renders_solids().is_some()
+        {
+            let new = Rendered { members, shown: true };
+            let bytes = new.bytes();
+            let before = rendered.replace(Box::new(new));
             self.bytes += bytes;
-            self.bytes -= before.map_or(0, |before| size(&before.members));
+            self.bytes -= before.map_or(0, |before| before.bytes());
             self.version += 1;
         }
     }
 
     /// Shows the last rendering in vectors of a rendering node, or the original. Returns false if there is none.
     pub fn show_rendered(&mut self, id: ObjectId, show: bool) -> bool {
-        let Some(Node::Operate { operation: Operation::Rendering { rendered: Some(rendered), .. }, .. }) =
-            self.node_mut(id)
-        else {
-            return false;
-        };
+        let Some(Node::Operate { rendered: Some(rendered), .. }) = self.node_mut(id) else { return false };
         rendered.shown = show;
         self.version += 1;
         true

@@ -1,18 +1,19 @@
-//! The kinds of node: data, operate, instance; and what operate nodes do to the state.
+//! The kinds of node: data, operate, instance.
 
+use super::Operation;
 use crate::port::ObjectId;
-use glam::{DMat2, DMat3, DMat4, DVec2, DVec3};
+use glam::DVec2;
 use protocol::{
-    Name, Value,
-    command::{
-        Attributes, CharacterOrientation, Characters, Comparison, FontCharacter, Illumination, Label, Pattern, Polygon,
-        Rate, VectorList,
-    },
+    Value,
+    command::{Attributes, Characters, FontCharacter, Illumination, Label, Pattern, Polygon, VectorList},
 };
 use std::collections::BTreeMap;
 
-/// What one reference to a descendant takes.
-pub(super) const MEMBER_BYTES: usize = size_of::<Member>();
+/// What a node takes in the account of the mass memory, in bytes, and what one reference to a descendant: fixed, so that
+/// what the machine says of its memory does not change with what a compiler makes of the types here. Ours.
+const NODE_BYTES: usize = 144;
+pub(super) const MEMBER_BYTES: usize = NODE_BYTES;
+const _: () = assert!(size_of::<Node>().abs_diff(NODE_BYTES) <= 16 && size_of::<Member>() == size_of::<Node>());
 
 /// A node of the display structure.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +35,8 @@ pub enum Node {
         operation: Operation,
         /// Its descendant; inside a group, none applies it to the members that follow.
         descendant: Option<ObjectId>,
+        /// Of a rendering node, its last rendering in vectors.
+        rendered: Option<Box<Rendered>>,
     },
     /// POLYGON.
     Polygons(Box<Polygons>),
@@ -51,153 +54,6 @@ pub enum Node {
     RawBlock(Vec<u8>),
     /// VARIABLE: the value, once something was stored.
     Variable(Option<Value>),
-}
-
-/// What an operate node does to the state. Matrices are in the glam form of [`protocol::Value`].
-#[derive(Clone, Debug, PartialEq)]
-pub enum Operation {
-    /// MATRIX_2X2: multiplies the character matrix.
-    Character(DMat2),
-    /// ROTATE, SCALE, MATRIX_3X3.
-    Linear(DMat3),
-    /// TRANSLATE.
-    Translate(DVec3),
-    /// LOOK, MATRIX_4X3.
-    Affine(DMat4),
-    /// WINDOW, FIELD_OF_VIEW, MATRIX_4X4.
-    Projective(DMat4),
-    /// VIEWPORT, relative to the enclosing one.
-    Viewport {
-        /// Left and right.
-        horizontal: [f64; 2],
-        /// Bottom and top.
-        vertical: [f64; 2],
-        /// Intensity at the back and at the front.
-        intensity: Option<[f64; 2]>,
-    },
-    /// SET COLOR.
-    Color {
-        /// Degrees; 0 is blue.
-        hue: f64,
-        /// 0 white, 1 pure.
-        saturation: f64,
-    },
-    /// SET INTENSITY.
-    Intensity {
-        /// OFF leaves the viewport's range in force.
-        on: bool,
-        /// At the back and at the front.
-        range: [f64; 2],
-    },
-    /// SET DEPTH_CLIPPING.
-    DepthClipping(bool),
-    /// XFORM MATRIX.
-    XformMatrix,
-    /// XFORM VECTOR.
-    XformVector,
-    /// CANCEL XFORM.
-    CancelXform,
-    /// WRITEBACK.
-    WriteBack,
-    /// LOAD VIEWPORT: replaces the enclosing one.
-    LoadViewport {
-        /// Left and right on the screen.
-        horizontal: [f64; 2],
-        /// Bottom and top.
-        vertical: [f64; 2],
-        /// Intensity at the back and at the front.
-        intensity: Option<[f64; 2]>,
-    },
-    /// TEXT SIZE: replaces the character matrix.
-    TextSize(f64),
-    /// CHARACTER FONT; none for STANDARD FONT.
-    Font(Option<ObjectId>),
-    /// SET COLOR BLENDING: saturation of blended lists.
-    ColorBlending(f64),
-    /// SET CONTRAST, 0..=1.
-    Contrast(f64),
-    /// SET CSM.
-    Csm(bool),
-    /// SET DISPLAYS.
-    Displays {
-        /// Bit n for screen n, 0..=3.
-        scopes: u8,
-        /// ON or OFF.
-        on: bool,
-    },
-    /// SET CHARACTERS.
-    Orientation(CharacterOrientation),
-    /// SET PICKING.
-    Picking(bool),
-    /// SET PICKING IDENTIFIER.
-    PickIdentifier(Name),
-    /// SET PICKING LOCATION.
-    PickLocation {
-        /// Centre of the pick box, -1..=1.
-        center: DVec2,
-        /// Half its size.
-        size: DVec2,
-    },
-    /// SET LEVEL_OF_DETAIL.
-    LevelOfDetail(u16),
-    /// INCREMENT and DECREMENT LEVEL_OF_DETAIL.
-    ChangeLevelOfDetail(i32),
-    /// SET CONDITIONAL_BIT.
-    ConditionalBit {
-        /// 0..=14.
-        bit: u8,
-        /// ON or OFF.
-        on: bool,
-    },
-    /// SET RATE; the frame of the display when it was set.
-    Rate {
-        /// The phases.
-        rate: Rate,
-        /// The frame from which they are counted.
-        since: u64,
-    },
-    /// SET RATE EXTERNAL: the phase, as functions set it.
-    ExternalRate(bool),
-    /// SET BLINKING.
-    Blinking(bool),
-    /// SET BLINK RATE, frames of a phase.
-    BlinkRate(u32),
-    /// SET PLOTTER.
-    Plotter(bool),
-    /// SET PRIORITY.
-    Priority(i32),
-    /// SET LINE_TEXTURE.
-    LineTexture {
-        /// Whether it goes on around corners.
-        around_corners: bool,
-        /// Which texture.
-        texture: u32,
-    },
-    /// IF CONDITIONAL_BIT.
-    IfBit {
-        /// 0..=14.
-        bit: u8,
-        /// The state that lets through.
-        on: bool,
-    },
-    /// IF LEVEL_OF_DETAIL.
-    IfLevel {
-        /// How the level compares with `level`.
-        comparison: Comparison,
-        /// 0..=32767.
-        level: u16,
-    },
-    /// IF PHASE.
-    IfPhase(bool),
-    /// SURFACE_RENDERING and SOLID_RENDERING.
-    Rendering {
-        /// Whether the polygons below are the boundary of a solid.
-        solid: bool,
-        /// The last rendering in vectors.
-        rendered: Option<Box<Rendered>>,
-    },
-    /// SECTIONING_PLANE.
-    SectioningPlane,
 }
 
 /// A rendering in vectors, which stands for the original below its node while it is shown.
@@ -270,14 +126,31 @@ impl Member {
     }
 }
 
+impl Rendered {
+    /// The memory that it takes, in bytes.
+    pub fn bytes(&self) -> usize {
+        self.members.iter().map(Member::bytes).sum()
+    }
+}
+
 impl Node {
+    /// An operate node.
+    ///
+    /// - `descendant`: what it applies to; inside a group, none applies it to the members that follow.
+    pub fn operate(operation: Operation, descendant: Option<ObjectId>) -> Node {
+        Node::Operate { operation, descendant, rendered: None }
+    }
+
+    /// What an operate node does; none for another kind of node.
+    pub fn operation(&self) -> Option<&Operation> {
+        if let Node::Operate { operation, .. } = self { Some(operation) } else { None }
+    }
+
     /// The memory that grows with the user's data, in bytes.
     pub fn bytes(&self) -> usize {
-        size_of::<Node>()
+        NODE_BYTES
             + match self {
-                Node::Operate { operation: Operation::Rendering { rendered: Some(rendered), .. }, .. } => {
-                    rendered.members.iter().map(Member::bytes).sum()
-                }
+                Node::Operate { rendered: Some(rendered), .. } => rendered.bytes(),
                 Node::Nil | Node::Operate { .. } | Node::Illumination(_) | Node::Attributes(_) => 0,
                 Node::Polygons(p) => {
                     p.polygons.iter().map(|p| size_of::<Polygon>() + size_of_val(p.vertices.as_slice())).sum()
@@ -319,14 +192,11 @@ impl Node {
         match self {
             Node::Instance(members) => members.retain(|id| !is_gone(*id)),
             Node::Group(members) => forget_members(members, is_gone),
-            Node::Operate { operation, descendant } => {
+            Node::Operate { operation, descendant, rendered } => {
                 clear(descendant);
-                match operation {
-                    Operation::Font(font) => clear(font),
-                    Operation::Rendering { rendered: Some(rendered), .. } => {
-                        forget_members(&mut rendered.members, is_gone);
-                    }
-                    _ => {}
+                operation.forget(is_gone);
+                if let Some(rendered) = rendered {
+                    forget_members(&mut rendered.members, is_gone);
                 }
             }
             Node::Polygons(polygons) => polygons.attributes.iter_mut().for_each(clear),

@@ -2,16 +2,20 @@
 
 use super::*;
 use glam::{DMat2, DMat3, DMat4, DVec2, DVec3, DVec4};
+use proptest::{
+    strategy::{Strategy, ValueTree},
+    test_runner::TestRunner,
+};
 use protocol::{
     Kind,
-    command::{Characters, VectorClass, VectorList},
+    command::{Characters, OperateKind, VectorClass, VectorList},
 };
 
 const ID: ObjectId = ObjectId::new(7);
 
 fn operate(operation: Operation) -> Structures {
     let mut structures = Structures::default();
-    structures.define(ID, Node::Operate { operation, descendant: None });
+    structures.define(ID, Node::operate(operation, None));
     structures
 }
 
@@ -62,7 +66,7 @@ fn the_viewport_takes_a_3x3_matrix_of_its_limits() {
     let rows = DMat3::from_cols(DVec3::new(-0.5, 0.5, 0.0), DVec3::new(0.0, 1.0, 0.0), DVec3::new(0.1, 0.9, 0.0));
     send(&mut structures, 1, Value::Matrix3(Box::new(rows))).unwrap();
     let after = Operation::Viewport { horizontal: [-0.5, 0.5], vertical: [0.0, 1.0], intensity: Some([0.1, 0.9]) };
-    assert_eq!(structures.node(ID), Some(&Node::Operate { operation: after, descendant: None }));
+    assert_eq!(structures.node(ID), Some(&Node::operate(after, None)));
 }
 
 #[test]
@@ -141,54 +145,19 @@ fn the_account_of_memory_follows_what_is_there() {
     assert_eq!(structures.bytes(), 0);
 }
 
-/// One node of each kind, the operate nodes with each operation.
+/// An operation that a kind of command makes of numbers at random, of which some make none.
+fn some(kind: OperateKind) -> Option<Operation> {
+    let mut runner = TestRunner::deterministic();
+    let mut operates = std::iter::repeat_with(|| kind.any().new_tree(&mut runner).unwrap().current()).take(1000);
+    operates.find_map(|operate| Operation::new(&operate, Some(ID), 0).ok())
+}
+
+/// One node of each kind, the operate nodes of each command.
 fn every_node() -> Vec<Node> {
-    use protocol::command::{Attributes, Comparison, Fourth, Illumination, Label, Pattern, Rate, SurfaceColor};
-    let range = [-1.0, 1.0];
-    let rate = Rate { on: 2, off: 3, initial: true, delay: 0 };
-    let operations = vec![
-        Operation::Character(DMat2::IDENTITY),
-        Operation::Linear(DMat3::IDENTITY),
-        Operation::Translate(DVec3::ZERO),
-        Operation::Affine(DMat4::IDENTITY),
-        Operation::Projective(DMat4::IDENTITY),
-        Operation::Viewport { horizontal: range, vertical: range, intensity: None },
-        Operation::LoadViewport { horizontal: range, vertical: range, intensity: None },
-        Operation::Color { hue: 0.0, saturation: 0.0 },
-        Operation::Intensity { on: true, range },
-        Operation::DepthClipping(false),
-        Operation::XformMatrix,
-        Operation::XformVector,
-        Operation::CancelXform,
-        Operation::WriteBack,
-        Operation::TextSize(1.0),
-        Operation::Font(None),
-        Operation::ColorBlending(1.0),
-        Operation::Contrast(1.0),
-        Operation::Csm(true),
-        Operation::Displays { scopes: 1, on: true },
-        Operation::Orientation(protocol::command::CharacterOrientation::World),
-        Operation::Picking(false),
-        Operation::PickIdentifier(protocol::Name::new("ID").unwrap()),
-        Operation::PickLocation { center: DVec2::ZERO, size: DVec2::ONE },
-        Operation::LevelOfDetail(0),
-        Operation::ChangeLevelOfDetail(1),
-        Operation::ConditionalBit { bit: 1, on: false },
-        Operation::Rate { rate, since: 0 },
-        Operation::ExternalRate(true),
-        Operation::Blinking(false),
-        Operation::BlinkRate(1),
-        Operation::Plotter(false),
-        Operation::Priority(0),
-        Operation::LineTexture { around_corners: false, texture: 0 },
-        Operation::IfBit { bit: 0, on: true },
-        Operation::IfLevel { comparison: Comparison::Less, level: 1 },
-        Operation::IfPhase(true),
-        Operation::Rendering { solid: false, rendered: None },
-        Operation::SectioningPlane,
-    ];
-    let mut nodes: Vec<Node> =
-        operations.into_iter().map(|operation| Node::Operate { operation, descendant: None }).collect();
+    use protocol::command::{Attributes, Fourth, Illumination, Label, Pattern, SurfaceColor};
+    let commands =
+        OperateKind::ALL.iter().map(|kind| some(*kind).unwrap_or_else(|| panic!("{kind:?} makes no operation")));
+    let mut nodes: Vec<Node> = commands.map(|operation| Node::operate(operation, None)).collect();
     let list = |class, lines: &[bool]| VectorList {
         block_normalized: false,
         fourth: Fourth::Intensity,
@@ -303,7 +272,7 @@ fn each_operate_node_takes_what_its_command_says() {
     let place = |center, size| Operation::PickLocation { center, size };
     let displays = |on| Operation::Displays { scopes: 0b10, on };
     let level = |level| Operation::IfLevel { comparison: Comparison::Less, level };
-    let render = |solid| Operation::Rendering { solid, rendered: None };
+    let render = |solid| Operation::Rendering { solid };
     let texture = |texture| Operation::LineTexture { around_corners: true, texture };
     let load = |horizontal, vertical| Operation::LoadViewport { horizontal, vertical, intensity: Some([0.1, 0.9]) };
     let limits = Value::Matrix2(Box::new(DMat2::from_cols_array(&[-0.5, 0.5, 0.0, 1.0])));

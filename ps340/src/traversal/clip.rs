@@ -1,6 +1,7 @@
 //! The pipeline after the matrix: clip in homogeneous coordinates, project, map to the viewport.
 
-use super::{State, Stroke};
+use super::Stroke;
+use crate::structure::State;
 use glam::{DMat4, DVec4};
 
 /// A w below which its reciprocal may be beyond the numbers.

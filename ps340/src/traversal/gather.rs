@@ -6,10 +6,9 @@
 //! - The first polygon that is met below a SECTIONING_PLANE is the plane, and no part of the object if that node is
 //!   below the rendering node; otherwise one that is met elsewhere in the picture does.
 
-use super::{Sight, State};
 use crate::{
     port::ObjectId,
-    structure::{Node, Polygons},
+    structure::{Node, Polygons, Sight, State},
 };
 use glam::{DMat4, DVec3};
 use protocol::command::Illumination;

@@ -1,12 +1,9 @@
 //! The straight pieces of a data node one by one, with what picking and colour blending need to know of each.
 
-use super::{
-    State,
-    font::{self, Font},
-};
+use super::font::{self, Font};
 use crate::{
     hue,
-    structure::{Labels, Node, Polygons, Structures},
+    structure::{Labels, Node, Polygons, State, Structures},
 };
 use glam::{DVec2, DVec3, DVec4};
 use protocol::command::{CharacterOrientation, Fourth, VectorClass, VectorList};

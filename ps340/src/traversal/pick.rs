@@ -4,8 +4,8 @@
 //! As remembered from the manuals: traversal order decides, only data below SET PICKING ON is considered, the
 //! identifiers are listed from the data upward. That a pick needs at least one identifier is uncertain.
 
-use super::{State, outline::Piece};
-use crate::port::ObjectId;
+use super::outline::Piece;
+use crate::{port::ObjectId, structure::State};
 use glam::{DVec2, DVec3, DVec4};
 use protocol::{Name, value::PickedPlace};
 

@@ -1,9 +1,7 @@
 //! What an update is asked for, and what it gives.
 
-use super::{
-    MAX_DEPTH, MAX_GATHERED, MAX_KEPT, MAX_VECTORS, MAX_VISITS, PickHit, PickRequest, Stroke, state::ALL_SCOPES,
-};
-use crate::port::ObjectId;
+use super::{MAX_DEPTH, MAX_GATHERED, MAX_KEPT, MAX_VECTORS, MAX_VISITS, PickHit, PickRequest, Stroke};
+use crate::{port::ObjectId, structure::ALL_SCOPES};
 use glam::{DMat4, DVec3};
 use std::{
     collections::{BTreeMap, BTreeSet},

@@ -1,17 +1,16 @@
 //! The walk over the display structure.
 
 use super::{
-    Clipper, MAX_DEPTH, MAX_GATHERED, MAX_KEPT, MAX_VECTORS, MAX_VISITS, PickHit, PickedKind, Requests, Sight, State,
-    Stroke, Trouble, Update,
+    Clipper, MAX_DEPTH, MAX_GATHERED, MAX_KEPT, MAX_VECTORS, MAX_VISITS, PickHit, PickedKind, Requests, Stroke,
+    Trouble, Update,
     gather::{Gathered, Gatherer},
-    identifiers::{IdentifierChains, Identifiers},
     outline::{self, Piece},
     phase,
     pick::PickBox,
 };
 use crate::{
     port::ObjectId,
-    structure::{Member, Node, Operation, Structures},
+    structure::{Asked, IdentifierChains, Identifiers, Member, Node, Operation, Rendered, Sight, State, Structures},
 };
 use glam::{DMat4, DVec3, DVec4};
 use protocol::{
@@ -219,8 +218,8 @@ impl<'a> Walk<'a> {
                 let state = level.state.clone();
                 self.enter(visit.object, Items::Members(members), state, levels);
             }
-            Node::Operate { operation, descendant } => {
-                if !level.state.admits(operation) {
+            Node::Operate { operation, descendant, rendered } => {
+                if !operation.admits(&level.state) {
                     if visit.in_structure && descendant.is_none() {
                         level.items = Items::Members(&[]); // it guards everything after it
                     }
@@ -228,7 +227,7 @@ impl<'a> Walk<'a> {
                 }
                 if visit.in_structure && descendant.is_none() {
                     self.apply(operation, visit.object, &mut level.state);
-                    if let Some(rendered) = self.shown_instead(operation) {
+                    if let Some(rendered) = self.shown_instead(rendered.as_deref()) {
                         let state = level.state.clone();
                         level.items = Items::Members(&[]); // it stands for everything after it
                         self.enter(visit.object, rendered, state, levels);
@@ -237,7 +236,7 @@ impl<'a> Walk<'a> {
                 }
                 let mut state = level.state.clone();
                 self.apply(operation, visit.object, &mut state);
-                if let Some(rendered) = self.shown_instead(operation) {
+                if let Some(rendered) = self.shown_instead(rendered.as_deref()) {
                     self.enter(visit.object, rendered, state, levels);
                     return ControlFlow::Continue(());
                 }
@@ -254,13 +253,9 @@ impl<'a> Walk<'a> {
     }
 
     /// The vectors that a rendering node shows instead of what is below it.
-    fn shown_instead(&self, operation: &'a Operation) -> Option<Items<'a>> {
-        match operation {
-            Operation::Rendering { rendered: Some(rendered), .. } if rendered.shown && self.gatherer.is_none() => {
-                Some(Items::Members(&rendered.members))
-            }
-            _ => None,
-        }
+    fn shown_instead(&self, rendered: Option<&'a Rendered>) -> Option<Items<'a>> {
+        let shown = rendered.filter(|rendered| rendered.shown && self.gatherer.is_none());
+        shown.map(|rendered| Items::Members(&rendered.members))
     }
 
     /// Goes a level down, unless the structure is too deep or contains itself.
@@ -282,32 +277,29 @@ impl<'a> Walk<'a> {
 
     /// The state below an operate node, with what depends on time and on requests.
     fn apply(&mut self, operation: &'a Operation, object: Option<ObjectId>, state: &mut State) {
-        match operation {
-            Operation::Rate { rate, since } => {
-                let (phase, change) = phase::rate(rate, self.frame.saturating_sub(*since));
+        match operation.apply(state) {
+            Asked::Nothing => {}
+            Asked::Phase { rate, since } => {
+                let (phase, change) = phase::rate(rate, self.frame.saturating_sub(since));
                 state.phase = phase;
                 if let Some(change) = change {
                     self.update.changes_at(since + change);
                 }
             }
-            Operation::PickIdentifier(name) => state.identifiers = self.identifiers.below(state.identifiers, name),
-            Operation::WriteBack => state.write_back |= object.is_some_and(|o| self.requests.write_back.contains(&o)),
-            Operation::XformMatrix => {
+            Asked::Identifier(name) => state.identifiers = self.identifiers.below(state.identifiers, name),
+            Asked::Strokes => state.write_back |= object.is_some_and(|o| self.requests.write_back.contains(&o)),
+            Asked::Matrix => {
                 if let Some(id) = object.filter(|o| self.requests.transforms.contains(o)) {
                     self.update.transforms.entry(id).or_insert(state.ctm);
                 }
             }
-            Operation::XformVector => {
+            Asked::Vectors => {
                 if let Some(id) = object.filter(|o| self.requests.transforms.contains(o)) {
                     self.update.transformed.entry(id).or_default();
                     state.gatherer = Some(id);
                 }
             }
-            Operation::Rendering { .. } => {
-                self.gatherer.iter_mut().for_each(|gatherer| gatherer.rendering(object, state));
-            }
-            Operation::SectioningPlane => state.sight.iter_mut().for_each(|sight| sight.cut()),
-            operation => state.apply(operation),
+            Asked::Rendering => self.gatherer.iter_mut().for_each(|gatherer| gatherer.rendering(object, state)),
         }
     }
 

@@ -4,7 +4,7 @@ use super::*;
 
 /// A SECTIONING_PLANE with a descendant is not at hand here; its polygons come in a group of their own.
 fn cut(polygons: Vec<Polygon>, plane: Polygon) -> Scene {
-    let below = vec![Node::Operate { operation: Operation::SectioningPlane, descendant: None }, block(vec![plane])];
+    let below = vec![Node::operate(Operation::SectioningPlane, None), block(vec![plane])];
     let below = below.into_iter().map(Member::Unnamed).collect();
     Scene::solid(polygons).below(Node::Group(below))
 }

@@ -100,10 +100,7 @@ fn lights_below_the_node_turn_with_it_and_colour_the_surface() {
     assert_eq!(at(&scene.image(Rendering::Flat, &dull), 0.0, 0.0), [0; 3], "it comes from the side");
     // Turning everything by 90 degrees about y would show the edge; only the light is turned here.
     let turn = Operation::Linear(crate::matrices::rotation(protocol::command::Axis::Y, 90.0));
-    let turned = vec![
-        Member::Unnamed(Node::Operate { operation: turn, descendant: None }),
-        Member::Unnamed(Node::Illumination(red)),
-    ];
+    let turned = vec![Member::Unnamed(Node::operate(turn, None)), Member::Unnamed(Node::Illumination(red))];
     let mut scene = scene;
     scene.below[0] = Node::Group(turned);
     assert_eq!(at(&scene.image(Rendering::Flat, &dull), 0.0, 0.0), [191, 0, 0]);

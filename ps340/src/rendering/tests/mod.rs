@@ -49,8 +49,8 @@ impl Scene {
     fn facets(&self, storage: u32) -> Result<Facets, RenderingFault> {
         let mut structures = Structures::default();
         let [root, rendering] = [ObjectId::new(0), ObjectId::new(1)];
-        let operate = |operation: &Operation| Node::Operate { operation: operation.clone(), descendant: None };
-        structures.define(rendering, operate(&Operation::Rendering { solid: self.solid, rendered: None }));
+        let operate = |operation: &Operation| Node::operate(operation.clone(), None);
+        structures.define(rendering, operate(&Operation::Rendering { solid: self.solid }));
         let mut members: Vec<Member> = self.above.iter().map(|o| Member::Unnamed(operate(o))).collect();
         members.push(Member::Named(rendering));
         members.extend(self.below.iter().cloned().map(Member::Unnamed));

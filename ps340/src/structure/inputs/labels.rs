@@ -1,7 +1,9 @@
 //! Inputs of LABELS.
 
-use super::value::{count, element, place, wrong_kind};
-use crate::structure::{Labels, NodeFault};
+use crate::structure::{
+    Labels, NodeFault,
+    value::{count, element, place, wrong_kind},
+};
 use glam::DVec3;
 use protocol::{
     Value,

@@ -1,21 +1,22 @@
 //! Nodes as message sinks: what each kind of node takes at which input.
 
 mod labels;
-mod operate;
 mod takes;
 mod text;
-mod value;
 mod vectors;
 
 pub(super) use vectors::{mark, overwrite};
 
-use super::{Node, NodeFault};
+use super::{
+    Node, NodeFault,
+    operation::Given,
+    value::{FIRST, SECOND, THIRD, number, wrong_kind},
+};
 use glam::DVec3;
 use protocol::{
     Value,
     command::{Illumination, Input},
 };
-use value::{FIRST, SECOND, THIRD, number, wrong_kind};
 
 /// Gives `value` to `input` of `node`.
 ///
@@ -30,7 +31,7 @@ pub(super) fn accept(node: &mut Node, input: Input, value: Value, frame: u64) ->
         return Err(NodeFault::Range { input });
     }
     match node {
-        Node::Operate { operation, .. } => operate::accept(operation, input, &value, frame).map(|()| 0),
+        Node::Operate { operation, .. } => operation.accept(Given { input, value: &value, frame }).map(|()| 0),
         Node::Vectors(node) => vectors::accept(&mut node.list, input, &value),
         Node::Characters(characters) => text::accept(characters, input, &value),
         Node::Labels(block) => labels::accept(block, input, &value),

@@ -1,16 +1,14 @@
 //! Which inputs a node has, and which kinds of message it takes there: what arcs are checked against, and what messages
 //! say. Tests hold it to what the nodes do.
 
-use super::value::{FIRST, FOURTH, SECOND, THIRD};
 use crate::{
     port::KindSet,
-    structure::{Node, Operation},
+    structure::{
+        Node, Operation,
+        value::{FIRST, PLACE, SECOND, THIRD},
+    },
 };
-use protocol::{Kind, command::Input};
-
-const PLACE: KindSet = KindSet::VECTOR2.or(KindSet::VECTOR3);
-const MATRIX2: KindSet = KindSet::of(&[Kind::Matrix2]);
-const MATRIX3: KindSet = KindSet::of(&[Kind::Matrix3]);
+use protocol::command::Input;
 
 impl Node {
     /// The kinds that an input takes; none if the node has no such input.
@@ -52,8 +50,7 @@ impl Node {
 
     /// Whether the node sends messages, from output 1.
     pub fn has_output(&self) -> bool {
-        let Node::Operate { operation, .. } = self else { return false };
-        matches!(operation, Operation::Rendering { .. } | Operation::WriteBack)
+        self.operation().is_some_and(Operation::has_output)
     }
 }
 
@@ -79,59 +76,5 @@ fn labels(input: Input) -> KindSet {
         Input::Append => element,
         Input::Number(_) | Input::Last => element.or(KindSet::BOOLEAN),
         Input::Position | Input::Substitute => KindSet::NONE,
-    }
-}
-
-impl Operation {
-    fn takes(&self, input: Input) -> KindSet {
-        match (input, self) {
-            (FIRST, operation) => operation.takes_first(),
-            (SECOND, Operation::Color { .. }) => KindSet::NUMBER,
-            (SECOND, Operation::PickLocation { .. }) => PLACE,
-            (SECOND, Operation::Rendering { .. }) | (THIRD, Operation::Rate { .. }) => KindSet::BOOLEAN,
-            (SECOND | FOURTH, Operation::Rate { .. }) => KindSet::INTEGER,
-            _ => KindSet::NONE,
-        }
-    }
-
-    fn takes_first(&self) -> KindSet {
-        match self {
-            Operation::Character(_) => MATRIX2,
-            Operation::Linear(_) => MATRIX3,
-            Operation::Affine(_) => KindSet::of(&[Kind::Matrix4x3]),
-            Operation::Projective(_) => KindSet::of(&[Kind::Matrix4]),
-            Operation::Translate(_) | Operation::PickLocation { .. } => PLACE,
-            Operation::Viewport { .. } | Operation::LoadViewport { .. } => MATRIX2.or(MATRIX3),
-            Operation::TextSize(_) => MATRIX2.or(KindSet::NUMBER),
-            Operation::Color { .. } => KindSet::VECTOR2.or(KindSet::NUMBER),
-            Operation::ColorBlending(_) | Operation::Contrast(_) => KindSet::NUMBER,
-            Operation::Intensity { .. } => KindSet::BOOLEAN.or(KindSet::VECTOR2),
-            Operation::DepthClipping(_)
-            | Operation::Csm(_)
-            | Operation::Picking(_)
-            | Operation::ExternalRate(_)
-            | Operation::Blinking(_)
-            | Operation::Plotter(_)
-            | Operation::Displays { .. }
-            | Operation::ConditionalBit { .. }
-            | Operation::WriteBack => KindSet::BOOLEAN,
-            Operation::LevelOfDetail(_)
-            | Operation::IfLevel { .. }
-            | Operation::Rate { .. }
-            | Operation::BlinkRate(_)
-            | Operation::Priority(_)
-            | Operation::LineTexture { .. } => KindSet::INTEGER,
-            Operation::Rendering { .. } => KindSet::INTEGER.or(KindSet::BOOLEAN).or(KindSet::STRING),
-            Operation::XformMatrix
-            | Operation::XformVector
-            | Operation::CancelXform
-            | Operation::Font(_)
-            | Operation::Orientation(_)
-            | Operation::PickIdentifier(_)
-            | Operation::ChangeLevelOfDetail(_)
-            | Operation::IfBit { .. }
-            | Operation::IfPhase(_)
-            | Operation::SectioningPlane => KindSet::NONE,
-        }
     }
 }

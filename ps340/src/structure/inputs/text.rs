@@ -1,7 +1,9 @@
 //! Inputs of CHARACTERS.
 
-use super::value::{count, place, wrong_kind};
-use crate::structure::NodeFault;
+use crate::structure::{
+    NodeFault,
+    value::{count, place, wrong_kind},
+};
 use protocol::{
     Value,
     command::{Characters, Input},

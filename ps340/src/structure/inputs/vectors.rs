@@ -1,7 +1,9 @@
 //! Inputs of vector lists.
 
-use super::value::{boolean, count, element, wrong_kind};
-use crate::structure::NodeFault;
+use crate::structure::{
+    NodeFault,
+    value::{boolean, count, element, wrong_kind},
+};
 use protocol::{
     Value,
     command::{Fourth, Input, VectorClass, VectorList},

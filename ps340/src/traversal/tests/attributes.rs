@@ -20,7 +20,7 @@ fn group(members: Vec<Member>) -> (Structures, ObjectId) {
 }
 
 fn to(operation: Operation, below: ObjectId) -> Member {
-    Member::Unnamed(Node::Operate { operation, descendant: Some(below) })
+    Member::Unnamed(Node::operate(operation, Some(below)))
 }
 
 fn count(structures: &Structures) -> usize {
@@ -131,7 +131,7 @@ fn a_named_operate_node_that_is_referred_to_applies_to_what_follows_it() {
     let [outer, node, home, inner] = [0, 1, 2, 3].map(ObjectId::new);
     let mut structures = Structures::default();
     let shift = Operation::Translate(DVec3::new(0.5, 0.0, 0.0));
-    structures.define(node, Node::Operate { operation: shift, descendant: None });
+    structures.define(node, Node::operate(shift, None));
     structures.define(inner, Node::Group(vec![Member::Named(node), Member::Unnamed(point())]));
     structures.define(home, Node::Group(vec![Member::Unnamed(point()), Member::Named(inner)]));
     structures.define(outer, Node::Instance(vec![node]));

@@ -28,7 +28,7 @@ fn list(class: VectorClass, points: &[[f32; 3]]) -> Node {
 }
 
 fn operate(operation: Operation) -> Member {
-    Member::Unnamed(Node::Operate { operation, descendant: None })
+    Member::Unnamed(Node::operate(operation, None))
 }
 
 /// The strokes of a group of operations over one node.
@@ -212,8 +212,7 @@ fn an_operate_node_with_a_descendant_spares_its_siblings() {
     let data = list(VectorClass::Dots, &[[0.0; 3]]);
     structures.define(below, data.clone());
     let shift = Operation::Translate(DVec3::new(0.5, 0.0, 0.0));
-    let members =
-        vec![Member::Unnamed(Node::Operate { operation: shift, descendant: Some(below) }), Member::Unnamed(data)];
+    let members = vec![Member::Unnamed(Node::operate(shift, Some(below))), Member::Unnamed(data)];
     structures.define(group, Node::Group(members));
     structures.display(group);
     let strokes = update(&structures, 0, &Requests::default()).strokes;
@@ -225,7 +224,7 @@ fn an_operate_node_with_a_descendant_spares_its_siblings() {
 fn the_matrix_of_an_xform_node_is_the_product_of_what_is_above() {
     let mut structures = Structures::default();
     let [group, node] = [ObjectId::new(0), ObjectId::new(1)];
-    structures.define(node, Node::Operate { operation: Operation::XformMatrix, descendant: None });
+    structures.define(node, Node::operate(Operation::XformMatrix, None));
     let turn = Operation::Linear(matrices::rotation(Axis::Y, 30.0));
     let members = vec![operate(fov(60.0, 1.0, 9.0)), operate(turn), Member::Named(node)];
     structures.define(group, Node::Group(members));

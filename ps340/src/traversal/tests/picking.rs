@@ -128,7 +128,7 @@ fn the_node_of_the_data_is_told() {
 fn xform_vector_gathers_the_vectors_below_and_cancel_excludes() {
     let [group, node] = [ObjectId::new(0), ObjectId::new(1)];
     let mut structures = Structures::default();
-    structures.define(node, Node::Operate { operation: Operation::XformVector, descendant: None });
+    structures.define(node, Node::operate(Operation::XformVector, None));
     structures.define(
         group,
         Node::Group(vec![
@@ -153,7 +153,7 @@ fn xform_vector_gathers_the_vectors_below_and_cancel_excludes() {
 fn only_what_is_below_a_wanted_node_is_written_back() {
     let [group, node] = [ObjectId::new(0), ObjectId::new(1)];
     let mut structures = Structures::default();
-    structures.define(node, Node::Operate { operation: Operation::WriteBack, descendant: None });
+    structures.define(node, Node::operate(Operation::WriteBack, None));
     let data = || Member::Unnamed(path());
     structures.define(group, Node::Group(vec![data(), Member::Named(node), data(), data()]));
     structures.display(group);

@@ -19,7 +19,7 @@ pub struct Sight {
     /// Whether a projection was met.
     framed: bool,
     /// Below a SECTIONING_PLANE, and whether that is below the rendering node.
-    pub(super) plane: Option<bool>,
+    pub plane: Option<bool>,
 }
 
 impl Default for Sight {
@@ -48,7 +48,7 @@ impl Sight {
     }
 
     /// Notes that the rendering node is entered.
-    pub(super) fn enter(&mut self) {
+    pub fn enter(&mut self) {
         self.local = Some(DMat4::IDENTITY);
     }
 

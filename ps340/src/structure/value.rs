@@ -1,6 +1,7 @@
 //! What the kinds of node have in common as message sinks: their inputs, and values as numbers, switches, places.
 
-use crate::structure::NodeFault;
+use super::NodeFault;
+use crate::port::KindSet;
 use glam::DVec3;
 use protocol::{Value, command::Input};
 
@@ -12,6 +13,9 @@ pub(super) const SECOND: Input = Input::Number(2);
 pub(super) const THIRD: Input = Input::Number(3);
 /// The fourth input.
 pub(super) const FOURTH: Input = Input::Number(4);
+
+/// The kinds of a place in two or three dimensions.
+pub(super) const PLACE: KindSet = KindSet::VECTOR2.or(KindSet::VECTOR3);
 
 /// The fault of a message of the wrong kind.
 pub(super) fn wrong_kind(input: Input, value: &Value) -> NodeFault {

@@ -1,44 +1,29 @@
 //! Numbers that the machine takes and that are probably not meant, and what becomes of them. Ours: the real machine's
 //! limits are not known, so that a definition is not refused for them.
 
-use protocol::command::Operate;
+use protocol::command::Rate;
 
-/// What to say about the numbers of an operate command; none if nothing is odd about them.
-pub(super) fn doubt(operate: &Operate) -> Option<String> {
-    match *operate {
-        Operate::SetColor { hue, saturation } => {
-            let hue = (!(0.0..=360.0).contains(&hue)).then(|| format!("hue {hue} counts as {}", hue.rem_euclid(360.0)));
-            both(hue, clamped("saturation", saturation))
-        }
-        Operate::SetColorBlending(saturation) => clamped("saturation", saturation),
-        Operate::SetContrast(contrast) => clamped("contrast", contrast),
-        Operate::Viewport { horizontal, vertical, .. } | Operate::LoadViewport { horizontal, vertical, .. } => {
-            both(limits("HORIZONTAL", horizontal), limits("VERTICAL", vertical))
-        }
-        Operate::SetRate(rate) if (rate.on, rate.off) == (0, 0) => {
-            let state = if rate.initial { "ON" } else { "OFF" };
-            Some(format!("both phases last 0 frames, so the phase is always {state}"))
-        }
-        Operate::SetBlinkRate(0) => Some("a phase of 0 frames counts as 1".into()),
-        _ => None,
-    }
-}
-
-fn both(first: Option<String>, second: Option<String>) -> Option<String> {
+/// What is said of two numbers, with a comma between.
+pub(super) fn both(first: Option<String>, second: Option<String>) -> Option<String> {
     match (first, second) {
         (Some(first), Some(second)) => Some(format!("{first}, {second}")),
         (first, second) => first.or(second),
     }
 }
 
+/// An angle that counts as another in 0..=360.
+pub(super) fn wrapped(what: &str, angle: f64) -> Option<String> {
+    (!(0.0..=360.0).contains(&angle)).then(|| format!("{what} {angle} counts as {}", angle.rem_euclid(360.0)))
+}
+
 /// A number that counts as the nearest of 0 and 1 if it is not between them.
-fn clamped(what: &str, number: f64) -> Option<String> {
+pub(super) fn clamped(what: &str, number: f64) -> Option<String> {
     let counts = number.clamp(0.0, 1.0);
     (counts != number).then(|| format!("{what} {number} counts as {counts}"))
 }
 
 /// Limits of a viewport, the lower one first.
-fn limits(what: &str, [low, high]: [f64; 2]) -> Option<String> {
+pub(super) fn doubtful_limits(what: &str, [low, high]: [f64; 2]) -> Option<String> {
     if low < high {
         return None;
     }
@@ -46,14 +31,20 @@ fn limits(what: &str, [low, high]: [f64; 2]) -> Option<String> {
     Some(format!("{what} {low}:{high} {effect}"))
 }
 
+/// Phases that never change.
+pub(super) fn endless(rate: &Rate) -> Option<String> {
+    let state = if rate.initial { "ON" } else { "OFF" };
+    ((rate.on, rate.off) == (0, 0)).then(|| format!("both phases last 0 frames, so the phase is always {state}"))
+}
+
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::structure::Operation;
     use protocol::command::{Command, Object, parse};
 
     fn of(text: &str) -> Option<String> {
         match parse(text.as_bytes()) {
-            Ok(Command::Define { object: Object::Operate { operate, .. }, .. }) => doubt(&operate),
+            Ok(Command::Define { object: Object::Operate { operate, .. }, .. }) => Operation::doubt(&operate),
             other => panic!("{text}: {other:?}"),
         }
     }

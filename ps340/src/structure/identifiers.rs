@@ -11,21 +11,21 @@ impl Identifiers {
     pub const NONE: Identifiers = Identifiers(u32::MAX);
 }
 
-/// Every identifier that the walk met, with the one above it.
+/// Every identifier that a walk met, with the one above it.
 #[derive(Debug, Default)]
-pub(super) struct IdentifierChains<'a> {
+pub struct IdentifierChains<'a> {
     links: Vec<(&'a Name, Identifiers)>,
 }
 
 impl<'a> IdentifierChains<'a> {
     /// The chain with `name` below `above`.
-    pub(super) fn below(&mut self, above: Identifiers, name: &'a Name) -> Identifiers {
+    pub fn below(&mut self, above: Identifiers, name: &'a Name) -> Identifiers {
         self.links.push((name, above));
         Identifiers(self.links.len() as u32 - 1)
     }
 
     /// The names of a chain, nearest first.
-    pub(super) fn names(&self, mut at: Identifiers) -> Vec<Name> {
+    pub fn names(&self, mut at: Identifiers) -> Vec<Name> {
         let mut names = Vec::new();
         while let Some((name, above)) = self.links.get(at.0 as usize) {
             names.push((*name).clone());
