@@ -123,13 +123,10 @@ fn every_attribute_is_read() {
 
 #[test]
 fn a_rate_starts_on_and_at_once_unless_said() {
-    let rate = |text: &str| match operate(text) {
-        Operate::SetRate(Rate { on, off, initial, delay }) => (on, off, initial, delay),
-        other => panic!("{text}: {other:?}"),
-    };
-    assert_eq!(rate("SET RATE 20 10;"), (20, 10, true, 0));
-    assert_eq!(rate("SET RATE 20,10,OFF,5;"), (20, 10, false, 5));
-    assert_eq!(rate("SET RATE 20 10 7;"), (20, 10, true, 7));
+    let rate = |on, off, initial, delay| Operate::SetRate(Rate { on, off, initial, delay });
+    assert_eq!(operate("SET RATE 20 10;"), rate(20, 10, true, 0));
+    assert_eq!(operate("SET RATE 20,10,OFF,5;"), rate(20, 10, false, 5));
+    assert_eq!(operate("SET RATE 20 10 7;"), rate(20, 10, true, 7));
     same("R := SET RATE 20 10 ON 3 THEN A;", "R := SET RATE 20 10 3 -> A;");
 }
 
