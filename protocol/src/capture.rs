@@ -27,10 +27,10 @@ pub const HEADER: &str = "ps340 capture 1";
 pub const PIECE: usize = 4096;
 
 /// Longest order of an operator, in bytes.
-pub const MAX_ORDER: usize = 64 << 10;
+pub const MAX_OPERATOR_COMMAND: usize = 64 << 10;
 
 /// Longest line of a capture in bytes: every byte of an order escaped, and the fields before it.
-const MAX_LINE: usize = 4 * MAX_ORDER + 128;
+const MAX_LINE: usize = 4 * MAX_OPERATOR_COMMAND + 128;
 
 /// Longest name of who attached.
 const MAX_PEER: usize = 1024;
@@ -58,7 +58,7 @@ pub enum Event {
     /// The line closed.
     Close,
     /// The operator did something; the order.
-    Order(String),
+    OperatorCommand(String),
 }
 
 /// A line that is no record of a capture.
@@ -113,7 +113,7 @@ impl Record {
         };
         match &self.event {
             Event::Open(peer) => line('+', &peer.as_bytes()[..peer.len().min(MAX_PEER)]),
-            Event::Order(order) => line('!', &order.as_bytes()[..order.len().min(MAX_ORDER)]),
+            Event::OperatorCommand(order) => line('!', &order.as_bytes()[..order.len().min(MAX_OPERATOR_COMMAND)]),
             Event::FromHost(bytes) => bytes.chunks(PIECE).for_each(|piece| line('>', piece)),
             Event::ToHost(bytes) => bytes.chunks(PIECE).for_each(|piece| line('<', piece)),
             Event::Close => line('-', &[]),
@@ -133,7 +133,7 @@ impl Record {
             ">" => Event::FromHost(bytes),
             "<" => Event::ToHost(bytes),
             "-" => Event::Close,
-            "!" => Event::Order(String::from_utf8_lossy(&bytes).into_owned()),
+            "!" => Event::OperatorCommand(String::from_utf8_lossy(&bytes).into_owned()),
             _ => return Err(CaptureProblem::Sign),
         };
         Ok(Record { micros, line: number, event })
@@ -287,7 +287,7 @@ mod tests {
                 record(1_250, 1, Event::FromHost(b"DISPLAY A;\r\n".into())),
                 record(12_500_000, 1, Event::ToHost(b"\x1d\\ \t ".into())),
                 record(2_500_000, 2, Event::Close),
-                record(3_000_000, 0, Event::Order("type a\\r".into())),
+                record(3_000_000, 0, Event::OperatorCommand("type a\\r".into())),
             ]
         );
     }

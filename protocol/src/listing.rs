@@ -173,8 +173,8 @@ impl<W: Write> Rows<'_, W> {
             Route::SixBitBinary | Route::SixBitRaster => {
                 self.text(body.at(0), whole);
                 match read_six_bit(body.payload, &mut six_bit) {
-                    Ok(()) if route == Route::SixBitBinary => self.records(&Body::unseen(&six_bit), &mut command),
-                    Ok(()) => self.records(&Body::unseen(&six_bit), raster),
+                    Ok(()) if route == Route::SixBitBinary => self.records(&Body::decoded(&six_bit), &mut command),
+                    Ok(()) => self.records(&Body::decoded(&six_bit), raster),
                     Err(error) => self.note(format_args!("error: {error}")),
                 }
             }
@@ -251,7 +251,7 @@ impl<W: Write> Rows<'_, W> {
     /// A field of a body: its bytes in the stream, or only its meaning if it does not stand there.
     fn body_field(&mut self, body: &Body<'_>, span: Range<usize>, meaning: &str) {
         match body.seen {
-            Seen::Nowhere => self.note(format_args!("{meaning}")),
+            BytePositions::Decoded => self.note(format_args!("{meaning}")),
             _ => self.field(body.at(span.start), body.raw(span), format_args!("{meaning}")),
         }
     }
@@ -341,23 +341,23 @@ impl<W: Write> Rows<'_, W> {
 struct Body<'a> {
     payload: &'a [u8],
     packet: &'a [u8],
-    seen: Seen,
+    seen: BytePositions,
 }
 
 /// Where the bytes of a body stand in its packet.
-enum Seen {
+enum BytePositions {
     /// One behind the other from here on.
     From(usize),
     /// Each with its escape character, if it has one, at these places; the last one is the end.
     At(Vec<usize>),
     /// Nowhere: they were decoded.
-    Nowhere,
+    Decoded,
 }
 
 impl<'a> Body<'a> {
     fn new(form: PacketForm, payload: &'a [u8], packet: &'a [u8]) -> Body<'a> {
         let seen = match form {
-            PacketForm::Count | PacketForm::Long => Seen::From(form.overhead().0),
+            PacketForm::Count | PacketForm::Long => BytePositions::From(form.overhead().0),
             PacketForm::Escape => {
                 let mut places = Vec::with_capacity(payload.len() + 2);
                 let mut at = 1; // behind the start byte: the route, then the data
@@ -366,7 +366,7 @@ impl<'a> Body<'a> {
                     at += if packet[at] == ESCAPE { 2 } else { 1 };
                 }
                 places.push(packet.len());
-                Seen::At(places.split_off(1))
+                BytePositions::At(places.split_off(1))
             }
         };
         Body { payload, packet, seen }
@@ -374,20 +374,20 @@ impl<'a> Body<'a> {
 
     /// Bytes outside packets.
     fn plain(text: &'a [u8]) -> Body<'a> {
-        Body { payload: text, packet: text, seen: Seen::From(0) }
+        Body { payload: text, packet: text, seen: BytePositions::From(0) }
     }
 
     /// Bytes that do not stand in the stream.
-    fn unseen(payload: &'a [u8]) -> Body<'a> {
-        Body { payload, packet: &[], seen: Seen::Nowhere }
+    fn decoded(payload: &'a [u8]) -> Body<'a> {
+        Body { payload, packet: &[], seen: BytePositions::Decoded }
     }
 
     /// The place of byte `index` of the data in its packet; that of its end for their number.
     fn at(&self, index: usize) -> usize {
         match &self.seen {
-            Seen::From(start) => start + index,
-            Seen::At(places) => places.get(index).copied().unwrap_or(self.packet.len()),
-            Seen::Nowhere => 0,
+            BytePositions::From(start) => start + index,
+            BytePositions::At(places) => places.get(index).copied().unwrap_or(self.packet.len()),
+            BytePositions::Decoded => 0,
         }
     }
 

@@ -145,13 +145,13 @@ impl<'b, 'w, W: Witness> Reader<'b, 'w, W> {
 
     /// Tells the witness what the last `length` bytes mean.
     #[inline(always)]
-    pub fn tell(&mut self, length: usize, field: &'static str, meaning: fmt::Arguments<'_>) {
+    pub fn report(&mut self, length: usize, field: &'static str, meaning: fmt::Arguments<'_>) {
         self.witness.field(self.at - length..self.at, field, meaning);
     }
 
     /// Tells the witness what `length` bytes from offset `at` on mean.
     #[inline(always)]
-    pub fn tell_at(&mut self, at: usize, length: usize, field: &'static str, meaning: fmt::Arguments<'_>) {
+    pub fn report_at(&mut self, at: usize, length: usize, field: &'static str, meaning: fmt::Arguments<'_>) {
         self.witness.field(at..at + length, field, meaning);
     }
 
@@ -167,7 +167,7 @@ impl<'b, 'w, W: Witness> Reader<'b, 'w, W> {
     /// [`BinaryProblem::Truncated`].
     pub fn u8(&mut self, field: &'static str) -> Result<u8, BinaryError> {
         let value = self.array::<1>(field)?[0];
-        self.tell(1, field, format_args!("{value}"));
+        self.report(1, field, format_args!("{value}"));
         Ok(value)
     }
 
@@ -177,7 +177,7 @@ impl<'b, 'w, W: Witness> Reader<'b, 'w, W> {
     /// [`BinaryProblem::Truncated`].
     pub fn u16(&mut self, field: &'static str) -> Result<u16, BinaryError> {
         let value = u16::from_le_bytes(self.array(field)?);
-        self.tell(2, field, format_args!("{value}"));
+        self.report(2, field, format_args!("{value}"));
         Ok(value)
     }
 
@@ -187,7 +187,7 @@ impl<'b, 'w, W: Witness> Reader<'b, 'w, W> {
     /// [`BinaryProblem::Truncated`].
     pub fn u32(&mut self, field: &'static str) -> Result<u32, BinaryError> {
         let value = u32::from_le_bytes(self.array(field)?);
-        self.tell(4, field, format_args!("{value}"));
+        self.report(4, field, format_args!("{value}"));
         Ok(value)
     }
 
@@ -197,7 +197,7 @@ impl<'b, 'w, W: Witness> Reader<'b, 'w, W> {
     /// [`BinaryProblem::Truncated`].
     pub fn i32(&mut self, field: &'static str) -> Result<i32, BinaryError> {
         let value = i32::from_le_bytes(self.array(field)?);
-        self.tell(4, field, format_args!("{value}"));
+        self.report(4, field, format_args!("{value}"));
         Ok(value)
     }
 
@@ -207,7 +207,7 @@ impl<'b, 'w, W: Witness> Reader<'b, 'w, W> {
     /// [`BinaryProblem::Truncated`].
     pub fn i64(&mut self, field: &'static str) -> Result<i64, BinaryError> {
         let value = i64::from_le_bytes(self.array(field)?);
-        self.tell(8, field, format_args!("{value}"));
+        self.report(8, field, format_args!("{value}"));
         Ok(value)
     }
 
@@ -220,7 +220,7 @@ impl<'b, 'w, W: Witness> Reader<'b, 'w, W> {
         if !value.is_finite() {
             return Err(self.error(8, field, BinaryProblem::NotFinite));
         }
-        self.tell(8, field, format_args!("{value}"));
+        self.report(8, field, format_args!("{value}"));
         Ok(value)
     }
 
@@ -254,7 +254,7 @@ impl<'b, 'w, W: Witness> Reader<'b, 'w, W> {
     /// [`BinaryProblem::Truncated`].
     pub fn color(&mut self, field: &'static str) -> Result<[u8; 3], BinaryError> {
         let color: [u8; 3] = self.array(field)?;
-        self.tell(3, field, format_args!("red {}, green {}, blue {}", color[0], color[1], color[2]));
+        self.report(3, field, format_args!("red {}, green {}, blue {}", color[0], color[1], color[2]));
         Ok(color)
     }
 
@@ -265,7 +265,7 @@ impl<'b, 'w, W: Witness> Reader<'b, 'w, W> {
     pub fn string(&mut self, field: &'static str) -> Result<&'b [u8], BinaryError> {
         let length = u16::from_le_bytes(self.array(field)?).into();
         let bytes = self.take(length, field)?;
-        self.tell(length + 2, field, format_args!("{length} bytes, \"{}\"", bytes.escape_ascii()));
+        self.report(length + 2, field, format_args!("{length} bytes, \"{}\"", bytes.escape_ascii()));
         Ok(bytes)
     }
 
@@ -384,8 +384,8 @@ mod tests {
 
     #[test]
     fn a_witness_hears_of_every_byte_once() {
-        struct Places(Vec<(Range<usize>, String)>);
-        impl Witness for Places {
+        struct RecordedFields(Vec<(Range<usize>, String)>);
+        impl Witness for RecordedFields {
             fn field(&mut self, place: Range<usize>, label: &'static str, meaning: fmt::Arguments<'_>) {
                 self.0.push((place, format!("{label}: {meaning}")));
             }
@@ -394,7 +394,7 @@ mod tests {
         let mut writer = Writer::new(&mut out);
         writer.name(&Name::new("cube").unwrap());
         writer.u8(7);
-        let mut places = Places(Vec::new());
+        let mut places = RecordedFields(Vec::new());
         let mut reader = Reader::new(&out, 0, &mut places);
         assert_eq!(reader.name("name").unwrap().as_str(), "CUBE");
         assert_eq!(reader.u8("class"), Ok(7));

@@ -61,12 +61,12 @@ pub struct PickList {
     /// What kind of data: 1 vectors, 2 curve, 3 characters, 4 labels, 5 polygons.
     pub type_code: i32,
     /// Where it was picked, in coordinate picking.
-    pub place: Option<PickedPlace>,
+    pub place: Option<PickCoordinates>,
 }
 
 /// Where something was picked.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PickedPlace {
+pub struct PickCoordinates {
     /// The picked point, in the coordinates of the data node; z is 0 for 2D data.
     pub point: DVec3,
     /// 2 or 3: components that the data has.
@@ -323,7 +323,7 @@ mod tests {
     #[test]
     fn what_holds_a_number_that_is_not_finite_is_not_finite() {
         let nan = DVec3::new(0.0, f64::NAN, 0.0);
-        let place = Some(PickedPlace { point: DVec3::ZERO, dimension: 3, parameter: Some(f64::INFINITY) });
+        let place = Some(PickCoordinates { point: DVec3::ZERO, dimension: 3, parameter: Some(f64::INFINITY) });
         let pick = PickList { index: 1, identifiers: Vec::new(), node: None, type_code: 1, place };
         assert!(!Value::Pick(Box::new(pick.clone())).is_finite());
         assert!(Value::Pick(Box::new(PickList { place: None, ..pick })).is_finite());

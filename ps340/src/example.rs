@@ -4,7 +4,7 @@ use protocol::command::spelling::nearest;
 
 /// A program for the machine, as text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Example {
+pub struct ExampleProgram {
     /// Its name.
     pub name: &'static str,
     /// Its commands.
@@ -12,14 +12,14 @@ pub struct Example {
 }
 
 /// Every program.
-pub const EXAMPLES: &[Example] = &[
-    Example { name: "dials", text: include_str!("../programs/dials.ps300") },
-    Example { name: "pick", text: include_str!("../programs/pick.ps300") },
-    Example { name: "clock", text: include_str!("../programs/clock.ps300") },
-    Example { name: "helix", text: include_str!("../programs/helix.ps300") },
+pub const EXAMPLES: &[ExampleProgram] = &[
+    ExampleProgram { name: "dials", text: include_str!("../programs/dials.ps300") },
+    ExampleProgram { name: "pick", text: include_str!("../programs/pick.ps300") },
+    ExampleProgram { name: "clock", text: include_str!("../programs/clock.ps300") },
+    ExampleProgram { name: "helix", text: include_str!("../programs/helix.ps300") },
 ];
 
-impl Example {
+impl ExampleProgram {
     /// What it shows: its first comment.
     pub fn summary(&self) -> &'static str {
         let comment = self.text.split_once('{').and_then(|(_, rest)| rest.split_once('}'));
@@ -31,7 +31,7 @@ impl Example {
 ///
 /// # Errors
 /// A sentence with the name that was meant, or all names.
-pub fn example(name: &str) -> Result<&'static Example, String> {
+pub fn example(name: &str) -> Result<&'static ExampleProgram, String> {
     if let Some(found) = EXAMPLES.iter().find(|e| e.name.eq_ignore_ascii_case(name)) {
         return Ok(found);
     }

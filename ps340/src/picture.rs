@@ -1,6 +1,6 @@
 //! A picture of either screen: linear red, green and blue, as PNG or OpenEXR.
 
-use files::{Beneath, Destination, WriteError};
+use files::{Sandbox, Destination, WriteError};
 use protocol::raster::srgb_from_linear;
 use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
@@ -136,7 +136,7 @@ impl Picture {
     ///
     /// # Errors
     /// Another ending, or that no file can be written there; each names the path.
-    pub fn destination_below(folder: &Beneath, path: &Path) -> Result<Destination, PictureError> {
+    pub fn destination_below(folder: &Sandbox, path: &Path) -> Result<Destination, PictureError> {
         Format::of(path)?;
         Ok(folder.destination(path)?)
     }

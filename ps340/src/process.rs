@@ -6,10 +6,10 @@ use crate::{
     cli,
     line::LineAddress,
     machine::{KeyboardMode, PlainText, Settings},
-    shell::{Clock, End, INTERRUPTED, Operator, Options, run},
+    shell::{TimeSource, ExitReason, INTERRUPTED, Operator, Options, run},
 };
 use clap::Parser;
-use protocol::address::Place;
+use protocol::address::Endpoint;
 use std::{
     io::{IsTerminal, Write},
     path::PathBuf,
@@ -59,7 +59,7 @@ struct Arguments {
     public: bool,
     /// Where time comes from.
     #[arg(long, value_enum, default_value = "real")]
-    clock: Clock,
+    clock: TimeSource,
     /// Who gets text that arrives outside packets: the command interpreter, or the terminal emulator.
     #[arg(long, value_enum, default_value = "commands")]
     plain_text: PlainText,
@@ -119,7 +119,7 @@ pub fn main() -> ExitCode {
         return ExitCode::from(1);
     }
     let listen = arguments.listen;
-    let stdio_lines = listen.iter().filter(|line| line.place == Place::Stdio).count();
+    let stdio_lines = listen.iter().filter(|line| line.place == Endpoint::Stdio).count();
     let operator = match arguments.operator.as_deref() {
         None if std::io::stdin().is_terminal() && stdio_lines == 0 => Operator::Stdio,
         None | Some("none") => Operator::None,
@@ -185,8 +185,8 @@ pub fn main() -> ExitCode {
     #[cfg(not(feature = "window"))]
     let ended = run(&options, None, say).map_err(|error| error.to_string());
     match ended {
-        Ok(End::Quit) => ExitCode::SUCCESS,
-        Ok(End::Interrupted) => ExitCode::from(INTERRUPTED as u8),
+        Ok(ExitReason::Quit) => ExitCode::SUCCESS,
+        Ok(ExitReason::Interrupted) => ExitCode::from(INTERRUPTED as u8),
         Err(error) => {
             eprintln!("ps340: {error}");
             ExitCode::from(1)

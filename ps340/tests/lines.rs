@@ -211,7 +211,7 @@ fn a_capture_is_what_passed_and_plays_again() {
                 Event::ToHost(bytes) => to.extend(bytes),
                 Event::Open(peer) => assert!(peer.starts_with("pty:") || peer.starts_with("file:"), "{peer}"),
                 Event::Close => closed += 1,
-                Event::Order(_) => {}
+                Event::OperatorCommand(_) => {}
             }
         }
         (String::from_utf8(from).unwrap(), String::from_utf8(to).unwrap(), closed)
@@ -264,7 +264,7 @@ fn a_plain_file_is_sent_as_a_host_would() {
 
 #[test]
 fn the_parallel_interface_listens() {
-    use protocol::parallel::{Frame, FrameReader, write_block, write_word};
+    use protocol::parallel::{ParallelFrame, ParallelFrameReader, write_block, write_word};
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str| folder.path().join(name).display().to_string();
     let (first, second) = (file("first"), file("second"));
@@ -273,7 +273,7 @@ fn the_parallel_interface_listens() {
     let mut stream = TcpStream::connect(address).unwrap();
     stream.set_nodelay(true).unwrap();
     stream.set_read_timeout(Some(PATIENCE)).unwrap();
-    let mut reader = FrameReader::default();
+    let mut reader = ParallelFrameReader::default();
     let mut next = |stream: &mut TcpStream| loop {
         if let Some(frame) = reader.next() {
             return frame;
@@ -283,13 +283,13 @@ fn the_parallel_interface_listens() {
         assert!(count > 0);
         reader.push(&buffer[..count]);
     };
-    let mut words = |stream: &mut TcpStream, said: &[u16], answer: &[Frame]| {
+    let mut words = |stream: &mut TcpStream, said: &[u16], answer: &[ParallelFrame]| {
         let mut bytes = Vec::new();
         said.iter().for_each(|word| write_word(*word, &mut bytes));
         stream.write_all(&bytes).unwrap();
         answer.iter().for_each(|frame| assert_eq!(next(stream), *frame));
     };
-    let word = |word: u16| Frame::Word(word);
+    let word = |word: u16| ParallelFrame::Word(word);
     words(&mut stream, &[], &[word(0x3000)]);
     words(&mut stream, &[0xe000, 0xc000], &[word(0xe000), word(0xc000)]);
     let text = format!("{ECHO} SEND 'by words' TO <1>E;");
@@ -299,7 +299,7 @@ fn the_parallel_interface_listens() {
     stream.write_all(&block).unwrap();
     words(&mut stream, &[], &[word(0xca00)]);
     words(&mut stream, &[0x5000], &[word(0x5000)]);
-    let message = Frame::Block(b"by words".into());
+    let message = ParallelFrame::Block(b"by words".into());
     words(&mut stream, &[80, 0], &[word(0x5100), word(8), message, word(0x5a00)]);
     // The words play again.
     drop(stream);

@@ -2,7 +2,7 @@
 //!
 //! To write them anew: `PROTOCOL_DOCUMENT=write cargo test -p ps340 --test parallel`.
 
-use protocol::parallel::{AddressList, Block, Code, Listing, Side, write_block, write_reset, write_word};
+use protocol::parallel::{AddressList, Block, Code, ParallelListing, Side, write_block, write_reset, write_word};
 use ps340::{
     line::LineId,
     machine::{Input, Machine, Settings},
@@ -18,7 +18,7 @@ const ADDRESS: u32 = 0x0001_0000;
 /// A host and a machine, and what they have said.
 struct Dialogue {
     machine: Machine,
-    listing: Listing,
+    listing: ParallelListing,
     text: String,
 }
 
@@ -26,7 +26,7 @@ impl Dialogue {
     /// A machine to which another host has sent `commands`, with a host attached unless `fresh`.
     fn new(commands: &str, fresh: bool) -> Dialogue {
         let machine = Machine::new(Settings::default());
-        let mut dialogue = Dialogue { machine, listing: Listing::default(), text: String::new() };
+        let mut dialogue = Dialogue { machine, listing: ParallelListing::default(), text: String::new() };
         dialogue.machine.step([Input::Attach(OTHER), Input::Bytes(OTHER, commands.into())], 0);
         dialogue.inputs(Input::AttachParallel(HOST));
         if !fresh {

@@ -16,7 +16,7 @@ use std::{sync::Arc, time::Instant};
 /// Runs of each measurement.
 const RUNS: usize = 9;
 /// Seconds after which no further run begins.
-const PATIENCE: u64 = 3;
+const TIME_LIMIT: u64 = 3;
 
 /// Strokes of `pixels` pixels in a picture of `size`, at places and angles that fill the screen, in several colours.
 fn strokes(count: usize, pixels: f32, size: u32) -> Vec<Stroke> {
@@ -40,7 +40,7 @@ fn best(mut work: impl FnMut()) -> f64 {
     let begin = Instant::now();
     let mut shortest = f64::INFINITY;
     for run in 0..RUNS {
-        if run > 1 && begin.elapsed().as_secs() >= PATIENCE {
+        if run > 1 && begin.elapsed().as_secs() >= TIME_LIMIT {
             break;
         }
         let start = Instant::now();

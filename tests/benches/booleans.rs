@@ -10,7 +10,7 @@ use host::solid::{Expression, Solid};
 use std::time::Instant;
 
 /// Seconds after which no further run begins.
-const PATIENCE: f64 = 4.0;
+const TIME_LIMIT: f64 = 4.0;
 /// Runs of each measurement at least, within that time, and seconds that they take at least together.
 const RUNS: usize = 7;
 const BUSY: f64 = 0.5;
@@ -140,7 +140,7 @@ fn best(mut work: impl FnMut()) -> f64 {
     let mut shortest = f64::INFINITY;
     for run in 0.. {
         let elapsed = begin.elapsed().as_secs_f64();
-        if run > 0 && elapsed > PATIENCE || run >= RUNS && elapsed > BUSY {
+        if run > 0 && elapsed > TIME_LIMIT || run >= RUNS && elapsed > BUSY {
             break;
         }
         let start = Instant::now();

@@ -50,7 +50,7 @@ fn main() {
     (0..lists).for_each(|number| host.send(list(number)));
     wait_for(&mut host);
     println!("{millions} million vectors arrive in {:.1} s", start.elapsed().as_secs_f64());
-    let counters = machine.order("counters");
+    let counters = machine.operator_command("counters");
     assert!(counters.contains(&format!("vectors={} ", lists * LIST)), "{counters}");
     println!("memory: {:.0} MB", machine.resident_megabytes());
 
@@ -66,7 +66,7 @@ fn main() {
         let times: Vec<Duration> = (orders.iter().cycle().take(ORDERS))
             .map(|order| {
                 let start = Instant::now();
-                machine.order(order);
+                machine.operator_command(order);
                 start.elapsed()
             })
             .collect();
@@ -83,7 +83,7 @@ fn main() {
     );
     wait_for(&mut host);
     let start = Instant::now();
-    let reply = machine.order(&format!("picture vector {}", picture.display()));
+    let reply = machine.operator_command(&format!("picture vector {}", picture.display()));
     let seconds = start.elapsed().as_secs_f64();
     let pixels = image::open(&picture).expect("a picture").into_rgb8();
     let bright = pixels.pixels().filter(|pixel| pixel[1] > 200).count();

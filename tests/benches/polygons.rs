@@ -130,11 +130,11 @@ fn comb(corners: usize) -> Polygon {
 struct Rival {
     name: &'static str,
     /// Triangles by index, or as points where the rival numbers them anew.
-    run: fn(&Polygon) -> Found,
+    run: fn(&Polygon) -> TimedTriangulation,
     is_ours: bool,
 }
 
-struct Found {
+struct TimedTriangulation {
     triangles: Vec<u32>,
     points: Option<Vec<[f64; 2]>>,
 }
@@ -147,33 +147,33 @@ const RIVALS: [Rival; 5] = [
     Rival { name: "..., unchecked", run: i_triangle_unchecked, is_ours: false },
 ];
 
-fn ours(polygon: &Polygon) -> Found {
+fn ours(polygon: &Polygon) -> TimedTriangulation {
     in_shape(polygon, TriangulationKind::Any)
 }
 
-fn ours_delaunay(polygon: &Polygon) -> Found {
+fn ours_delaunay(polygon: &Polygon) -> TimedTriangulation {
     in_shape(polygon, TriangulationKind::Delaunay)
 }
 
-fn in_shape(polygon: &Polygon, shape: TriangulationKind) -> Found {
+fn in_shape(polygon: &Polygon, shape: TriangulationKind) -> TimedTriangulation {
     let result = triangulate(&polygon.contours, shape).expect("the polygon is sound");
-    Found { triangles: result.triangles.into_flattened(), points: None }
+    TimedTriangulation { triangles: result.triangles.into_flattened(), points: None }
 }
 
-fn earcut(polygon: &Polygon) -> Found {
+fn earcut(polygon: &Polygon) -> TimedTriangulation {
     let mut triangles = Vec::new();
     ::earcut::Earcut::new().earcut_slice(&polygon.flat, &polygon.holes, &mut triangles);
-    Found { triangles, points: None }
+    TimedTriangulation { triangles, points: None }
 }
 
-fn i_triangle(polygon: &Polygon) -> Found {
+fn i_triangle(polygon: &Polygon) -> TimedTriangulation {
     let found = polygon.pairs.triangulate_as::<i64>().to_triangulation::<u32>();
-    Found { triangles: found.indices, points: Some(found.points) }
+    TimedTriangulation { triangles: found.indices, points: Some(found.points) }
 }
 
-fn i_triangle_unchecked(polygon: &Polygon) -> Found {
+fn i_triangle_unchecked(polygon: &Polygon) -> TimedTriangulation {
     let found = polygon.pairs.unchecked_triangulate_as::<i64>().to_triangulation::<u32>();
-    Found { triangles: found.indices, points: Some(found.points) }
+    TimedTriangulation { triangles: found.indices, points: Some(found.points) }
 }
 
 /// The best time of a rival; `None` if its triangles are wrong.
@@ -196,7 +196,7 @@ fn measure(rival: &Rival, polygon: &Polygon) -> Option<f64> {
     Some(best)
 }
 
-fn fault(polygon: &Polygon, rival: &Rival, found: &Found) -> Option<String> {
+fn fault(polygon: &Polygon, rival: &Rival, found: &TimedTriangulation) -> Option<String> {
     let points = found.points.as_deref().unwrap_or(&polygon.flat);
     let (triangles, _) = found.triangles.as_chunks::<3>();
     if triangles.len() != polygon.expected() {

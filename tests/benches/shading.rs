@@ -7,11 +7,11 @@ use protocol::command::{Polygon, PolygonVertex};
 use ps340::{
     functions::devices::shading::ShadingEnvironment,
     port::Rendering,
-    rendering::{Facets, Image, Outcome, Segment, render},
+    rendering::{Facets, Image, RenderingResult, Segment, render},
     structure::Operation,
 };
 use std::time::Instant;
-use tests::facets::{facets, matrix, place, polygons, view, z_buffer};
+use tests::facets::{facets, matrix, to_screen, polygons, view, z_buffer};
 
 /// Lines and columns of the image.
 const SIZE: usize = 480;
@@ -30,14 +30,14 @@ fn best<T>(mut work: impl FnMut() -> T) -> (f64, T) {
 fn image(kind: Rendering, facets: Facets, quality: u32) -> Image {
     let environment = ShadingEnvironment { quality, depth_cue: 0.0, ..ShadingEnvironment::default() };
     match render(kind, facets, &environment) {
-        Ok(Outcome::Image(image)) => image,
+        Ok(RenderingResult::Image(image)) => image,
         other => panic!("{other:?}"),
     }
 }
 
 fn hidden_line(facets: Facets) -> Vec<Segment> {
     match render(Rendering::HiddenLine, facets, &ShadingEnvironment::default()) {
-        Ok(Outcome::Lines(lines)) => lines,
+        Ok(RenderingResult::Lines(lines)) => lines,
         other => panic!("{other:?}"),
     }
 }
@@ -56,7 +56,7 @@ fn large(count: usize) -> Vec<Polygon> {
 fn shaded(name: &str, polygons: &[Polygon], above: &[Operation]) {
     let matrix = matrix(above);
     let corner = |p: &PolygonVertex| {
-        let place = place(&matrix, DVec3::from(p.position.map(f64::from)), SIZE);
+        let place = to_screen(&matrix, DVec3::from(p.position.map(f64::from)), SIZE);
         // Without perspective the depth itself says what is near.
         if above.is_empty() { place.with_z(2.0 - f64::from(p.position[2])) } else { place }
     };
@@ -110,7 +110,7 @@ fn main() {
 /// Whether lines are there, and none has only clearly nearer polygons around its middle.
 fn check(polygons: &[Polygon], lines: &[Segment], above: &[Operation]) {
     let matrix = matrix(above);
-    let on_screen = |point: DVec3| place(&matrix, point, SIZE);
+    let on_screen = |point: DVec3| to_screen(&matrix, point, SIZE);
     let corner = |p: &Polygon, k: usize| on_screen(DVec3::from(p.vertices[k].position.map(f64::from)));
     let triangles: Vec<[DVec3; 3]> = polygons.iter().map(|p| [0, 1, 2].map(|k| corner(p, k))).collect();
     let nearest = z_buffer(&triangles, SIZE);

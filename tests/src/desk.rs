@@ -2,7 +2,7 @@
 //!
 //! Needs Xvfb, xdotool and a software Vulkan or OpenGL (`.ci/run` installs them).
 
-use crate::PATIENCE;
+use crate::TIMEOUT;
 use std::{
     collections::HashMap,
     io::{BufRead, BufReader, Write},
@@ -82,7 +82,7 @@ impl Display {
 
 /// The machine in its window, with an operator and, if a test wants one, a host.
 #[derive(Debug)]
-pub struct Desk {
+pub struct WindowedMachine {
     display: Display,
     places: Arc<Mutex<HashMap<String, [i32; 2]>>>,
     operator: BufReader<TcpStream>,
@@ -99,12 +99,12 @@ const DRAG_STEPS: i32 = 12;
 /// What opens the operator's line.
 const TOKEN: &str = "window";
 
-impl Desk {
+impl WindowedMachine {
     /// Opens the window of a program; none where Xvfb or xdotool is not installed and `CI` is not set.
     ///
     /// # Panics
     /// If there is no window within [`PATIENCE`], or a tool is missing where `CI` is set.
-    pub fn open(program: &str) -> Option<Desk> {
+    pub fn open(program: &str) -> Option<WindowedMachine> {
         let display = Display::open()?;
         let mut machine = display.command(program);
         machine.args(["--window", "--listen", "tcp:127.0.0.1:0", "--operator", "tcp:127.0.0.1:0", "--files", "/"]);
@@ -116,7 +116,7 @@ impl Desk {
         let noted = places.clone();
         std::thread::spawn(move || {
             for line in BufReader::new(log).lines().map_while(Result::ok) {
-                match place(&line) {
+                match parse_position(&line) {
                     Some((device, at)) => drop(noted.lock().unwrap().insert(device, at)),
                     None => eprintln!("{line}"),
                 }
@@ -125,18 +125,18 @@ impl Desk {
         let [line, operator] = addresses(out);
         let connect = |address: &str| {
             let stream = TcpStream::connect(address).expect("it listens");
-            stream.set_read_timeout(Some(PATIENCE)).expect("a socket has a timeout");
+            stream.set_read_timeout(Some(TIMEOUT)).expect("a socket has a timeout");
             stream
         };
         let operator = BufReader::new(connect(&operator));
-        let mut desk = Desk { host: None, line, display, places, operator, window: String::new(), _machine: machine };
-        assert_eq!(desk.order(&format!("token {TOKEN}")), "ok");
-        desk.place("vector screen");
+        let mut desk = WindowedMachine { host: None, line, display, places, operator, window: String::new(), _machine: machine };
+        assert_eq!(desk.operator_command(&format!("token {TOKEN}")), "ok");
+        desk.position_of("vector screen");
         // Without a window manager nobody gives the window the keyboard; it is there a moment after its first picture.
         let search = ["search", "--onlyvisible", "--limit", "1", "--name", "^PS 340$"];
         let begin = Instant::now();
         while desk.window.is_empty() {
-            assert!(begin.elapsed() < PATIENCE, "the window is not there");
+            assert!(begin.elapsed() < TIMEOUT, "the window is not there");
             std::thread::sleep(Duration::from_millis(100));
             let found = desk.display.command("xdotool").args(search).output().expect("xdotool runs");
             desk.window = String::from_utf8_lossy(&found.stdout).trim().to_owned();
@@ -157,7 +157,7 @@ impl Desk {
 
     /// Drags from a device by so many pixels to the right and down, in steps.
     pub fn drag(&self, device: &str, [right, down]: [i32; 2]) {
-        let [x, y] = self.place(device);
+        let [x, y] = self.position_of(device);
         self.act(&format!("mousemove {x} {y}"));
         self.act("mousedown 1");
         for step in 1..=DRAG_STEPS {
@@ -176,7 +176,7 @@ impl Desk {
     ///
     /// # Panics
     /// If that does not come.
-    pub fn place(&self, device: &str) -> [i32; 2] {
+    pub fn position_of(&self, device: &str) -> [i32; 2] {
         let begin = Instant::now();
         let mut before = None;
         loop {
@@ -185,20 +185,20 @@ impl Desk {
                 Some(at) if now == before => return at,
                 _ => before = now,
             }
-            assert!(begin.elapsed() < PATIENCE, "the {device} is not shown");
+            assert!(begin.elapsed() < TIMEOUT, "the {device} is not shown");
             std::thread::sleep(Duration::from_millis(500));
         }
     }
 
     /// Clicks a device.
     pub fn click(&self, device: &str) {
-        let [x, y] = self.place(device);
+        let [x, y] = self.position_of(device);
         self.display.act(&format!("mousemove {x} {y}"));
         self.display.act("click 1");
     }
 
     /// Gives an order to the operator, and returns the reply.
-    pub fn order(&mut self, order: &str) -> String {
+    pub fn operator_command(&mut self, order: &str) -> String {
         writeln!(self.operator.get_mut(), "{order}").expect("the operator's line is open");
         let mut reply = String::new();
         self.operator.read_line(&mut reply).expect("a reply comes");
@@ -206,7 +206,7 @@ impl Desk {
     }
 
     /// Tells the machine something as a host does.
-    pub fn tell(&mut self, commands: &str) {
+    pub fn send(&mut self, commands: &str) {
         let line = &self.line;
         let host = self.host.get_or_insert_with(|| TcpStream::connect(line).expect("the machine listens"));
         host.write_all(commands.as_bytes()).expect("the host's line is open");
@@ -223,17 +223,17 @@ impl Desk {
     /// If it does not come to that.
     pub fn expect(&mut self, order: &str, text: &str) {
         let begin = Instant::now();
-        let mut reply = self.order(order);
+        let mut reply = self.operator_command(order);
         while !reply.contains(text) {
-            assert!(begin.elapsed() < PATIENCE, "'{order}' gives '{reply}' without '{text}'");
+            assert!(begin.elapsed() < TIMEOUT, "'{order}' gives '{reply}' without '{text}'");
             std::thread::sleep(Duration::from_millis(50));
-            reply = self.order(order);
+            reply = self.operator_command(order);
         }
     }
 }
 
 /// The device and its place that a line of the log tells.
-fn place(line: &str) -> Option<(String, [i32; 2])> {
+fn parse_position(line: &str) -> Option<(String, [i32; 2])> {
     let (device, at) = line.trim().strip_prefix("DEBUG ")?.split_once(" at ")?;
     let (x, y) = at.split_once(' ')?;
     Some((device.to_owned(), [x.parse().ok()?, y.parse().ok()?]))
@@ -247,7 +247,7 @@ fn addresses(out: ChildStdout) -> [String; 2] {
     });
     let [mut line, mut operator] = [String::new(), String::new()];
     while line.is_empty() || operator.is_empty() {
-        let said = lines.recv_timeout(PATIENCE).expect("the machine tells its addresses");
+        let said = lines.recv_timeout(TIMEOUT).expect("the machine tells its addresses");
         if let Some(address) = said.strip_prefix("ready line tcp:") {
             line = address.to_owned();
         } else if let Some(address) = said.strip_prefix("ready operator tcp:") {

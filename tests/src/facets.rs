@@ -62,7 +62,7 @@ pub fn matrix(above: &[Operation]) -> DMat4 {
 }
 
 /// A point on a square screen of so many pixels, and 1/w.
-pub fn place(matrix: &DMat4, point: DVec3, size: usize) -> DVec3 {
+pub fn to_screen(matrix: &DMat4, point: DVec3, size: usize) -> DVec3 {
     let clip = *matrix * point.extend(1.0);
     let half = size as f64 / 2.0;
     DVec3::new((clip.x / clip.w + 1.0) * half, (clip.y / clip.w + 1.0) * half, 1.0 / clip.w)

@@ -182,7 +182,7 @@ impl Uses {
                 paths.filter_map(|path| Some(((module.clone(), path.last()?.clone()), path))).collect::<Vec<_>>()
             })
             .collect();
-        let house = House { texts: &texts, handed_on };
+        let house = ModuleGraph { texts: &texts, handed_on };
         Uses { edges: texts.keys().map(|module| (module.clone(), house.used_by(module))).collect() }
     }
 
@@ -215,13 +215,13 @@ impl Uses {
 }
 
 /// The modules of a crate.
-struct House<'a> {
+struct ModuleGraph<'a> {
     texts: &'a BTreeMap<Module, String>,
     /// For a module and a name that it makes public by `use`, the path.
     handed_on: BTreeMap<(Module, String), Vec<String>>,
 }
 
-impl House<'_> {
+impl ModuleGraph<'_> {
     /// The modules whose items a module names.
     fn used_by(&self, module: &Module) -> BTreeSet<Module> {
         let text = &self.texts[module];

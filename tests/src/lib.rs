@@ -26,7 +26,7 @@ use std::{
 };
 
 /// How long any single answer may take; generous, for machines with other work.
-pub const PATIENCE: Duration = Duration::from_secs(60);
+pub const TIMEOUT: Duration = Duration::from_secs(60);
 
 /// A `ps340` process with its operator line on its standard streams. Killed when dropped.
 #[derive(Debug)]
@@ -69,7 +69,7 @@ impl Machine {
         });
         let mut machine = Machine { child, orders, errors, replies, line: String::new(), more_lines: Vec::new() };
         loop {
-            let line = machine.replies.recv_timeout(PATIENCE).expect("the machine gets ready");
+            let line = machine.replies.recv_timeout(TIMEOUT).expect("the machine gets ready");
             match line.strip_prefix("ready line ") {
                 Some(address) => match address.strip_prefix("tcp:") {
                     Some(address) => machine.line = address.to_string(),
@@ -90,11 +90,11 @@ impl Machine {
     /// Gives an order and returns the whole reply line.
     pub fn reply(&mut self, order: &str) -> String {
         self.give(order);
-        self.replies.recv_timeout(PATIENCE).unwrap_or_else(|e| panic!("no reply to '{order}': {e}"))
+        self.replies.recv_timeout(TIMEOUT).unwrap_or_else(|e| panic!("no reply to '{order}': {e}"))
     }
 
     /// Gives an order that has to succeed; returns the reply without its `ok`.
-    pub fn order(&mut self, order: &str) -> String {
+    pub fn operator_command(&mut self, order: &str) -> String {
         let reply = self.reply(order);
         let text = reply.strip_prefix("ok").unwrap_or_else(|| panic!("'{order}' was answered '{reply}'"));
         text.trim_start().to_string()
@@ -169,7 +169,7 @@ impl Host {
     /// Attaches to `HOST:PORT`.
     pub fn attach(line: &str) -> Host {
         let stream = TcpStream::connect(line).expect("the machine listens");
-        stream.set_read_timeout(Some(PATIENCE)).expect("a time limit can be set");
+        stream.set_read_timeout(Some(TIMEOUT)).expect("a time limit can be set");
         let reader = BufReader::new(stream.try_clone().expect("a second handle"));
         Host { stream, reader }
     }
@@ -265,12 +265,12 @@ fn read_all(mut from: impl Read) -> String {
 
 /// Waits for the end of a process; its exit code, none if a signal ended it.
 pub fn wait(child: &mut Child) -> Option<i32> {
-    let end = Instant::now() + PATIENCE;
+    let end = Instant::now() + TIMEOUT;
     while Instant::now() < end {
         if let Some(status) = child.try_wait().expect("the process can be asked") {
             return status.code();
         }
         std::thread::sleep(Duration::from_millis(10));
     }
-    panic!("the process did not end within {PATIENCE:?}");
+    panic!("the process did not end within {TIMEOUT:?}");
 }

@@ -10,7 +10,7 @@ use std::{
     process::{Child, Command, Stdio},
     time::{Duration, Instant},
 };
-use tests::{Ended, Host, PATIENCE, run};
+use tests::{Ended, Host, TIMEOUT, run};
 
 const PS340: &str = env!("CARGO_BIN_EXE_ps340-under-test");
 /// What the victim keeps.
@@ -46,7 +46,7 @@ impl Home {
     }
 
     fn ps340(&self, arguments: &[&str]) -> Ended {
-        run(PS340, arguments, &[], &self.work(), PATIENCE)
+        run(PS340, arguments, &[], &self.work(), TIMEOUT)
     }
 }
 
@@ -97,7 +97,7 @@ impl Drop for Machine {
 /// Sends a text, and returns what comes until the other side closes.
 fn exchange(address: &str, text: &str) -> String {
     let mut stream = TcpStream::connect(address).expect("it listens");
-    stream.set_read_timeout(Some(PATIENCE)).expect("a time limit");
+    stream.set_read_timeout(Some(TIMEOUT)).expect("a time limit");
     // The other side may have closed before all is sent.
     let _ = stream.write_all(text.as_bytes());
     let mut said = Vec::new();
@@ -227,7 +227,7 @@ fn capture(document: &Path) -> String {
     ];
     let mut text = format!("{HEADER}\n");
     for (micros, order) in (0..).zip(orders) {
-        Record { micros, line: 0, event: Event::Order(order) }.write(&mut text);
+        Record { micros, line: 0, event: Event::OperatorCommand(order) }.write(&mut text);
     }
     text
 }

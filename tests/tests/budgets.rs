@@ -8,7 +8,7 @@ use std::io::Read;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
-use tests::PATIENCE;
+use tests::TIMEOUT;
 
 /// The program; the variable PERIS_PROGRAM names another, such as an optimised one whose times are to be seen.
 const PERIS: &str = env!("CARGO_BIN_EXE_peris-under-test");
@@ -45,7 +45,7 @@ fn run(folder: &Path, arguments: &[String], memory: &str) -> Ended {
         if let Some(status) = child.try_wait().expect("it runs") {
             break status.code();
         }
-        if begin.elapsed() > PATIENCE {
+        if begin.elapsed() > TIMEOUT {
             let _ = child.kill();
             break None;
         }

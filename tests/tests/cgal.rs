@@ -4,7 +4,7 @@
 
 use std::fmt::Write;
 use std::process::Command;
-use tests::corpus::{CLASSES, Case, evaluated};
+use tests::corpus::{CLASSES, CorpusCase, evaluated};
 
 /// Cases of each class.
 const CASES: u32 = 8;
@@ -36,7 +36,7 @@ fn results_do_not_cross_themselves_as_cgal_sees_it() {
     let mut names = Vec::new();
     for class in CLASSES {
         for number in 0..CASES {
-            let Case::Tree { solids, expression, .. } = class.case(number) else { continue };
+            let CorpusCase::Tree { solids, expression, .. } = class.case(number) else { continue };
             let solids: Vec<_> =
                 solids.into_iter().map(|mesh| host::solid::Solid::new(mesh).expect("a solid")).collect();
             let Ok(mesh) = evaluated(&solids.iter().collect::<Vec<_>>(), &expression) else { continue };

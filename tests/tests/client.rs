@@ -51,12 +51,12 @@ fn locate(clock: &str, seed: u64, acts: usize) {
             }
             1 => {
                 place = [random.random_range(-8..=8), random.random_range(-8..=8)].map(|at| f64::from(at) / 8.0);
-                machine.order(&format!("puck move {} {}", place[0], place[1]));
+                machine.operator_command(&format!("puck move {} {}", place[0], place[1]));
             }
             _ => {
                 let code = next_code(down, &mut random);
                 let is_new = code != std::mem::replace(&mut down, code);
-                machine.order(&if code == 0 { "puck release".into() } else { format!("puck press {code}") });
+                machine.operator_command(&if code == 0 { "puck release".into() } else { format!("puck press {code}") });
                 if asks && is_new && code.is_power_of_two() {
                     let expected = format!("{code}V {},{}", place[0], place[1]);
                     assert_eq!(host.message(), expected, "act {act} of seed {seed}, {clock} clock");
@@ -85,13 +85,13 @@ fn a_typed_return_is_one_line_end() {
     let mut host = machine.attach();
     host.send("CONNECT KBHANDLER<4>:<1>HOST_MESSAGE;");
     meet(&mut host);
-    machine.order("type A\\r\\d");
+    machine.operator_command("type A\\r\\d");
     assert_eq!(host.bytes(8), b"A\r\n\r\n\x7f\r\n");
 }
 
 /// A number of the machine's counters.
 fn counter(machine: &mut Machine, name: &str) -> usize {
-    let said = machine.order("counters");
+    let said = machine.operator_command("counters");
     let value = said.split(' ').find_map(|word| word.strip_prefix(name)?.strip_prefix('='));
     value.and_then(|value| value.parse().ok()).unwrap_or_else(|| panic!("no {name} in {said}"))
 }
@@ -121,7 +121,7 @@ fn a_hundred_frames_cost_what_one_costs() {
     let (mut most, mut refresh) = (0, None);
     for frame in 0..100 {
         draw(&mut host, frame);
-        machine.order("frames 2");
+        machine.operator_command("frames 2");
         assert_eq!(counter(&mut machine, "strokes"), 35, "in frame {frame}");
         let micros = counter(&mut machine, "refresh_micros");
         assert_eq!(micros, *refresh.get_or_insert(micros), "in frame {frame}");

@@ -14,12 +14,12 @@ use std::{cell::RefCell, collections::BTreeSet, fs, path::Path, time::Duration};
 use tests::{
     Machine,
     conformance::{
-        self, Case, Operator, Report, Target, Way,
+        self, Case, Operator, Report, Target, Transport,
         case::Step,
-        line::Place,
+        line::Endpoint,
         mutation::{self, Change, Mutant, Mutations},
         person,
-        person::OrderFault,
+        person::OperatorFault,
         report::failure_text,
         walk,
     },
@@ -31,7 +31,7 @@ const PS340: &str = env!("CARGO_BIN_EXE_ps340-under-test");
 struct Here<'m>(&'m RefCell<Machine>);
 
 impl Operator for Here<'_> {
-    fn give(&mut self, order: &str) -> Result<String, OrderFault> {
+    fn give(&mut self, order: &str) -> Result<String, OperatorFault> {
         person::understood(&self.0.borrow_mut().reply(order))
     }
 
@@ -72,14 +72,14 @@ fn machine() -> Machine {
     Machine::start(PS340, &["--clock", "virtual"])
 }
 
-fn play<'c>(machine: Machine, way: Way, cut: Option<u64>, cases: impl IntoIterator<Item = &'c Case>) -> Report {
+fn play<'c>(machine: Machine, way: Transport, cut: Option<u64>, cases: impl IntoIterator<Item = &'c Case>) -> Report {
     play_at(format!("tcp:{}", machine.line).parse().unwrap(), machine, way, cut, cases)
 }
 
 fn play_at<'c>(
-    place: Place,
+    place: Endpoint,
     machine: Machine,
-    way: Way,
+    way: Transport,
     cut: Option<u64>,
     cases: impl IntoIterator<Item = &'c Case>,
 ) -> Report {
@@ -87,7 +87,7 @@ fn play_at<'c>(
     conformance::run(&target(place, way, cut), Some(&mut Here(&machine)), cases, |_| {}).unwrap()
 }
 
-fn target(place: Place, way: Way, cut: Option<u64>) -> Target {
+fn target(place: Endpoint, way: Transport, cut: Option<u64>) -> Target {
     Target { place, way, cut, patience: Duration::from_secs(5), any_fault: false, reboots: false }
 }
 
@@ -100,7 +100,7 @@ fn assert_passed(report: &Report, what: &str) {
 
 #[test]
 fn every_case_passes_as_text() {
-    let report = play(machine(), Way::default(), None, &all());
+    let report = play(machine(), Transport::default(), None, &all());
     assert_passed(&report, "text");
     assert!(report.tally().passed > 700);
 }
@@ -109,8 +109,8 @@ fn every_case_passes_as_text() {
 fn cases_pass_in_every_way_and_cut_at_random_places() {
     let long = is_long();
     let cases = all();
-    let ways: Vec<(Way, Option<u64>)> =
-        Way::all().into_iter().flat_map(|way| [(way, None), (way, Some(340))]).collect();
+    let ways: Vec<(Transport, Option<u64>)> =
+        Transport::all().into_iter().flat_map(|way| [(way, None), (way, Some(340))]).collect();
     let machines = ways.iter().enumerate().map(|(seed, (way, cut))| {
         // Each way has its own share of the cases; together they have all of them.
         let share = cases.iter().enumerate().filter(|(n, _)| long || n % ways.len() == seed).map(|(_, case)| case);
@@ -128,7 +128,7 @@ fn a_unix_socket_carries_the_cases_too() {
     let machine = Machine::start(PS340, &["--clock", "virtual", "--listen", &address]);
     let cases = all();
     let some = cases.iter().step_by(if is_long() { 1 } else { 7 });
-    let report = play_at(address.parse().unwrap(), machine, Way::default(), Some(7), some);
+    let report = play_at(address.parse().unwrap(), machine, Transport::default(), Some(7), some);
     assert_passed(&report, "Unix socket");
 }
 
@@ -138,7 +138,7 @@ fn a_pseudo_terminal_carries_the_cases_too() {
     let terminal = machine.more_lines.first().expect("the path is printed").parse().unwrap();
     let cases = all();
     let some = cases.iter().skip(3).step_by(if is_long() { 1 } else { 9 });
-    let report = play_at(terminal, machine, Way::default(), Some(11), some);
+    let report = play_at(terminal, machine, Transport::default(), Some(11), some);
     assert_passed(&report, "pseudo-terminal");
 }
 
@@ -149,7 +149,7 @@ fn strokes_come_over_the_host_line_where_nobody_is_at_the_machine() {
     let cases = all();
     let draws = |case: &&Case| case.steps.iter().any(|(_, step)| matches!(step, Step::Strokes { .. }));
     let some = cases.iter().filter(draws).step_by(if is_long() { 1 } else { 11 });
-    let report = conformance::run(&target(place, Way::default(), None), None, some, |_| {}).unwrap();
+    let report = conformance::run(&target(place, Transport::default(), None), None, some, |_| {}).unwrap();
     let failed: Vec<String> = report.failures().map(|(case, failure)| failure_text(case, failure)).collect();
     assert!(failed.is_empty(), "{}", failed.concat());
     // What needs a person, frames one after the other, or more strokes than the line brings.
@@ -161,7 +161,7 @@ fn strokes_come_over_the_host_line_where_nobody_is_at_the_machine() {
 fn a_machine_that_answers_nothing_ends_the_run_at_once() {
     let silent = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let place = format!("tcp:{}", silent.local_addr().unwrap()).parse().unwrap();
-    let target = Target { patience: Duration::from_millis(300), ..target(place, Way::default(), None) };
+    let target = Target { patience: Duration::from_millis(300), ..target(place, Transport::default(), None) };
     let error = conformance::run(&target, None, &all(), |_| {}).unwrap_err();
     assert_eq!(error.to_string(), "expected an answer of the machine, found nothing for 300ms, after: nothing");
 }
@@ -171,7 +171,7 @@ fn a_wrong_expectation_fails_at_its_line() {
     let text = "section B.4\ncase a M x\n> SEND 'B' TO <1>HOST_MESSAGE;\n< A\ncase b M y\n> SEND 'B' TO <1>HOST_MESSAGE;\nquiet\n< B\n\
                 case c M z\n> DISPLAY 3;\nquiet\n<! 1\ncase d M z\nstrokes 1\n";
     let cases = conformance::parse("f", text).unwrap();
-    let report = play(machine(), Way::default(), None, &cases);
+    let report = play(machine(), Transport::default(), None, &cases);
     let failures: Vec<(&str, usize)> = report.failures().map(|(case, f)| (case.id.as_str(), f.line)).collect();
     assert_eq!(failures, [("a", 4), ("b", 7), ("c", 11), ("d", 14)]);
 }
@@ -181,7 +181,7 @@ fn mutate(cases: &[Case], choose: fn(&Case) -> Vec<Mutant>) -> Mutations {
     let half = |of: usize| {
         let machine = machine();
         let place = format!("tcp:{}", machine.line).parse().unwrap();
-        let target = Target { reboots: true, ..target(place, Way::default(), None) };
+        let target = Target { reboots: true, ..target(place, Transport::default(), None) };
         let machine = RefCell::new(machine);
         let mut here = Here(&machine);
         let share = cases.iter().skip(of).step_by(2);

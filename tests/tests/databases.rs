@@ -5,7 +5,7 @@ use std::{
     process::{Child, Command, Output, Stdio},
     time::{Duration, Instant},
 };
-use tests::PATIENCE;
+use tests::TIMEOUT;
 
 const PERIS: &str = env!("CARGO_BIN_EXE_peris-under-test");
 
@@ -171,7 +171,7 @@ fn many_read_and_write_at_once() {
         children.push(start(&["db", "add", "a.redb", "walnut.json", "--name", &format!("walnut {number}")]));
         children.push(start(&["db", "show", "a.redb", "walnut"]));
     }
-    let end = Instant::now() + PATIENCE;
+    let end = Instant::now() + TIMEOUT;
     for child in &mut children {
         while child.0.try_wait().expect("it runs").is_none() {
             assert!(Instant::now() < end, "a process does not end");

@@ -6,7 +6,7 @@ use std::{
     net::TcpStream,
     time::{Duration, Instant},
 };
-use tests::{Host, Machine, PATIENCE};
+use tests::{Host, Machine, TIMEOUT};
 
 const PS340: &str = env!("CARGO_BIN_EXE_ps340-under-test");
 
@@ -37,25 +37,25 @@ fn typed_text_makes_a_cube_a_network_turns_it_and_the_message_comes_back() {
     let mut host = machine.attach();
     host.send(CUBE);
     host.synchronize();
-    machine.order("idle");
-    machine.order(&format!("picture vector {} 256", file("before.png")));
-    machine.order("dial 1 0.1");
+    machine.operator_command("idle");
+    machine.operator_command(&format!("picture vector {} 256", file("before.png")));
+    machine.operator_command("dial 1 0.1");
     assert_eq!(host.message().parse::<f64>().unwrap(), 0.1);
-    machine.order("idle");
-    machine.order(&format!("picture vector {} 256", file("after.png")));
+    machine.operator_command("idle");
+    machine.operator_command(&format!("picture vector {} 256", file("after.png")));
     let (before, after) = (image::open(file("before.png")).unwrap(), image::open(file("after.png")).unwrap());
     let lit = |image: &image::DynamicImage| image.to_luma8().pixels().filter(|p| p.0[0] > 64).count();
     assert!(lit(&before) > 500 && lit(&after) > 500, "{} and {} pixels glow", lit(&before), lit(&after));
     assert_ne!(before, after);
     // The closed form: a rotation by 20 degrees about X.
-    let shown = machine.order("show WORLD.RX");
+    let shown = machine.operator_command("show WORLD.RX");
     let numbers: Vec<f64> = shown.split([' ', ',']).filter_map(|w| w.parse().ok()).collect();
     let (s, c) = 20_f64.to_radians().sin_cos();
     for (found, expected) in numbers.iter().zip([1.0, 0.0, 0.0, 0.0, c, s, 0.0, -s, c]) {
         assert!((found - expected).abs() < 1e-12, "{shown}");
     }
     assert_eq!(numbers.len(), 9);
-    assert!(machine.order("log").is_empty(), "{}", machine.order("log"));
+    assert!(machine.operator_command("log").is_empty(), "{}", machine.operator_command("log"));
 }
 
 #[test]
@@ -69,9 +69,9 @@ fn a_host_that_dies_leaves_the_machine_and_its_picture() {
     let mut other = machine.attach();
     other.synchronize();
     assert!(machine.runs());
-    assert!(machine.order("show WORLD").contains("BEGIN_STRUCTURE"));
+    assert!(machine.operator_command("show WORLD").contains("BEGIN_STRUCTURE"));
     assert!(machine.reply("show HALF").starts_with("error"));
-    machine.order("quit");
+    machine.operator_command("quit");
     assert_eq!(machine.end(), Some(0));
     let errors = machine.errors();
     assert!(errors.contains("attached") && errors.contains("closed"), "{errors}");
@@ -107,8 +107,8 @@ fn a_unix_socket_is_a_line_too() {
     let mut machine = Machine::start(PS340, &["--listen", &address]);
     let mut stream = std::os::unix::net::UnixStream::connect(&path).unwrap();
     stream.write_all(b"N := F:NOP;SEND 'OVER UNIX' TO <1>HOST_MESSAGE;").unwrap();
-    assert_eq!(machine.order("message"), "OVER UNIX");
-    machine.order("quit");
+    assert_eq!(machine.operator_command("message"), "OVER UNIX");
+    machine.operator_command("quit");
     machine.end();
     assert!(!path.exists(), "the socket's file is removed");
 }
@@ -126,9 +126,9 @@ fn an_address_in_use_is_a_clear_error() {
 #[test]
 fn a_virtual_clock_passes_only_while_someone_waits() {
     let mut machine = Machine::start(PS340, &["--clock", "virtual"]);
-    let frame = |machine: &mut Machine| machine.order("counters").split(' ').next().map(str::to_string);
+    let frame = |machine: &mut Machine| machine.operator_command("counters").split(' ').next().map(str::to_string);
     assert_eq!(frame(&mut machine).as_deref(), Some("frame=0"));
-    machine.order("frames 1000000");
+    machine.operator_command("frames 1000000");
     assert_eq!(frame(&mut machine).as_deref(), Some("frame=1000000"));
 }
 
@@ -142,15 +142,15 @@ fn plain_text_and_keyboard_begin_as_the_options_say() {
     ];
     for (options, mode, is_command) in all {
         let mut machine = Machine::start(PS340, options);
-        assert_eq!(machine.order("mode"), mode, "{options:?}");
+        assert_eq!(machine.operator_command("mode"), mode, "{options:?}");
         let mut host = machine.attach();
         host.send("A := VECTOR_LIST DOTS 0,0; DISPLAY A;\r\n");
         let begin = Instant::now();
         let (mut drawn, mut shown) = (false, false);
         while !drawn && !shown {
-            assert!(begin.elapsed() < PATIENCE, "{options:?}: the text went nowhere");
-            drawn = machine.order("strokes").starts_with("1 ");
-            shown = machine.order("terminal").contains("DISPLAY A;");
+            assert!(begin.elapsed() < TIMEOUT, "{options:?}: the text went nowhere");
+            drawn = machine.operator_command("strokes").starts_with("1 ");
+            shown = machine.operator_command("terminal").contains("DISPLAY A;");
         }
         assert_eq!((drawn, shown), (is_command, !is_command), "{options:?}");
     }
@@ -178,7 +178,7 @@ fn pictures_are_the_same_with_one_thread_and_with_two() {
         host.synchronize();
         for extension in ["png", "exr"] {
             let file = folder.path().join(format!("{threads}.{extension}"));
-            machine.order(&format!("picture vector {} 300", file.display()));
+            machine.operator_command(&format!("picture vector {} 300", file.display()));
             pictures.push(fs::read(file).unwrap());
         }
     }
@@ -192,7 +192,7 @@ fn a_host_that_closes_its_side_still_gets_its_answer_from_a_busy_machine() {
     busy.send("N := F:NOP; CONNECT N<1>:<1>N; SEND 1 TO <1>N; P := F:PRINT; CONNECT P<1>:<1>HOST_MESSAGE;");
     busy.synchronize();
     let mut stream = TcpStream::connect(&machine.line).unwrap();
-    stream.set_read_timeout(Some(tests::PATIENCE)).unwrap();
+    stream.set_read_timeout(Some(tests::TIMEOUT)).unwrap();
     stream.write_all(b"SEND 2 TO <1>P;").unwrap();
     stream.shutdown(std::net::Shutdown::Write).unwrap();
     let mut answer = String::new();
@@ -215,10 +215,10 @@ fn frames_pass_and_operators_are_answered_while_a_host_floods_the_line() {
         }
     });
     for _ in 0..3 {
-        machine.order("frames 20");
+        machine.operator_command("frames 20");
     }
-    machine.order("dial 1 0.5");
-    machine.order("counters");
+    machine.operator_command("dial 1 0.5");
+    machine.operator_command("counters");
     drop(stop);
     flood.join().unwrap();
     assert!(machine.runs());

@@ -11,7 +11,7 @@ use std::{
     process::{Child, Command, ExitStatus, Stdio},
     time::{Duration, Instant},
 };
-use tests::{PATIENCE, send_signal};
+use tests::{TIMEOUT, send_signal};
 
 const PS340: &str = env!("CARGO_BIN_EXE_ps340-under-test");
 const PERIS: &str = env!("CARGO_BIN_EXE_peris-under-test");
@@ -43,7 +43,7 @@ fn start(program: &str, arguments: &[&str], folder: &Path) -> Child {
 }
 
 fn wait(child: &mut Child) -> ExitStatus {
-    let end = Instant::now() + PATIENCE;
+    let end = Instant::now() + TIMEOUT;
     loop {
         match child.try_wait().expect("the process can be asked") {
             Some(status) => return status,
@@ -162,7 +162,7 @@ fn a_machine_that_stands_still_ends_with_a_host_that_is_killed() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut host = start(PERIS, &["show", "primitives"], folder.path());
     let own = host.id().to_string();
-    let end = Instant::now() + PATIENCE;
+    let end = Instant::now() + TIMEOUT;
     let machine = loop {
         let others = marked(folder.path()).into_iter().find(|process| *process != own);
         // Its name tells that it is the machine already, and not yet the host that makes it.

@@ -12,10 +12,10 @@ use protocol::command::{Polygon, PolygonVertex};
 use ps340::{
     functions::devices::shading::ShadingEnvironment,
     port::Rendering,
-    rendering::{Outcome, Segment, render},
+    rendering::{RenderingResult, Segment, render},
 };
 use std::collections::{HashMap, HashSet};
-use tests::facets::{facets, matrix, place, polygons, view};
+use tests::facets::{facets, matrix, to_screen, polygons, view};
 
 /// Steps of the beam's grid across the screen.
 const STEPS: usize = 1 << 24;
@@ -35,7 +35,7 @@ fn lines(polygons: &[Polygon], solid: bool, from: DVec3, kind: Rendering) -> Vec
     let named = |(number, polygon): (usize, &Polygon)| Polygon { outline: Some(number as f64), ..polygon.clone() };
     let facets = facets(polygons.iter().enumerate().map(named).collect(), solid, &view(from));
     match render(kind, facets, &ShadingEnvironment::default()) {
-        Ok(Outcome::Lines(lines)) => lines,
+        Ok(RenderingResult::Lines(lines)) => lines,
         other => panic!("{other:?}"),
     }
 }
@@ -78,7 +78,7 @@ impl Screen {
             };
             screen.polygons.push(polygon.vertices.iter().map(corner).collect());
         }
-        screen.places = screen.corners.iter().map(|corner| place(&matrix, *corner, STEPS)).collect();
+        screen.places = screen.corners.iter().map(|corner| to_screen(&matrix, *corner, STEPS)).collect();
         screen
     }
 
@@ -101,7 +101,7 @@ impl Screen {
             assert!(distance(&nearest) < 1e-9, "{line:?} is on no edge");
             let [a, b] = nearest.map(|end| self.places[end as usize].truncate());
             let ends =
-                line.ends.map(|p| (place(&matrix, p, STEPS).truncate() - a).dot(b - a) / (b - a).length_squared());
+                line.ends.map(|p| (to_screen(&matrix, p, STEPS).truncate() - a).dot(b - a) / (b - a).length_squared());
             drawn.entry(nearest).or_default().push([ends[0].min(ends[1]), ends[0].max(ends[1])]);
         }
         drawn

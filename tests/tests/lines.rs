@@ -9,7 +9,7 @@ use std::{
     path::Path,
     time::{Duration, Instant},
 };
-use tests::{Ended, Host, Machine, PATIENCE, run};
+use tests::{Ended, Host, Machine, TIMEOUT, run};
 
 const PS340: &str = env!("CARGO_BIN_EXE_ps340-under-test");
 const PERIS: &str = env!("CARGO_BIN_EXE_peris-under-test");
@@ -26,14 +26,14 @@ fn is_long() -> bool {
 fn until(what: &str, mut holds: impl FnMut() -> bool) {
     let begin = Instant::now();
     while !holds() {
-        assert!(begin.elapsed() < PATIENCE, "{what}");
+        assert!(begin.elapsed() < TIMEOUT, "{what}");
         std::thread::sleep(Duration::from_millis(20));
     }
 }
 
 /// A number of the machine's counters.
 fn counter(machine: &mut Machine, name: &str) -> u64 {
-    let counters = machine.order("counters");
+    let counters = machine.operator_command("counters");
     let value = counters.split(' ').find_map(|word| word.strip_prefix(name)?.strip_prefix('='));
     value.and_then(|value| value.parse().ok()).unwrap_or_else(|| panic!("no {name} in {counters}"))
 }
@@ -119,20 +119,20 @@ fn memory_goes_back_after_initialize() {
     }
     host.synchronize();
     // The list of strokes keeps them all; a picture alone would not.
-    machine.order("strokes 1");
-    machine.order(&picture);
+    machine.operator_command("strokes 1");
+    machine.operator_command(&picture);
     let full = machine.resident_megabytes();
     assert!(full > before + f64::from(count) * 30.0 / 1e6, "{before} MB, then {full} MB");
     host.send("INITIALIZE;");
     host.synchronize();
-    machine.order("frames 2");
+    machine.operator_command("frames 2");
     let after = machine.resident_megabytes();
     println!("{before:.0} MB before, {full:.0} MB with {count} vectors, {after:.0} MB after INITIALIZE");
     assert!(after < before + 50.0, "{before} MB before, {full} MB with the vectors, {after} MB after INITIALIZE");
 }
 
 fn peris(arguments: &[&str], ps340: &str, folder: &Path) -> Ended {
-    run(PERIS, arguments, &[("PERIS_PS340", ps340)], folder, PATIENCE)
+    run(PERIS, arguments, &[("PERIS_PS340", ps340)], folder, TIMEOUT)
 }
 
 #[test]

@@ -84,9 +84,9 @@ fn the_view_that_dials_set_reads_back_as_its_closed_form() {
     let mut production = begin(&machine, &scene, &Drawing::default());
     let turns = [0.13, -0.37, 0.05, 0.4, 0.02, -0.01, 0.03];
     for (dial, turn) in (1..).zip(turns) {
-        machine.order(&format!("dial {dial} {turn}"));
+        machine.operator_command(&format!("dial {dial} {turn}"));
     }
-    machine.order("idle");
+    machine.operator_command("idle");
     let matrix = production.view().unwrap();
     let expected = view_of_dials(production.initial(), &turns).unwrap();
     let off = difference(&matrix, &expected);
@@ -94,7 +94,7 @@ fn the_view_that_dials_set_reads_back_as_its_closed_form() {
     let before = view_of_dials(production.initial(), &[0.0; 7]).unwrap();
     assert!(difference(&matrix, &before) > 0.1, "the dials did something");
     production.reset().unwrap();
-    machine.order("idle");
+    machine.operator_command("idle");
     assert!(difference(&production.view().unwrap(), &before) < 1e-6, "the reset undoes it");
 }
 
@@ -108,7 +108,7 @@ fn a_scene_that_is_shown_as_facets_is_rendered_by_the_machine_itself() {
     assert_eq!(ended.code, Some(0), "{}{}", ended.out, ended.errors);
     let strokes = |machine: &mut Machine| {
         let file = folder.path().join("strokes.txt");
-        machine.order(&format!("picture vector {}", file.display()));
+        machine.operator_command(&format!("picture vector {}", file.display()));
         fs::read_to_string(file).unwrap().lines().count()
     };
     let mut host = machine.attach();
@@ -122,7 +122,7 @@ fn a_scene_that_is_shown_as_facets_is_rendered_by_the_machine_itself() {
     host.send("SEND FIX(8) TO <1>PERIS.SHADE;");
     assert_eq!(host.message(), "TRUE", "the polygons are shaded");
     let file = folder.path().join("shaded.png");
-    machine.order(&format!("picture raster {}", file.display()));
+    machine.operator_command(&format!("picture raster {}", file.display()));
     let image = image::open(file).unwrap().to_rgb8();
     let lit = image.pixels().filter(|pixel| pixel.0.iter().any(|byte| *byte > 60)).count();
     assert!((20_000..200_000).contains(&lit), "{lit} of 307,200 pixels are lit");
@@ -211,8 +211,8 @@ fn the_render_of_the_view_has_the_silhouette_of_the_vector_screen() {
     let size = 512;
     let vector = |machine: &mut Machine, name: &str| {
         let file = folder.path().join(name);
-        machine.order("idle");
-        machine.order(&format!("picture vector {} {size}", file.display()));
+        machine.operator_command("idle");
+        machine.operator_command(&format!("picture vector {} {size}", file.display()));
         let image = image::open(file).unwrap().to_luma8();
         Mask { size, on: image.pixels().map(|p| p.0[0] > 128).collect() }.closed(6)
     };
@@ -223,9 +223,9 @@ fn the_render_of_the_view_has_the_silhouette_of_the_vector_screen() {
         Mask { size, on: picture.coverage8().iter().map(|c| *c > 127).collect() }
     };
     let unturned = vector(&mut machine, "unturned.png");
-    machine.order("dial 1 0.15");
-    machine.order("dial 2 0.4");
-    machine.order("dial 5 0.05");
+    machine.operator_command("dial 1 0.15");
+    machine.operator_command("dial 2 0.4");
+    machine.operator_command("dial 5 0.05");
     let turned = vector(&mut machine, "turned.png");
     let matrix = production.view().unwrap();
     let rendered = render(&production, &matrix);
@@ -267,31 +267,31 @@ fn keys_of_the_workstation_make_the_host_render_tell_the_view_and_end() {
     let path = folder.path().to_path_buf();
     let arguments = ["show", "small.rhai", "--camera", "camera.txt", "--to"];
     let shown = std::thread::spawn(move || peris(&[&arguments[..], &[&line]].concat(), &path));
-    while !machine.order("panel").contains("key 1: RENDER") {
+    while !machine.operator_command("panel").contains("key 1: RENDER") {
         std::thread::sleep(Duration::from_millis(20));
     }
     for order in ["dial 1 0.1", "dial 2 -0.2", "dial 3 0.05", "dial 4 -0.2", "dial 5 0.1", "dial 7 -0.2"] {
-        machine.order(order);
+        machine.operator_command(order);
     }
     let file = folder.path().join("raster.png");
     let lit = |machine: &mut Machine| {
-        machine.order(&format!("picture raster {}", file.display()));
+        machine.operator_command(&format!("picture raster {}", file.display()));
         image::open(&file).unwrap().to_luma8().pixels().any(|p| p.0[0] > 60)
     };
     assert!(!lit(&mut machine));
-    machine.order("key 1");
-    let end = std::time::Instant::now() + tests::PATIENCE;
+    machine.operator_command("key 1");
+    let end = std::time::Instant::now() + tests::TIMEOUT;
     while !lit(&mut machine) {
         assert!(std::time::Instant::now() < end, "nothing appears on the raster screen");
         std::thread::sleep(Duration::from_millis(20));
     }
-    machine.order("key 3");
+    machine.operator_command("key 3");
     while !folder.path().join("camera.txt").exists() {
         assert!(std::time::Instant::now() < end, "nobody tells the view");
         std::thread::sleep(Duration::from_millis(20));
     }
-    machine.order("dial 2 0.2");
-    machine.order("key 12");
+    machine.operator_command("dial 2 0.2");
+    machine.operator_command("key 12");
     let ended = shown.join().unwrap();
     assert_eq!(ended.code, Some(0), "{}", ended.errors);
     assert!(machine.runs(), "the workstation outlives its host");

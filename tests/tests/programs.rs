@@ -6,7 +6,7 @@ use std::{
     net::TcpStream,
     thread,
 };
-use tests::{Machine, PATIENCE};
+use tests::{Machine, TIMEOUT};
 
 const PS340: &str = env!("CARGO_BIN_EXE_ps340-under-test");
 
@@ -24,7 +24,7 @@ struct Program {
 impl Program {
     fn attach(line: &str) -> Program {
         let stream = TcpStream::connect(line).expect("the machine listens");
-        stream.set_read_timeout(Some(PATIENCE)).expect("a time limit can be set");
+        stream.set_read_timeout(Some(TIMEOUT)).expect("a time limit can be set");
         let mut program = Program { stream, reader: MessageReader::default() };
         let mut request = Vec::new();
         MessageForm::Own.write_request(&mut request);

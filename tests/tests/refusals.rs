@@ -9,7 +9,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::path::Path;
 use tests::corpus::{Score, evaluated};
-use tests::{PATIENCE, run};
+use tests::{TIMEOUT, run};
 
 const PERIS: &str = env!("CARGO_BIN_EXE_peris-under-test");
 
@@ -47,7 +47,7 @@ fn places(mesh: &Mesh) -> Vec<[[u64; 3]; 3]> {
 ///
 /// - `refused`: the exit code for a refusal.
 fn outcome(folder: &Path, arguments: &[&str], file: &str, refused: i32) -> Result<Mesh, [String; 2]> {
-    let ended = run(PERIS, arguments, &[], folder, PATIENCE);
+    let ended = run(PERIS, arguments, &[], folder, TIMEOUT);
     match ended.code {
         Some(0) => {
             let bytes = std::fs::read(folder.join(file)).expect("it was written");

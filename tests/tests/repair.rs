@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde_json::Value;
 use std::path::Path;
-use tests::{PATIENCE, run, simple};
+use tests::{TIMEOUT, run, simple};
 
 const PERIS: &str = env!("CARGO_BIN_EXE_peris-under-test");
 
@@ -64,7 +64,7 @@ fn placed(mesh: &Mesh, place: u32) -> Mesh {
 
 /// Runs the check with repair and a report, which it gives with the exit code.
 fn repair(folder: &Path, from: &str, to: &str) -> (Option<i32>, Value, String) {
-    let ended = run(PERIS, &["check", from, "--repair", to, "--json"], &[], folder, PATIENCE);
+    let ended = run(PERIS, &["check", from, "--repair", to, "--json"], &[], folder, TIMEOUT);
     (ended.code, serde_json::from_str(&ended.out).unwrap_or(Value::Null), ended.errors)
 }
 
@@ -150,7 +150,7 @@ fn the_boundary_loops_of_an_open_mesh_are_listed_and_closed() {
     let kept = (0..open.triangles.len()).filter(|&t| !is_lid(open.corners(t)));
     open.triangles = kept.map(|t| open.triangles[t]).collect();
     std::fs::write(folder.path().join("a.ply"), print(&open, Format::Ply).expect("a mesh")).expect("written");
-    let told = run(PERIS, &["check", "a.ply"], &[], folder.path(), PATIENCE);
+    let told = run(PERIS, &["check", "a.ply"], &[], folder.path(), TIMEOUT);
     assert_eq!(told.code, Some(1));
     assert!(
         told.out.contains("boundary loops          1") && told.out.contains("4 edges, 4.000000 long"),
@@ -169,11 +169,11 @@ fn a_body_that_faces_inwards_beside_another_is_an_error_until_it_is_turned() {
     let mesh = joined(&[block([0.0; 3], [1.0; 3]), block([3.0; 3], [4.0; 3]).reversed()]);
     std::fs::write(folder.path().join("a.obj"), print(&mesh, Format::Obj).expect("a mesh")).expect("written");
     for arguments in [&["check", "a.obj"][..], &["boolean", "union", "a.obj", "a.obj", "-o", "b.obj"]] {
-        let ended = run(PERIS, arguments, &[], folder.path(), PATIENCE);
+        let ended = run(PERIS, arguments, &[], folder.path(), TIMEOUT);
         assert_eq!(ended.code, Some(1), "{arguments:?}: {}", ended.errors);
         assert!(ended.errors.contains("1 of 2 bodies face inwards"), "{arguments:?}: {}", ended.errors);
     }
     let (code, report, errors) = repair(folder.path(), "a.obj", "b.obj");
     assert_eq!((code, &report["repair"]["bodies"]), (Some(0), &1.into()), "{errors}");
-    assert_eq!(run(PERIS, &["check", "b.obj"], &[], folder.path(), PATIENCE).code, Some(0));
+    assert_eq!(run(PERIS, &["check", "b.obj"], &[], folder.path(), TIMEOUT).code, Some(0));
 }

@@ -4,7 +4,7 @@ use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
-use tests::PATIENCE;
+use tests::TIMEOUT;
 
 const PERIS: &str = env!("CARGO_BIN_EXE_peris-under-test");
 const PS340: &str = env!("CARGO_BIN_EXE_ps340-under-test");
@@ -14,7 +14,7 @@ fn run(program: &str, folder: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(program);
     command.args(arguments).current_dir(folder).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().expect("the program starts");
-    let end = Instant::now() + PATIENCE;
+    let end = Instant::now() + TIMEOUT;
     while child.try_wait().expect("it runs").is_none() {
         if Instant::now() > end {
             let _ = child.kill();

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use tests::PATIENCE;
+use tests::TIMEOUT;
 
 const PERIS: &str = env!("CARGO_BIN_EXE_peris-under-test");
 const PS340: &str = env!("CARGO_BIN_EXE_ps340-under-test");
@@ -276,7 +276,7 @@ fn survive(rounds: usize, seed: u64) {
                     interrupted += 1;
                 }
             }
-            let status = ended_within(&mut child, PATIENCE).unwrap_or_else(|| panic!("{arguments:?} does not end"));
+            let status = ended_within(&mut child, TIMEOUT).unwrap_or_else(|| panic!("{arguments:?} does not end"));
             let mut said = String::new();
             child.stderr.take().expect("piped").read_to_string(&mut said).expect("text");
             let place = || format!("round {round}, {arguments:?}, {chosen:?} after {wait:?}: {status}\n{said}");

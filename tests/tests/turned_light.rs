@@ -32,8 +32,8 @@ fn cornell() -> String {
 /// The square of the raster screen, row by row from the top.
 fn raster(machine: &mut Machine, folder: &Path) -> Vec<[u8; 3]> {
     let file = folder.join("raster.png");
-    machine.order(SETTLED);
-    machine.order(&format!("picture raster {}", file.display()));
+    machine.operator_command(SETTLED);
+    machine.operator_command(&format!("picture raster {}", file.display()));
     let image = image::open(file).unwrap().to_rgb8();
     let rows = image.pixels().map(|pixel| pixel.0).collect::<Vec<_>>();
     let left = (WIDTH - SIDE) / 2;
@@ -83,9 +83,9 @@ fn the_light_of_a_solution_is_seen_on_the_workstation_from_wherever_the_dials_tu
     let mut session = Session::attach(&to.parse().unwrap(), Timeouts::default()).unwrap();
     let mut pictures = Vec::new();
     for turn in ["dial 8 0.1", "dial 2 0.08"] {
-        machine.order(turn);
+        machine.operator_command(turn);
         let picture = raster(&mut machine, folder);
-        assert!(machine.order("panel").contains("graphics on"), "the vectors are seen again");
+        assert!(machine.operator_command("panel").contains("graphics on"), "the vectors are seen again");
         let expected = shown(&solution, &prepared, &plan, &session.view().unwrap());
         let (mean, far) = difference(&picture, &expected);
         println!("{turn}: mean difference {mean:.3} of 255, {:.2} % by more than 8", 100.0 * far);

@@ -75,7 +75,7 @@ fn save(path: &Path, grouped: &Grouped, destination: &Destination) -> Result<(),
         return Ok(mesh::write_grouped(grouped, destination)?);
     }
     let bytes = std::fs::read(path).with_context(|| format!("{}", path.display()))?;
-    Ok(destination.write_or_keep(|file| file.write_all(&bytes))?)
+    Ok(destination.write_or_save_elsewhere(|file| file.write_all(&bytes))?)
 }
 
 fn report(mesh: &Mesh, loops: &[BoundaryLoop]) {

@@ -117,7 +117,7 @@ fn commands(arguments: &Arguments) -> Result<(), CommandFailure> {
         print(command, &mut text);
         text.push(b'\n');
     }
-    destination.write_or_keep(|file| file.write_all(&text))?;
+    destination.write_or_save_elsewhere(|file| file.write_all(&text))?;
     let polygons = shown.points / 3;
     if *json {
         output::report(serde_json::json!({ "file": output, "polygons": polygons, "bytes": text.len() }));

@@ -59,7 +59,7 @@ fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     for destination in &destinations {
         let is_table = destination.path().extension().is_some_and(|extension| extension == "csv");
         let text = if is_table { csv(&named) } else { obj(&named) };
-        destination.write_or_keep(|file| file.write_all(text.as_bytes()))?;
+        destination.write_or_save_elsewhere(|file| file.write_all(text.as_bytes()))?;
     }
     if arguments.json {
         let all: Vec<Value> = named.iter().map(|(names, intersection)| described(names, intersection)).collect();

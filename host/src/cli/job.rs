@@ -163,7 +163,7 @@ impl Contents<'_> {
     /// Writes a text into a file, which is noted with what it is.
     fn write(&mut self, name: &str, what: &str, text: &str) -> Result<(), WriteError> {
         self.file(name, what);
-        self.folder.write_or_keep(name, |file| file.write_all(text.as_bytes())).map(drop)
+        self.folder.write_or_save_elsewhere(name, |file| file.write_all(text.as_bytes())).map(drop)
     }
 }
 
@@ -210,7 +210,7 @@ impl Job<'_> {
             self.study(&mut contents)?;
         }
         let list = contents.lines.clone();
-        folder.write_or_keep("CONTENTS.txt", |file| file.write_all(list.as_bytes()))?;
+        folder.write_or_save_elsewhere("CONTENTS.txt", |file| file.write_all(list.as_bytes()))?;
         if self.common.json {
             self.report.insert("folder".into(), json!(folder.path()));
             self.report.insert("files".into(), json!(contents.names));

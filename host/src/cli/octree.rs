@@ -51,7 +51,7 @@ fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let (octree, seconds) = if kept { read(path, arguments)? } else { build(arguments)? };
     if let Some(destination) = destination {
         let bytes = octree.to_bytes()?;
-        destination.write_or_keep(|file| file.write_all(&bytes))?;
+        destination.write_or_save_elsewhere(|file| file.write_all(&bytes))?;
     }
     let statistics = octree.statistics();
     if arguments.json {

@@ -102,7 +102,7 @@ fn measure(arguments: &IlluminationArguments) -> Result<(), CommandFailure> {
     let study = illumination(&arguments.roughness, &watch)?;
     progress::clear();
     let table = study.csv();
-    let csv = folder.write_or_keep(&format!("{ILLUMINATION}.csv"), |file| file.write_all(table.as_bytes()))?;
+    let csv = folder.write_or_save_elsewhere(&format!("{ILLUMINATION}.csv"), |file| file.write_all(table.as_bytes()))?;
     let mut written = vec![csv];
     for (roughness, plot) in study.plots() {
         written.extend(plot.write(&folder, &format!("{ILLUMINATION}-{roughness}"))?);
@@ -135,7 +135,7 @@ fn sweep(knob: &KnobRow, arguments: &Arguments) -> Result<(), CommandFailure> {
     let study = (knob.run)(&scene, &options, &watch)?;
     progress::clear();
     let table = study.csv();
-    let csv = folder.write_or_keep(&format!("{name}.csv"), |file| file.write_all(table.as_bytes()))?;
+    let csv = folder.write_or_save_elsewhere(&format!("{name}.csv"), |file| file.write_all(table.as_bytes()))?;
     let [svg, png] = study.plot(&format!("{script}: {}", knob.summary)).write(&folder, &name)?;
     memo.remove();
     if arguments.json {

@@ -131,7 +131,7 @@ pub fn write(record: &Record, destination: &Destination) -> Result<(), DatabaseE
         (RecordContent::Spectrum(_), _) => return Err(failed("a spectrum goes into .txt or .json")),
         _ => return Err(failed("a material or a light goes into .json")),
     };
-    Ok(destination.write_or_keep(|file| file.write_all(text.as_bytes()))?)
+    Ok(destination.write_or_save_elsewhere(|file| file.write_all(text.as_bytes()))?)
 }
 
 fn ending(path: &Path) -> String {

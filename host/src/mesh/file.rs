@@ -107,7 +107,7 @@ pub fn write_grouped(grouped: &Grouped, destination: &Destination) -> Result<(),
     let path = destination.path();
     let format = Format::of(path).ok_or_else(|| MeshError::Format { path: path.to_owned() })?;
     let bytes = print_grouped(grouped, format).map_err(|fault| MeshError::Content { path: path.to_owned(), fault })?;
-    Ok(destination.write_or_keep(|file| file.write_all(&bytes))?)
+    Ok(destination.write_or_save_elsewhere(|file| file.write_all(&bytes))?)
 }
 
 /// Understands the bytes of a mesh file.

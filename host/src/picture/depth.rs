@@ -71,7 +71,7 @@ impl Deep {
         let layers = [band("R", 0), band("G", 1), band("B", 2), coverage, layer("Z", self.depth.clone())];
         let channels = AnyChannels::sort(layers.into_iter().collect());
         let image = encoder::exr([*width, *height], channels, &Provenance::default());
-        Ok(destination.write_or_keep(|file| image.write().to_buffered(file).map_err(encoder::exr_error))?)
+        Ok(destination.write_or_save_elsewhere(|file| image.write().to_buffered(file).map_err(encoder::exr_error))?)
     }
 }
 

@@ -48,7 +48,7 @@ impl Picture {
         match written_as(destination.path())? {
             ImageFormat::Png => {
                 let bytes = self.to_srgb8();
-                destination.write_or_keep(|file| encoder::png(file, &bytes, [width, height], provenance))?;
+                destination.write_or_save_elsewhere(|file| encoder::png(file, &bytes, [width, height], provenance))?;
             }
             _ => {
                 let pixel = move |at: Vec2<usize>| {
@@ -57,7 +57,7 @@ impl Picture {
                 };
                 let channels = SpecificChannels::rgba(pixel);
                 let image = encoder::exr([width, height], channels, provenance);
-                destination.write_or_keep(|file| image.write().to_buffered(file).map_err(encoder::exr_error))?;
+                destination.write_or_save_elsewhere(|file| image.write().to_buffered(file).map_err(encoder::exr_error))?;
             }
         }
         Ok(())

@@ -98,7 +98,7 @@ impl Film {
         let channels = AnyChannels::sort(floats.chain(classes).chain(albedo).chain(numbers).collect());
         let size = [self.width(), self.height()];
         let image = encoder::exr(size, channels, provenance);
-        Ok(destination.write_or_keep(|file| image.write().to_buffered(file).map_err(encoder::exr_error))?)
+        Ok(destination.write_or_save_elsewhere(|file| image.write().to_buffered(file).map_err(encoder::exr_error))?)
     }
 }
 

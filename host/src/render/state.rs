@@ -201,7 +201,7 @@ impl Film {
             height: self.height(),
             adaptive: adaptive.map(|adaptive| (adaptive.target, adaptive.finished, !goals.is_empty())),
         };
-        Ok(destination.write_or_keep(|file| {
+        Ok(destination.write_or_save_elsewhere(|file| {
             // Checksums of large pieces are found many times faster than those of small ones.
             let mut pieces = BufWriter::with_capacity(PIECE, Summed::new(file));
             pieces.write_all(&MAGIC)?;

@@ -81,7 +81,7 @@ pub struct PixelSample {
     pub covered: bool,
     /// The first element that it saw: distance, normal, object and material.
     pub first: Option<(f64, DVec3, [u32; 2])>,
-    /// The albedo that it saw, straight or by mirrors and smooth interfaces, as [`broad`](crate::color::WavelengthSets::broad_bands)
+    /// The albedo that it saw, straight or by mirrors and smooth interfaces, as [`broad_bands`](crate::color::WavelengthSets::broad_bands)
     /// bands; 0 unless a denoiser needs it.
     pub albedo: DVec3,
     /// The normals there, each times how much of the light comes to the eye; 0 unless a denoiser needs them.

@@ -154,7 +154,7 @@ impl Shape {
 impl Object {
     /// The materials of its surface, each once, and which of them its triangles have; nothing if that is the same for all.
     ///
-    /// - `operand_of`: for each triangle of a composite its innermost operand, as [`Made`](super::ShapeMesh) tells.
+    /// - `operand_of`: for each triangle of a composite its innermost operand, as [`ShapeMesh`](super::ShapeMesh) tells.
     pub fn materials(&self, operand_of: &[u32]) -> (Vec<Material>, Vec<u32>) {
         let Some((composite, whole)) = self.composite() else {
             return (vec![self.own_material().unwrap_or_default()], Vec::new());

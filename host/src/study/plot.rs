@@ -185,11 +185,11 @@ impl Plot {
     /// [`PlotError`].
     pub fn write(&self, folder: &Folder, name: &str) -> Result<[PathBuf; 2], PlotError> {
         let text = self.svg()?;
-        let svg = folder.write_or_keep(&format!("{name}.svg"), |file| file.write_all(text.as_bytes()))?;
+        let svg = folder.write_or_save_elsewhere(&format!("{name}.svg"), |file| file.write_all(text.as_bytes()))?;
         let (bytes, width, height) = self.pixels()?;
         let png = format!("{name}.png");
         let png =
-            folder.write_or_keep(&png, |file| encoder::png(file, &bytes, [width, height], &Provenance::default()))?;
+            folder.write_or_save_elsewhere(&png, |file| encoder::png(file, &bytes, [width, height], &Provenance::default()))?;
         Ok([svg, png])
     }
 

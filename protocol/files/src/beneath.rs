@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// Where the system cannot do so, names are resolved step by step, and no link is followed. Where it cannot even name a
 /// folder by its open file (other systems than Linux), whoever may change folders inside it at the same time can win.
 #[derive(Debug)]
-pub struct Beneath {
+pub struct Sandbox {
     /// Without links.
     path: PathBuf,
     /// As it was called, seen from the root of the file system.
@@ -22,18 +22,18 @@ pub struct Beneath {
     folder: File,
 }
 
-impl Beneath {
+impl Sandbox {
     /// Opens a folder, which must be there.
     ///
     /// # Errors
     /// Those of the system, or that it is no folder.
-    pub fn open(path: impl AsRef<Path>) -> io::Result<Beneath> {
+    pub fn open(path: impl AsRef<Path>) -> io::Result<Sandbox> {
         let called = std::path::absolute(path)?;
         let path = std::fs::canonicalize(&called)?;
         if !path.is_dir() {
             return Err(io::Error::new(io::ErrorKind::NotADirectory, "this is no folder"));
         }
-        Ok(Beneath { folder: File::open(&path)?, path, called })
+        Ok(Sandbox { folder: File::open(&path)?, path, called })
     }
 
     /// Where it is.
@@ -133,17 +133,17 @@ mod tests {
     use std::sync::atomic::{AtomicBool, Ordering};
 
     /// A folder with the folder `inside`, beside a document that is to stay as it is.
-    fn place() -> (tempfile::TempDir, Beneath, PathBuf) {
+    fn place() -> (tempfile::TempDir, Sandbox, PathBuf) {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().canonicalize().expect("it is there");
         fs::create_dir_all(path.join("files/inside")).expect("made");
         fs::create_dir(path.join("outside")).expect("made");
         fs::write(path.join("outside/document"), "precious").expect("written");
-        let beneath = Beneath::open(path.join("files")).expect("opened");
+        let beneath = Sandbox::open(path.join("files")).expect("opened");
         (folder, beneath, path)
     }
 
-    fn write(beneath: &Beneath, name: impl AsRef<Path>) -> Result<(), WriteError> {
+    fn write(beneath: &Sandbox, name: impl AsRef<Path>) -> Result<(), WriteError> {
         beneath.destination(name)?.write(|file| file.write_all(b"new"))
     }
 
@@ -161,7 +161,7 @@ mod tests {
         }
         write(&beneath, path.join("files/inside/f")).expect("written");
         symlink(path.join("files"), path.join("called")).expect("linked");
-        let called = Beneath::open(path.join("called")).expect("opened");
+        let called = Sandbox::open(path.join("called")).expect("opened");
         write(&called, path.join("called/g")).expect("written");
         for name in ["a", "inside/b", "c", "d", "inside/e", "inside/f", "g"] {
             assert_eq!(fs::read(path.join("files").join(name)).expect("there"), b"new", "{name}");

@@ -100,9 +100,9 @@ impl Destination {
     ///
     /// # Errors
     /// [`WriteError`], also with [`Problem::Elsewhere`] if the content is kept there.
-    pub fn write_or_keep(&self, content: impl Fn(&mut Writer<'_>) -> io::Result<()>) -> Result<(), WriteError> {
+    pub fn write_or_save_elsewhere(&self, content: impl Fn(&mut Writer<'_>) -> io::Result<()>) -> Result<(), WriteError> {
         let name = self.target.file_name().unwrap_or_default();
-        self.try_write(&content).map_err(|problem| self.failed(kept_elsewhere(name, problem, &content)))
+        self.try_write(&content).map_err(|problem| self.failed(saved_elsewhere(name, problem, &content)))
     }
 
     /// Makes a file that begins as more than an empty one, such as a database, unless there is one with more than nothing in
@@ -191,16 +191,16 @@ impl Folder {
     ///
     /// # Errors
     /// [`WriteError`], also with [`Problem::Elsewhere`] if the content is kept elsewhere.
-    pub fn write_or_keep(
+    pub fn write_or_save_elsewhere(
         &self,
         name: &str,
         content: impl Fn(&mut Writer<'_>) -> io::Result<()>,
     ) -> Result<PathBuf, WriteError> {
         let path = self.path.join(name);
         match Destination::of(&path) {
-            Ok(destination) => destination.write_or_keep(content)?,
+            Ok(destination) => destination.write_or_save_elsewhere(content)?,
             Err(WriteError { problem, .. }) => {
-                let problem = kept_elsewhere(name.as_ref(), problem, &content);
+                let problem = saved_elsewhere(name.as_ref(), problem, &content);
                 return Err(WriteError { path, problem });
             }
         }
@@ -222,7 +222,7 @@ fn check_folder(folder: &Path) -> Result<(), Problem> {
 }
 
 /// Writes a file that has not found its place into another folder, and adds to the problem where it is.
-fn kept_elsewhere(name: &OsStr, problem: Problem, content: &dyn Fn(&mut Writer<'_>) -> io::Result<()>) -> Problem {
+fn saved_elsewhere(name: &OsStr, problem: Problem, content: &dyn Fn(&mut Writer<'_>) -> io::Result<()>) -> Problem {
     let keep = |folder: &Path| {
         let draft = Draft::new(folder).ok()?;
         fill(&draft, content).ok()?;
@@ -387,7 +387,7 @@ mod tests {
         let destination = Destination::of(inner.join(&name)).expect("a destination");
         fs::remove_dir(&inner).expect("removed");
         let [first, second] = [b"one", b"two"].map(|bytes| {
-            let error = destination.write_or_keep(|file| file.write_all(bytes)).expect_err("no folder");
+            let error = destination.write_or_save_elsewhere(|file| file.write_all(bytes)).expect_err("no folder");
             let Problem::Elsewhere { kept, .. } = error.problem else { panic!("{error}") };
             kept
         });
@@ -430,7 +430,7 @@ mod tests {
         let there = tempfile::tempdir().expect("a folder");
         Folder::make(there.path().join("a/b")).expect("made");
         let folder = Folder::make(there.path().join("a/b")).expect("there");
-        let path = folder.write_or_keep("c.txt", |file| file.write_all(b"one")).expect("written");
+        let path = folder.write_or_save_elsewhere("c.txt", |file| file.write_all(b"one")).expect("written");
         assert_eq!((path.as_path(), fs::read(&path).expect("there")), (&*folder.path().join("c.txt"), b"one".to_vec()));
         for below in ["a/b/c.txt", "a/b/c.txt/d/e"] {
             let error = Folder::make(there.path().join(below)).expect_err("a file").to_string();
@@ -438,7 +438,7 @@ mod tests {
         }
         let name = format!("kept-in-folder-{}", std::process::id());
         fs::create_dir(folder.path().join(&name)).expect("a folder");
-        let error = folder.write_or_keep(&name, |file| file.write_all(b"two")).expect_err("a folder has the name");
+        let error = folder.write_or_save_elsewhere(&name, |file| file.write_all(b"two")).expect_err("a folder has the name");
         let Problem::Elsewhere { kept, why } = error.problem else { panic!("{error}") };
         assert!(matches!(*why, Problem::IsAFolder));
         assert_eq!(fs::read(&kept).expect("there"), b"two");

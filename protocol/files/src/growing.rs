@@ -12,18 +12,18 @@ use std::path::{Path, PathBuf};
 /// When the process is killed, what was written until then is left under that name, and an older file under the whole name
 /// is as it was.
 #[derive(Debug)]
-pub struct Growing {
+pub struct LogFile {
     file: File,
     part: PathBuf,
     destination: Destination,
 }
 
-impl Growing {
+impl LogFile {
     /// Begins an empty file. Parts that others left are not touched: the name then has a number, too.
     ///
     /// # Errors
     /// [`WriteError`].
-    pub fn create(destination: Destination) -> Result<Growing, WriteError> {
+    pub fn create(destination: Destination) -> Result<LogFile, WriteError> {
         let named = |ending: &str| {
             let mut name = OsString::from(destination.target());
             name.push(ending);
@@ -33,7 +33,7 @@ impl Growing {
         let mut refused = io::Error::from(io::ErrorKind::AlreadyExists);
         for part in names {
             match OpenOptions::new().write(true).create_new(true).open(&part) {
-                Ok(file) => return Ok(Growing { file, part, destination }),
+                Ok(file) => return Ok(LogFile { file, part, destination }),
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => refused = error,
                 Err(error) => return Err(destination.failed(Problem::System(error))),
             }
@@ -51,13 +51,13 @@ impl Growing {
     /// # Errors
     /// [`WriteError`]; what was written is left under the name with `.part`.
     pub fn finish(self) -> Result<(), WriteError> {
-        let Growing { file, part, destination } = self;
+        let LogFile { file, part, destination } = self;
         let end = || file.sync_all().and_then(|()| std::fs::rename(&part, destination.target()));
         end().map_err(|error| destination.failed(Problem::System(error)))
     }
 }
 
-impl Write for Growing {
+impl Write for LogFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.file.write(bytes)
     }
@@ -77,7 +77,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("log");
         fs::write(&path, "older").expect("written");
-        let begin = || Growing::create(Destination::of(&path).expect("a destination")).expect("begun");
+        let begin = || LogFile::create(Destination::of(&path).expect("a destination")).expect("begun");
         let (mut first, mut second) = (begin(), begin());
         assert!(first.part().ends_with("log.part") && second.part().ends_with("log.2.part"));
         first.write_all(b"one").expect("written");

@@ -10,9 +10,9 @@ mod beneath;
 mod growing;
 mod read;
 
-pub use beneath::Beneath;
+pub use beneath::Sandbox;
 pub use destination::{Destination, Folder, Writer};
 pub use draft::naming;
 pub use error::{Problem, WriteError};
-pub use growing::Growing;
+pub use growing::LogFile;
 pub use read::{open, read, read_text};

@@ -20,14 +20,14 @@ const DEFAULT_BAUD: u32 = 9600;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LineAddress {
     /// Where it is.
-    pub place: Place,
+    pub place: Endpoint,
     /// How it behaves.
     pub conditions: Conditions,
 }
 
 /// Where a line is.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum Endpoint {
     /// `tcp:HOST:PORT` or `unix:PATH`: hosts connect.
     Socket(Address),
     /// `parallel:HOST:PORT`: hosts connect to the parallel interface over TCP.
@@ -158,26 +158,26 @@ impl FromStr for LineAddress {
             AddressError::NoAddress(_) => none(),
         };
         let mut place = match (kind, rest) {
-            ("tcp" | "unix", _) => Place::Socket(address.parse().map_err(socket)?),
+            ("tcp" | "unix", _) => Endpoint::Socket(address.parse().map_err(socket)?),
             ("parallel", at) => match format!("tcp:{at}").parse().map_err(socket)? {
-                Address::Tcp(at) => Place::Parallel(at),
+                Address::Tcp(at) => Endpoint::Parallel(at),
                 Address::Unix(_) => return Err(none()),
             },
-            ("pty", path) => Place::Pty((!path.is_empty()).then(|| path.into())),
-            ("serial", device) => Place::Serial(serial(device).map_err(part)?),
-            ("stdio", "") => Place::Stdio,
+            ("pty", path) => Endpoint::Pty((!path.is_empty()).then(|| path.into())),
+            ("serial", device) => Endpoint::Serial(serial(device).map_err(part)?),
+            ("stdio", "") => Endpoint::Stdio,
             ("stdio", rest) => return Err(part((rest, "nothing behind 'stdio:'"))),
             ("file", "") => return Err(part((text, "the path of a file"))),
-            ("file", path) => Place::File { path: path.into(), timed: false },
+            ("file", path) => Endpoint::File { path: path.into(), timed: false },
             _ => return Err(none()),
         };
         let mut conditions = Conditions::default();
         for (option, key, value, expected) in options.into_iter().rev() {
             let wrong = || LineAddressError::Value { option: option.to_string(), expected };
             match (key, value, &mut place) {
-                ("pace", "captured" | "unlimited", Place::File { timed, .. }) => *timed = value == "captured",
-                ("pace", _, Place::File { .. }) => return Err(wrong()),
-                ("speed" | "flow" | "bits", _, Place::Parallel(_)) | ("pace", _, _) => {
+                ("pace", "captured" | "unlimited", Endpoint::File { timed, .. }) => *timed = value == "captured",
+                ("pace", _, Endpoint::File { .. }) => return Err(wrong()),
+                ("speed" | "flow" | "bits", _, Endpoint::Parallel(_)) | ("pace", _, _) => {
                     return Err(LineAddressError::NotFor { option: option.to_string(), kind: kind.to_string() });
                 }
                 ("speed", "unlimited", _) => conditions.speed = None,
@@ -234,18 +234,18 @@ impl fmt::Display for LineAddress {
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Endpoint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Place::Socket(address) => write!(f, "{address}"),
-            Place::Parallel(at) => write!(f, "parallel:{at}"),
-            Place::Pty(path) => write!(f, "pty:{}", path.as_deref().unwrap_or("".as_ref()).display()),
-            Place::Serial(Serial { device, baud, data_bits, parity, stop_bits }) => {
+            Endpoint::Socket(address) => write!(f, "{address}"),
+            Endpoint::Parallel(at) => write!(f, "parallel:{at}"),
+            Endpoint::Pty(path) => write!(f, "pty:{}", path.as_deref().unwrap_or("".as_ref()).display()),
+            Endpoint::Serial(Serial { device, baud, data_bits, parity, stop_bits }) => {
                 let letter = Parity::LETTERS.iter().find(|row| row.0 == *parity).map_or('N', |row| row.1);
                 write!(f, "serial:{},{baud},{data_bits}{letter}{stop_bits}", device.display())
             }
-            Place::Stdio => f.write_str("stdio:"),
-            Place::File { path, timed } => {
+            Endpoint::Stdio => f.write_str("stdio:"),
+            Endpoint::File { path, timed } => {
                 write!(f, "file:{}{}", path.display(), if *timed { ",pace=captured" } else { "" })
             }
         }

@@ -2,7 +2,7 @@
 
 mod line;
 
-pub use line::{Conditions, LineAddress, LineAddressError, Parity, Place, Serial};
+pub use line::{Conditions, LineAddress, LineAddressError, Parity, Endpoint, Serial};
 
 use std::{fmt, path::PathBuf, str::FromStr};
 

@@ -10,7 +10,7 @@ use super::{
 use std::ops::Range;
 
 /// Room that the buffer keeps after a long statement, in bytes.
-const KEPT_ROOM: usize = 1 << 20;
+const RETAINED_CAPACITY: usize = 1 << 20;
 
 /// What gives up an unfinished statement.
 const RESET: &[u8] = b"!RESET";
@@ -28,7 +28,7 @@ pub struct Spanned<T> {
 
 /// Where in the language a byte of the stream stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Place {
+enum LexicalState {
     Code,
     Text,
     Comment,
@@ -62,7 +62,7 @@ pub struct CommandReader {
     start: usize,
     /// How far its end was looked for.
     scanned: usize,
-    place: Place,
+    place: LexicalState,
     /// Where it ends (its `;`), once that was found, and how far it was parsed.
     complete: Option<usize>,
     parsed: usize,
@@ -87,7 +87,7 @@ impl Default for CommandReader {
             buffer: Vec::new(),
             start: 0,
             scanned: 0,
-            place: Place::Code,
+            place: LexicalState::Code,
             complete: None,
             parsed: 0,
             last: 0..0,
@@ -115,8 +115,8 @@ impl CommandReader {
             self.complete = self.complete.map(|end| end - self.start);
             self.start = 0;
             self.last = 0..0;
-            if self.buffer.len() < KEPT_ROOM && self.buffer.capacity() > 2 * KEPT_ROOM {
-                self.buffer.shrink_to(KEPT_ROOM);
+            if self.buffer.len() < RETAINED_CAPACITY && self.buffer.capacity() > 2 * RETAINED_CAPACITY {
+                self.buffer.shrink_to(RETAINED_CAPACITY);
             }
         }
         self.buffer.extend_from_slice(bytes);
@@ -131,13 +131,13 @@ impl CommandReader {
     /// Whether the stream has come to a text in quotes that was begun outside packets. A packet cannot begin there: its
     /// start byte is a character of the text.
     pub fn is_quoting(&self) -> bool {
-        self.place == Place::Text && self.opened >= self.packet_end
+        self.place == LexicalState::Text && self.opened >= self.packet_end
     }
 
     /// Whether a statement has begun and its `;` is still to come.
     pub fn is_unfinished(&self) -> bool {
         let rest = &self.buffer[self.start..];
-        self.place != Place::Code || blanks(rest, 0).map_or(true, |at| at < rest.len())
+        self.place != LexicalState::Code || blanks(rest, 0).map_or(true, |at| at < rest.len())
     }
 
     /// What has come of a statement whose `;` is still to come.
@@ -149,9 +149,9 @@ impl CommandReader {
     /// none.
     pub fn open(&self) -> Option<(Problem, u64)> {
         match self.place {
-            Place::Text => Some((Problem::OpenString, self.opened)),
-            Place::Comment | Place::FirstComment => Some((Problem::OpenComment, self.opened)),
-            Place::Code | Place::Dropped => None,
+            LexicalState::Text => Some((Problem::OpenString, self.opened)),
+            LexicalState::Comment | LexicalState::FirstComment => Some((Problem::OpenComment, self.opened)),
+            LexicalState::Code | LexicalState::Dropped => None,
         }
     }
 
@@ -184,17 +184,17 @@ impl CommandReader {
     /// Looks for the `;` of the current statement. False if it is not there yet.
     fn find_end(&mut self) -> bool {
         loop {
-            if self.scanned == self.start && self.place == Place::Code {
+            if self.scanned == self.start && self.place == LexicalState::Code {
                 self.start += self.buffer[self.start..].iter().take_while(|b| **b <= b' ').count();
                 self.scanned = self.start;
             }
             let rest = &self.buffer[self.scanned..];
             let (found, dropping) = match self.place {
-                Place::Code => (find(rest, [b';', b'\'', b'{', b'!']), false),
-                Place::Text => (find(rest, [b'\'', b'!', b'!', b'!']), false),
-                Place::Comment => (find(rest, [b'}', b'!', b'!', b'!']), false),
-                Place::FirstComment => (find(rest, [b'}', b'!', b'!', b'!']), true),
-                Place::Dropped => (find(rest, [b';', b'!', b'!', b'!']), true),
+                LexicalState::Code => (find(rest, [b';', b'\'', b'{', b'!']), false),
+                LexicalState::Text => (find(rest, [b'\'', b'!', b'!', b'!']), false),
+                LexicalState::Comment => (find(rest, [b'}', b'!', b'!', b'!']), false),
+                LexicalState::FirstComment => (find(rest, [b'}', b'!', b'!', b'!']), true),
+                LexicalState::Dropped => (find(rest, [b';', b'!', b'!', b'!']), true),
             };
             let at = found.map(|offset| self.scanned + offset);
             self.scanned = at.map_or(self.buffer.len(), |at| at + 1);
@@ -209,7 +209,7 @@ impl CommandReader {
                     Some(true) => {
                         self.start = at;
                         self.scanned = at + RESET.len();
-                        self.place = Place::Code;
+                        self.place = LexicalState::Code;
                     }
                     Some(false) => {}
                     None => {
@@ -220,26 +220,26 @@ impl CommandReader {
                 }
                 continue;
             }
-            if self.place == Place::Code {
+            if self.place == LexicalState::Code {
                 self.opened = self.passed + at as u64;
             }
             self.place = match (self.place, self.buffer[at]) {
-                (Place::Code, b'\'') => Place::Text,
-                (Place::Code, b'{') if at == self.start => Place::FirstComment,
-                (Place::Code, b'{') => Place::Comment,
-                (Place::Code, _) => {
+                (LexicalState::Code, b'\'') => LexicalState::Text,
+                (LexicalState::Code, b'{') if at == self.start => LexicalState::FirstComment,
+                (LexicalState::Code, b'{') => LexicalState::Comment,
+                (LexicalState::Code, _) => {
                     self.complete = Some(at);
                     self.parsed = 0;
                     return true;
                 }
-                _ => Place::Code,
+                _ => LexicalState::Code,
             };
         }
     }
 
     /// Whether the `!` at an offset is a `!RESET` that counts; none if more of the stream must come to tell.
     fn reset_at(&self, at: usize) -> Option<bool> {
-        let counts = self.place == Place::Code || matches!(self.byte_before(at), b'\n' | b'\r');
+        let counts = self.place == LexicalState::Code || matches!(self.byte_before(at), b'\n' | b'\r');
         let text = &self.buffer[at..self.buffer.len().min(at + RESET.len())];
         if !counts || !text.eq_ignore_ascii_case(&RESET[..text.len()]) {
             return Some(false);
@@ -275,7 +275,7 @@ impl CommandReader {
         self.last = 0..0;
         self.start += MAX_STATEMENT;
         self.scanned = self.start;
-        self.place = Place::Dropped;
+        self.place = LexicalState::Dropped;
         self.complete = None;
         error
     }

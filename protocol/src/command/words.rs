@@ -490,7 +490,7 @@ impl Word {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command::operate::words_behind;
+    use crate::command::operate::words_after;
 
     #[test]
     fn any_prefix_from_the_shortest_form_on_is_accepted() {
@@ -534,8 +534,8 @@ mod tests {
         let statements: Vec<Word> = COMMANDS.iter().chain(OBJECTS).copied().collect();
         for context in [
             statements.as_slice(),
-            words_behind(Word::Set),
-            words_behind(Word::If),
+            words_after(Word::Set),
+            words_after(Word::If),
             VECTOR_OPTIONS,
             POLYGON_OPTIONS,
             SURFACE_OPTIONS,

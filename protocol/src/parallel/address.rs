@@ -1,6 +1,6 @@
 //! Address lists: which memory a physical read or write is about.
 
-use super::Trouble;
+use super::ParallelError;
 
 /// Most blocks in an address list. The driver used one; more are ours.
 pub const MAX_BLOCKS: usize = 64;
@@ -35,20 +35,20 @@ impl AddressList {
     ///
     /// # Errors
     /// [`Trouble::ByteCount`] for bytes that end before the list does, or for none or more than [`MAX_BLOCKS`] pieces.
-    pub fn read(bytes: &[u8]) -> Result<(AddressList, &[u8]), Trouble> {
+    pub fn read(bytes: &[u8]) -> Result<(AddressList, &[u8]), ParallelError> {
         let word = |at: usize| {
-            let pair = bytes.get(2 * at..2 * at + 2).ok_or(Trouble::ByteCount)?;
+            let pair = bytes.get(2 * at..2 * at + 2).ok_or(ParallelError::ByteCount)?;
             Ok(u16::from_be_bytes([pair[0], pair[1]]))
         };
         let count = usize::from(word(0)?);
         if count == 0 || count > MAX_BLOCKS {
-            return Err(Trouble::ByteCount);
+            return Err(ParallelError::ByteCount);
         }
         let block = |index: usize| {
             let (low, high, words) = (word(3 * index + 1)?, word(3 * index + 2)?, word(3 * index + 3)?);
             Ok(Block { address: u32::from(high) << 16 | u32::from(low), words })
         };
-        let blocks = (0..count).map(block).collect::<Result<Vec<Block>, Trouble>>()?;
+        let blocks = (0..count).map(block).collect::<Result<Vec<Block>, ParallelError>>()?;
         Ok((AddressList(blocks), &bytes[2 * (1 + 3 * count)..]))
     }
 
@@ -76,7 +76,7 @@ mod tests {
     #[test]
     fn a_list_that_is_cut_off_is_a_bad_byte_count() {
         for bytes in [&[][..], &[0], &[0, 0], &[0, 1, 0, 2, 0, 1, 0], &[0, 65]] {
-            assert_eq!(AddressList::read(bytes), Err(Trouble::ByteCount), "{bytes:?}");
+            assert_eq!(AddressList::read(bytes), Err(ParallelError::ByteCount), "{bytes:?}");
         }
     }
 }

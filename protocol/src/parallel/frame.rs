@@ -5,7 +5,7 @@ pub const MAX_BLOCK_BYTES: usize = 65_534;
 
 /// A frame: what one pulse of the interface, or one transfer by DMA, carried.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Frame {
+pub enum ParallelFrame {
     /// `W`: a word, highest byte first.
     Word(u16),
     /// `D`: a block, with its length in bytes as a word before it.
@@ -39,12 +39,12 @@ pub fn write_reset(out: &mut Vec<u8>) {
 
 /// Cuts a stream into frames, however it arrives. An iterator over the frames that are complete.
 #[derive(Clone, Debug, Default)]
-pub struct FrameReader {
+pub struct ParallelFrameReader {
     buffer: Vec<u8>,
     start: usize,
 }
 
-impl FrameReader {
+impl ParallelFrameReader {
     /// Takes more of the stream.
     pub fn push(&mut self, bytes: &[u8]) {
         self.buffer.drain(..self.start);
@@ -58,20 +58,20 @@ impl FrameReader {
     }
 }
 
-impl Iterator for FrameReader {
-    type Item = Frame;
+impl Iterator for ParallelFrameReader {
+    type Item = ParallelFrame;
 
-    fn next(&mut self) -> Option<Frame> {
+    fn next(&mut self) -> Option<ParallelFrame> {
         let rest = &self.buffer[self.start..];
         let word = |at: usize| Some(u16::from_be_bytes([*rest.get(at)?, *rest.get(at + 1)?]));
         let (frame, length) = match rest.first()? {
-            b'W' => (Frame::Word(word(1)?), 3),
+            b'W' => (ParallelFrame::Word(word(1)?), 3),
             b'D' => {
                 let length = usize::from(word(1)?);
-                (Frame::Block(rest.get(3..3 + length)?.to_vec()), 3 + length)
+                (ParallelFrame::Block(rest.get(3..3 + length)?.to_vec()), 3 + length)
             }
-            b'R' => (Frame::Reset, 1),
-            byte => (Frame::Noise(*byte), 1),
+            b'R' => (ParallelFrame::Reset, 1),
+            byte => (ParallelFrame::Noise(*byte), 1),
         };
         self.start += length;
         Some(frame)
@@ -100,26 +100,26 @@ mod tests {
             size in 1_usize..20
         ) {
             let mut stream = Vec::new();
-            let frames: Vec<Frame> = frames.into_iter().map(|(kind, word, mut bytes)| match kind {
+            let frames: Vec<ParallelFrame> = frames.into_iter().map(|(kind, word, mut bytes)| match kind {
                 0 => {
                     write_word(word, &mut stream);
-                    Frame::Word(word)
+                    ParallelFrame::Word(word)
                 }
                 1 => {
                     write_block(&bytes, &mut stream);
                     bytes.extend(&[0][..bytes.len() % 2]);
-                    Frame::Block(bytes)
+                    ParallelFrame::Block(bytes)
                 }
                 2 => {
                     write_reset(&mut stream);
-                    Frame::Reset
+                    ParallelFrame::Reset
                 }
                 _ => {
                     stream.push(b'!');
-                    Frame::Noise(b'!')
+                    ParallelFrame::Noise(b'!')
                 }
             }).collect();
-            let (mut reader, mut found) = (FrameReader::default(), Vec::new());
+            let (mut reader, mut found) = (ParallelFrameReader::default(), Vec::new());
             for piece in stream.chunks(size) {
                 reader.push(piece);
                 found.extend(reader.by_ref());

@@ -1,7 +1,7 @@
 //! A listing of a dialogue over the parallel interface for people.
 
 use super::{
-    AddressList, Code, Command, DONE, ERROR, Frame, FrameReader, INFORMATION, Trouble, write_block, write_word,
+    AddressList, Code, CommandWord, DONE, ERROR, ParallelFrame, ParallelFrameReader, INFORMATION, ParallelError, write_block, write_word,
 };
 use std::fmt::Write;
 
@@ -21,9 +21,9 @@ pub enum Side {
 
 /// Lists frames of both sides, in the order in which they were sent.
 #[derive(Clone, Debug, Default)]
-pub struct Listing {
-    host: FrameReader,
-    machine: FrameReader,
+pub struct ParallelListing {
+    host: ParallelFrameReader,
+    machine: ParallelFrameReader,
     /// The command under way.
     command: Option<Code>,
     /// What the next words of the host are, last one first.
@@ -32,30 +32,30 @@ pub struct Listing {
     from_machine: Vec<&'static str>,
 }
 
-impl Listing {
+impl ParallelListing {
     /// Lists what a side says next; a frame is listed when it is complete.
     pub fn push(&mut self, side: Side, bytes: &[u8], out: &mut String) {
         let reader = if side == Side::Host { &mut self.host } else { &mut self.machine };
         reader.push(bytes);
-        let frames: Vec<Frame> = reader.by_ref().collect();
+        let frames: Vec<ParallelFrame> = reader.by_ref().collect();
         for frame in frames {
             let mut raw = Vec::new();
             let meaning = match &frame {
-                Frame::Word(word) => {
+                ParallelFrame::Word(word) => {
                     write_word(*word, &mut raw);
                     self.word(side, *word)
                 }
-                Frame::Block(bytes) => {
+                ParallelFrame::Block(bytes) => {
                     write_block(bytes, &mut raw);
                     self.block(side, bytes)
                 }
-                Frame::Reset => {
+                ParallelFrame::Reset => {
                     raw.push(b'R');
                     self.from_host.clear();
                     self.from_machine.clear();
                     "pulse of the reset line".into()
                 }
-                Frame::Noise(byte) => {
+                ParallelFrame::Noise(byte) => {
                     raw.push(*byte);
                     "dropped: it begins no frame".into()
                 }
@@ -67,12 +67,12 @@ impl Listing {
     fn word(&mut self, side: Side, word: u16) -> String {
         let expected = if side == Side::Host { self.from_host.pop() } else { self.from_machine.pop() };
         match expected {
-            Some("error") => match Trouble::from_number(word) {
+            Some("error") => match ParallelError::from_number(word) {
                 Some(trouble) => format!("error {word}: {trouble}"),
                 None => format!("error {word}"),
             },
             Some(what) => format!("{what} {word}"),
-            None if side == Side::Host => match Command::from_word(word) {
+            None if side == Side::Host => match CommandWord::from_word(word) {
                 Some(command) => {
                     self.command = Some(command.code);
                     format!("{word:04x} {}", command.code.name())

@@ -9,8 +9,8 @@ mod frame;
 mod listing;
 
 pub use address::{AddressList, Block, MAX_BLOCKS};
-pub use frame::{Frame, FrameReader, MAX_BLOCK_BYTES, write_block, write_reset, write_word};
-pub use listing::{Listing, Side};
+pub use frame::{ParallelFrame, ParallelFrameReader, MAX_BLOCK_BYTES, write_block, write_reset, write_word};
+pub use listing::{ParallelListing, Side};
 
 /// Added to a command word in the answer that its block has been taken or given.
 pub const DONE: u16 = 0x0a00;
@@ -92,20 +92,20 @@ impl Code {
 
 /// A command word: a code, and in its lowest four bits the number of the unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Command {
+pub struct CommandWord {
     /// What.
     pub code: Code,
     /// Which workstation at the host, 0 to 15; the machine answers with the same.
     pub unit: u8,
 }
 
-impl Command {
+impl CommandWord {
     /// The command of a word, if it is one.
-    pub fn from_word(word: u16) -> Option<Command> {
+    pub fn from_word(word: u16) -> Option<CommandWord> {
         if word & 0x0ff0 != 0 {
             return None;
         }
-        Code::of(word).map(|code| Command { code, unit: (word & 15) as u8 })
+        Code::of(word).map(|code| CommandWord { code, unit: (word & 15) as u8 })
     }
 
     /// Its word.
@@ -117,7 +117,7 @@ impl Command {
 /// What goes wrong on the interface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[repr(u16)]
-pub enum Trouble {
+pub enum ParallelError {
     /// The other side did not take a word in time. Only a host can see this.
     #[error("handshake time-out")]
     Handshake = 1,
@@ -141,21 +141,21 @@ pub enum Trouble {
     Data = 7,
 }
 
-impl Trouble {
+impl ParallelError {
     /// All of them; 1 to 6 are the numbers of the driver.
-    pub const ALL: [Trouble; 7] = [
-        Trouble::Handshake,
-        Trouble::ByteCount,
-        Trouble::Address,
-        Trouble::Command,
-        Trouble::Name,
-        Trouble::Timeout,
-        Trouble::Data,
+    pub const ALL: [ParallelError; 7] = [
+        ParallelError::Handshake,
+        ParallelError::ByteCount,
+        ParallelError::Address,
+        ParallelError::Command,
+        ParallelError::Name,
+        ParallelError::Timeout,
+        ParallelError::Data,
     ];
 
     /// The trouble with a number.
-    pub fn from_number(number: u16) -> Option<Trouble> {
-        Trouble::ALL.into_iter().find(|trouble| *trouble as u16 == number)
+    pub fn from_number(number: u16) -> Option<ParallelError> {
+        ParallelError::ALL.into_iter().find(|trouble| *trouble as u16 == number)
     }
 }
 
@@ -171,12 +171,12 @@ mod tests {
     #[test]
     fn command_words_read_back() {
         for (code, name) in Code::ALL {
-            let command = Command { code, unit: 9 };
-            assert_eq!(Command::from_word(command.word()), Some(command));
+            let command = CommandWord { code, unit: 9 };
+            assert_eq!(CommandWord::from_word(command.word()), Some(command));
             assert_eq!((code.name(), Code::of(code as u16 | DONE)), (name, Some(code)));
         }
         for word in [0, 0x2000, 0x4000, 0x6000, 0x7000, 0x8a00, 0x8010] {
-            assert_eq!(Command::from_word(word), None, "{word:04x}");
+            assert_eq!(CommandWord::from_word(word), None, "{word:04x}");
         }
     }
 

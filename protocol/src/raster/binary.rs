@@ -10,7 +10,7 @@ pub const MAX_RUNS: usize = 65_535;
 pub const MAX_LOOKUP_ENTRIES: usize = 256;
 
 /// Runs and entries that the witness is told of one by one.
-const TOLD: usize = 4;
+const LISTED: usize = 4;
 
 /// Bytes of a run: count and colour.
 const RUN: usize = 5;
@@ -120,7 +120,7 @@ pub fn record<W: Witness>(body: &[u8], at: &mut usize, witness: &mut W) -> Resul
     let Some(&(opcode, word)) = RasterOpcode::ALL.iter().find(|row| row.0 as u8 == code) else {
         return Err(reader.error(1, "opcode", BinaryProblem::Unknown(code.into())));
     };
-    reader.tell(1, "opcode", format_args!("{word}"));
+    reader.report(1, "opcode", format_args!("{word}"));
     let command = match opcode {
         RasterOpcode::Erase => RasterCommand::Erase { color: reader.color("colour")? },
         RasterOpcode::Window => RasterCommand::Window {
@@ -158,12 +158,12 @@ fn runs<W: Witness>(reader: &mut Reader<'_, '_, W>) -> Result<RasterCommand, Bin
     let bytes = reader.take(count * RUN, "runs")?;
     let run = |b: &[u8]| Run { count: u16::from_le_bytes([b[0], b[1]]), color: [b[2], b[3], b[4]] };
     let runs: Vec<Run> = bytes.chunks_exact(RUN).map(run).collect();
-    for (index, Run { count, color: [r, g, b] }) in runs.iter().take(TOLD).enumerate() {
+    for (index, Run { count, color: [r, g, b] }) in runs.iter().take(LISTED).enumerate() {
         let meaning = format_args!("{count} pixels of red {r}, green {g}, blue {b}");
-        reader.tell_at(place + index * RUN, RUN, "run", meaning);
+        reader.report_at(place + index * RUN, RUN, "run", meaning);
     }
-    if count > TOLD {
-        reader.tell((count - TOLD) * RUN, "runs", format_args!("{} more", count - TOLD));
+    if count > LISTED {
+        reader.report((count - LISTED) * RUN, "runs", format_args!("{} more", count - LISTED));
     }
     Ok(RasterCommand::Runs(runs))
 }

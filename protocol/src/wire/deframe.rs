@@ -7,7 +7,7 @@ use super::packet::{
 use std::ops::Range;
 
 /// Bytes that the buffer makes room for at least, and that [`FrameDecoder::feed`] takes at a time.
-const ROOM: usize = 256 << 10;
+const BUFFER_CAPACITY: usize = 256 << 10;
 
 /// Bytes of an escape packet that [`FrameDecoder::feed`] takes at a time, since its length is not known before its end.
 const ESCAPE_PIECE: usize = 4096;
@@ -161,13 +161,13 @@ impl FrameDecoder {
             self.end = 0;
         }
         let waiting = self.end - self.start;
-        let room = ROOM.max(self.needed.saturating_sub(waiting));
+        let room = BUFFER_CAPACITY.max(self.needed.saturating_sub(waiting));
         if self.buffer.len() - self.end < room {
             self.buffer.copy_within(self.start..self.end, 0);
             self.start = 0;
             self.end = waiting;
             if self.buffer.len() < waiting + room {
-                self.buffer.resize(waiting + room.max(2 * ROOM), 0);
+                self.buffer.resize(waiting + room.max(2 * BUFFER_CAPACITY), 0);
             }
         }
         &mut self.buffer[self.end..]
@@ -184,7 +184,7 @@ impl FrameDecoder {
             return None;
         }
         let bytes = &self.buffer[self.start..self.end];
-        let step = look(bytes, self.historical, self.quoted, &mut self.scan);
+        let step = classify_start(bytes, self.historical, self.quoted, &mut self.scan);
         self.needed = if let Step::Wait(needed) = step { needed } else { 0 };
         let (frame, length) = take(step, bytes, &mut self.scan, &mut self.unescaped, &mut self.counters)?;
         self.start += length;
@@ -207,10 +207,10 @@ impl FrameDecoder {
             bytes = self.complete(bytes, &mut each);
         }
         while !bytes.is_empty() {
-            let step = look(bytes, self.historical, self.quoted, &mut self.scan);
+            let step = classify_start(bytes, self.historical, self.quoted, &mut self.scan);
             if let Step::Wait(needed) = step {
                 self.needed = needed;
-                return self.keep(bytes);
+                return self.append(bytes);
             }
             let taken = take(step, bytes, &mut self.scan, &mut self.unescaped, &mut self.counters);
             let Some((frame, length)) = taken else { return };
@@ -228,7 +228,7 @@ impl FrameDecoder {
             _ => LONG_HEADER,
         };
         let (now, later) = bytes.split_at(wanted.min(bytes.len()));
-        self.keep(now);
+        self.append(now);
         while let Some(frame) = self.next_frame() {
             self.quoted = each(frame);
         }
@@ -236,7 +236,7 @@ impl FrameDecoder {
     }
 
     /// Puts bytes into the buffer.
-    fn keep(&mut self, mut bytes: &[u8]) {
+    fn append(&mut self, mut bytes: &[u8]) {
         while !bytes.is_empty() {
             let space = self.space();
             let (now, later) = bytes.split_at(bytes.len().min(space.len()));
@@ -314,17 +314,17 @@ fn take<'a>(
 }
 
 /// What stands at the start of `bytes`, which are not empty.
-fn look(bytes: &[u8], historical: bool, quoted: bool, scan: &mut Scan) -> Step {
+fn classify_start(bytes: &[u8], historical: bool, quoted: bool, scan: &mut Scan) -> Step {
     match bytes[0] {
         _ if quoted => Step::Text(1 + find_start(&bytes[1..], historical)),
-        LONG_START => look_long(bytes),
-        COUNT_START if historical => look_count(bytes),
-        ESCAPE_START if historical => look_escape(bytes, scan),
+        LONG_START => scan_long(bytes),
+        COUNT_START if historical => scan_counted(bytes),
+        ESCAPE_START if historical => scan_escaped(bytes, scan),
         _ => Step::Text(find_start(bytes, historical)),
     }
 }
 
-fn look_escape(bytes: &[u8], scan: &mut Scan) -> Step {
+fn scan_escaped(bytes: &[u8], scan: &mut Scan) -> Step {
     match bytes.get(1) {
         None => return Step::Wait(0),
         Some(&ESCAPE_START) => return Step::Empty,
@@ -345,7 +345,7 @@ fn look_escape(bytes: &[u8], scan: &mut Scan) -> Step {
     if limit > MAX_ESCAPE_STREAM { Step::Noise(limit, NoiseReason::TooLong) } else { Step::Wait(0) }
 }
 
-fn look_long(bytes: &[u8]) -> Step {
+fn scan_long(bytes: &[u8]) -> Step {
     let Some((header, rest)) = bytes.split_first_chunk::<LONG_HEADER>() else {
         return Step::Wait(0);
     };
@@ -365,7 +365,7 @@ fn look_long(bytes: &[u8]) -> Step {
     Step::Packet(PacketForm::Long, Route::from(header[1]), LONG_HEADER..LONG_HEADER + length, total)
 }
 
-fn look_count(bytes: &[u8]) -> Step {
+fn scan_counted(bytes: &[u8]) -> Step {
     let digit = |at: usize| bytes.get(at).map(|b| usize::from(b.wrapping_sub(COUNT_BIAS)));
     let is_digit = |digit: Option<usize>| digit.is_none_or(|digit| digit < COUNT_RADIX);
     let (high, low) = (digit(1), digit(2));

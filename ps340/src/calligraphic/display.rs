@@ -18,7 +18,7 @@ use super::drawer::Drawer;
 use super::exposure::Exposure;
 use super::phosphor::Emission;
 use super::tile::{PLANE, STRIDE, TILE_HEIGHT, TILE_WIDTH, Tile};
-use super::{Controls, Light, Refresh};
+use super::{Controls, ScreenLight, Refresh};
 use crate::picture::Picture;
 use crate::traversal::Stroke;
 use processes::widest::{self, Work};
@@ -40,7 +40,7 @@ pub struct Display {
     controls: Controls,
     size: [u32; 2],
     emission: Emission,
-    light: Light,
+    light: ScreenLight,
     drawer: Drawer,
     bins: Bins,
     /// Red, green, blue and 255 of each pixel.
@@ -126,7 +126,7 @@ impl Display {
     pub fn awaits(&self, version: u64, frame: u64) -> bool {
         let Some(written) = self.written else { return true };
         let changed = written.version != version || self.stale || self.unexposed;
-        changed || (frame > written.frame && !self.stands(&written))
+        changed || (frame > written.frame && !self.is_steady(&written))
     }
 
     /// Lets time go to a frame, in which the picture is `strokes`. Frames before it had the strokes of before.
@@ -181,7 +181,7 @@ impl Display {
         written.frame += elapsed;
         written.stood = written.stood.saturating_add(elapsed);
         self.written = Some(written);
-        if self.stands(&written) {
+        if self.is_steady(&written) {
             // Nothing is left to wait for: the glow is that of a picture that stands still.
             self.glow(1, f64::INFINITY, 1, 0);
         }
@@ -224,7 +224,7 @@ impl Display {
     }
 
     /// The light that the latest refresh wrote, before phosphor and exposure.
-    pub fn light(&self) -> &Light {
+    pub fn light(&self) -> &ScreenLight {
         &self.light
     }
 
@@ -234,7 +234,7 @@ impl Display {
     }
 
     /// Whether the picture is refreshed in every frame, and the phosphor glows as it will for ever.
-    fn stands(&self, written: &Written) -> bool {
+    fn is_steady(&self, written: &Written) -> bool {
         let steady = self.controls.steady || written.period == 1;
         steady && self.emission.slow.iter().all(|slow| f64::from(slow.keep).powf(written.stood as f64) < UNSEEN)
     }

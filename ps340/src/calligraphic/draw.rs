@@ -1,6 +1,6 @@
 //! Drawing strokes at once, and the beam's way to the light of a picture.
 
-use super::{Beam, Light, bins::Bins, optics::Optics};
+use super::{Beam, ScreenLight, bins::Bins, optics::Optics};
 use crate::traversal::Stroke;
 
 impl Beam {
@@ -10,8 +10,8 @@ impl Beam {
     }
 
     /// A picture without light.
-    pub(super) fn dark(&self, guns: usize) -> Light {
-        Light::dark(self.optics(), guns)
+    pub(super) fn dark(&self, guns: usize) -> ScreenLight {
+        ScreenLight::dark(self.optics(), guns)
     }
 }
 
@@ -22,7 +22,7 @@ impl Beam {
 /// and colours count as 0, those above [`STRONGEST`](super::STRONGEST) as that.
 ///
 /// The light is the same for any number of threads.
-pub fn draw(beam: &Beam, strokes: &[Stroke]) -> Light {
+pub fn draw(beam: &Beam, strokes: &[Stroke]) -> ScreenLight {
     let mut light = beam.dark(3);
     light.write(&mut Bins::default(), strokes);
     light

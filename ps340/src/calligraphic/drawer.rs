@@ -2,7 +2,7 @@
 
 #[cfg(feature = "window")]
 use super::gpu::{Gpu, GpuError};
-use super::{Light, bins::Bins};
+use super::{ScreenLight, bins::Bins};
 use crate::traversal::Stroke;
 #[cfg(feature = "window")]
 use std::sync::Arc;
@@ -22,7 +22,7 @@ pub enum Drawer {
 
 impl Drawer {
     /// Writes strokes in place of what was written before.
-    pub(super) fn write(&self, light: &mut Light, bins: &mut Bins, strokes: &[Stroke]) {
+    pub(super) fn write(&self, light: &mut ScreenLight, bins: &mut Bins, strokes: &[Stroke]) {
         #[cfg(feature = "window")]
         if let Drawer::Gpu(gpu) = self
             && gpu.write(light, strokes)

@@ -4,7 +4,7 @@ use super::bins::Bins;
 use super::optics::Optics;
 use super::{
     tile::{PLANE, STRIDE, TILE_HEIGHT, TILE_WIDTH, Tile, tiles},
-    track::{Room, Track},
+    track::{Scratch, Track},
 };
 use crate::traversal::Stroke;
 use processes::widest::{self, Work};
@@ -16,7 +16,7 @@ const STROKES: usize = 16;
 
 /// Light per pixel; 1 is the centre of a long stroke of intensity 1.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Light {
+pub struct ScreenLight {
     pub(super) optics: Optics,
     /// Guns of the tube: three that write red, green and blue, or one.
     pub(super) guns: usize,
@@ -24,7 +24,7 @@ pub struct Light {
     pub(super) tiles: Vec<Tile>,
 }
 
-impl Light {
+impl ScreenLight {
     /// A dark screen.
     pub(super) fn dark(optics: Optics, guns: usize) -> Self {
         let [columns, rows] = tiles(optics.size);
@@ -133,7 +133,7 @@ impl Work for Writing<'_> {
         if strokes.peek().is_none() {
             return;
         }
-        let mut rooms = [const { Room::new() }; STROKES];
+        let mut rooms = [const { Scratch::new() }; STROKES];
         let mut tracks = Vec::with_capacity(STROKES);
         loop {
             tracks.clear();

@@ -64,12 +64,12 @@ pub use drawer::Drawer;
 pub use exposure::Exposure;
 #[cfg(feature = "window")]
 pub use gpu::{Gpu, GpuError};
-pub use light::Light;
+pub use light::ScreenLight;
 pub use limits::{DOT_LENGTH, FAR, MAX_SIZE, SPOT_CEILING, SPOT_FLOOR, STRONGEST};
 pub use phosphor::{Component, PHOSPHORS, Phosphor, phosphor};
 pub use print::{svg, text};
 pub use refresh::{POSITIONING_SPEED, Refresh, SETTLING_TIME, STARTING_TIME, WRITING_SPEED};
-pub use screen::{DISPLAY_SIZE, Scene, Screen, Seen};
+pub use screen::{DISPLAY_SIZE, Scene, SharedDisplay, DisplayLook};
 
 #[cfg(test)]
 mod display_tests;

@@ -61,7 +61,7 @@ impl Optics {
         if !(near(stroke.start) && near(stroke.end) && finite) {
             return None;
         }
-        let (mut start, mut end) = (self.place(stroke.start), self.place(stroke.end));
+        let (mut start, mut end) = (self.to_pixels(stroke.start), self.to_pixels(stroke.end));
         let (mut first, mut last) = (self.current(stroke.intensity[0]), self.current(stroke.intensity[1]));
         if first <= 0.0 && last <= 0.0 {
             return None;
@@ -102,7 +102,7 @@ impl Optics {
 
     /// First and last place of the part of a stroke whose light can reach the picture; `None` if there is none.
     #[cfg(feature = "window")]
-    pub fn seen(&self, start: [f64; 2], end: [f64; 2]) -> Option<[[f64; 2]; 2]> {
+    pub fn clipped_to_picture(&self, start: [f64; 2], end: [f64; 2]) -> Option<[[f64; 2]; 2]> {
         let mut parts = [0.0, 1.0];
         for axis in [0, 1] {
             between([start[axis], end[axis]], [-self.reach, self.size[axis] as f64 + self.reach], &mut parts)?;
@@ -120,7 +120,7 @@ impl Optics {
 
     /// A place on the screen in pixels from the upper left corner of the picture.
     #[inline(always)]
-    fn place(&self, [x, y]: [f32; 2]) -> [f64; 2] {
+    fn to_pixels(&self, [x, y]: [f32; 2]) -> [f64; 2] {
         [f64::from(x).mul_add(self.half, self.center[0]), f64::from(-y).mul_add(self.half, self.center[1])]
     }
 

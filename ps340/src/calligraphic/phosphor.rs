@@ -39,13 +39,13 @@ pub struct Component {
 
 impl Component {
     /// What is left of its light after a frame.
-    fn keep(&self) -> f64 {
+    fn remaining(&self) -> f64 {
         (-FRAME_SECONDS / self.decay).exp()
     }
 }
 
 /// What is left after a frame of light that is not over by then.
-const SEEN: f64 = 1e-3;
+const VISIBLE_REMAINDER: f64 = 1e-3;
 
 const fn component(gun: usize, chromaticity: [f64; 2], decay: f64, part: f64) -> Component {
     Component { gun, chromaticity, decay, part }
@@ -128,7 +128,7 @@ impl Phosphor {
 
     /// Whether some of its light lasts longer than a frame.
     pub fn glows(&self) -> bool {
-        self.components.iter().any(|component| component.keep() > SEEN)
+        self.components.iter().any(|component| component.remaining() > VISIBLE_REMAINDER)
     }
 
     /// What the components send out in frames, in the colours of the display.
@@ -137,8 +137,8 @@ impl Phosphor {
         let mut emission = Emission { prompt: [[0.0; 3]; 3], slow: Vec::new() };
         for (component, color) in self.components.iter().zip(colors) {
             let color = color.map(|channel| (channel * component.part) as f32);
-            let keep = component.keep();
-            if keep > SEEN {
+            let keep = component.remaining();
+            if keep > VISIBLE_REMAINDER {
                 emission.slow.push(Slow { gun: component.gun, color, keep: keep as f32 });
             } else {
                 let sum = &mut emission.prompt[component.gun];

@@ -39,14 +39,14 @@ impl Scene {
 
 /// The display that all look at.
 #[derive(Debug, Default)]
-pub struct Screen {
+pub struct SharedDisplay {
     drawer: Drawer,
-    standing: Mutex<Option<Standing>>,
+    standing: Mutex<Option<DisplayState>>,
 }
 
 /// The display, once somebody has looked.
 #[derive(Debug)]
-struct Standing {
+struct DisplayState {
     display: Display,
     scene: Scene,
     /// How often other pixels were shown.
@@ -54,7 +54,7 @@ struct Standing {
 }
 
 /// What somebody sees who looks.
-pub struct Seen<'a> {
+pub struct DisplayLook<'a> {
     /// The display at the scene, or at a later one.
     pub display: &'a Display,
     /// Another number for other pixels.
@@ -63,7 +63,7 @@ pub struct Seen<'a> {
     pub goes_on: bool,
 }
 
-impl Screen {
+impl SharedDisplay {
     /// A screen that nobody has looked at yet.
     pub fn new(drawer: Drawer) -> Self {
         Self { drawer, standing: Mutex::default() }
@@ -82,13 +82,13 @@ impl Screen {
     /// Brings the display to a scene, unless it is past it, and lets `see` look at it.
     ///
     /// - `size`: width and height in pixels; without one, those it has, or [`DISPLAY_SIZE`].
-    pub fn look<T>(&self, scene: &Scene, size: Option<[u32; 2]>, see: impl FnOnce(Seen<'_>) -> T) -> T {
+    pub fn with_display<T>(&self, scene: &Scene, size: Option<[u32; 2]>, see: impl FnOnce(DisplayLook<'_>) -> T) -> T {
         let mut guard = self.lock();
         let made = || {
             let display = Display::drawn_by(self.drawer.clone(), scene.controls, size.unwrap_or(DISPLAY_SIZE));
-            Standing { display, scene: scene.clone(), shown: 0 }
+            DisplayState { display, scene: scene.clone(), shown: 0 }
         };
-        let Standing { display, scene: latest, shown } = guard.get_or_insert_with(made);
+        let DisplayState { display, scene: latest, shown } = guard.get_or_insert_with(made);
         if !scene.is_older(latest) {
             latest.clone_from(scene);
         }
@@ -103,7 +103,7 @@ impl Screen {
             *shown += 1;
         }
         let goes_on = latest.controls.remembers() && display.awaits(latest.version, latest.frame + 1);
-        see(Seen { display, shown: *shown, goes_on })
+        see(DisplayLook { display, shown: *shown, goes_on })
     }
 
     /// Gives back the room that the display keeps for pictures as large as those before.
@@ -114,7 +114,7 @@ impl Screen {
     }
 
     /// A thread that panicked with the lock leaves a display that can be shown again.
-    fn lock(&self) -> MutexGuard<'_, Option<Standing>> {
+    fn lock(&self) -> MutexGuard<'_, Option<DisplayState>> {
         self.standing.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -130,20 +130,20 @@ mod tests {
         Scene { frame, version, strokes: Arc::new(vec![stroke]), settings: 0, controls }
     }
 
-    fn bytes(screen: &Screen, scene: &Scene) -> Vec<u8> {
-        screen.look(scene, Some([40, 30]), |seen| seen.display.frame().to_vec())
+    fn bytes(screen: &SharedDisplay, scene: &Scene) -> Vec<u8> {
+        screen.with_display(scene, Some([40, 30]), |seen| seen.display.frame().to_vec())
     }
 
     #[test]
     fn a_scene_that_is_older_than_what_is_shown_changes_nothing() {
-        let screen = Screen::default();
+        let screen = SharedDisplay::default();
         let (old, new) = (scene(5, 1, -0.5), scene(6, 2, 0.5));
         let first = bytes(&screen, &old);
         let then = bytes(&screen, &new);
         assert_ne!(first, then);
         assert_eq!(bytes(&screen, &old), then);
         assert_eq!(bytes(&screen, &Scene { frame: 6, ..old }), then);
-        let resized = screen.look(&scene(5, 1, -0.5), Some([20, 20]), |seen| seen.display.frame().to_vec());
+        let resized = screen.with_display(&scene(5, 1, -0.5), Some([20, 20]), |seen| seen.display.frame().to_vec());
         let mut alone = Display::new(new.controls, [20, 20]);
         alone.show(&new.strokes, 1, 6);
         assert_eq!(resized, alone.frame(), "another size shows the latest scene");
@@ -151,19 +151,19 @@ mod tests {
 
     #[test]
     fn the_size_stays_unless_another_is_asked_for() {
-        let screen = Screen::default();
+        let screen = SharedDisplay::default();
         assert_eq!(screen.size(), None);
-        assert_eq!(screen.look(&scene(0, 0, 0.0), None, |seen| seen.display.size()), DISPLAY_SIZE);
-        assert_eq!(screen.look(&scene(0, 0, 0.0), Some([9, 8]), |seen| seen.display.size()), [9, 8]);
-        assert_eq!(screen.look(&scene(1, 0, 0.0), None, |seen| seen.display.size()), [9, 8]);
+        assert_eq!(screen.with_display(&scene(0, 0, 0.0), None, |seen| seen.display.size()), DISPLAY_SIZE);
+        assert_eq!(screen.with_display(&scene(0, 0, 0.0), Some([9, 8]), |seen| seen.display.size()), [9, 8]);
+        assert_eq!(screen.with_display(&scene(1, 0, 0.0), None, |seen| seen.display.size()), [9, 8]);
         assert_eq!(screen.size(), Some([9, 8]));
     }
 
     #[test]
     fn other_pixels_have_another_number() {
-        let screen = Screen::default();
+        let screen = SharedDisplay::default();
         let mut plain = Scene { controls: Controls::default(), ..scene(0, 1, 0.0) };
-        let number = |scene: &Scene| screen.look(scene, Some([9, 9]), |seen| (seen.shown, seen.goes_on));
+        let number = |scene: &Scene| screen.with_display(scene, Some([9, 9]), |seen| (seen.shown, seen.goes_on));
         let first = number(&plain);
         assert!(!first.1);
         plain.frame = 7;

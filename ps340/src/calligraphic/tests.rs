@@ -4,7 +4,7 @@ use super::{
     bins::Bins,
     light::Writing,
     tile::{PLANE, TILE_HEIGHT, TILE_WIDTH},
-    track::{Room, Track},
+    track::{Scratch, Track},
     *,
 };
 use crate::traversal::Stroke;
@@ -21,7 +21,7 @@ fn beam(size: u32) -> Beam {
 }
 
 /// The light of every pixel, red, green and blue.
-fn pixels(light: &Light) -> Vec<f32> {
+fn pixels(light: &ScreenLight) -> Vec<f32> {
     let places = (0..light.height()).flat_map(|y| (0..light.width()).map(move |x| (x, y)));
     places.flat_map(|(x, y)| light.at(x, y).unwrap()).collect()
 }
@@ -49,7 +49,7 @@ pub(super) fn jumble(count: usize) -> Vec<Stroke> {
 }
 
 /// The largest difference of two screens, over the largest light.
-pub(super) fn difference(one: &Light, other: &Light) -> f64 {
+pub(super) fn difference(one: &ScreenLight, other: &ScreenLight) -> f64 {
     let (one, other) = (pixels(one), pixels(other));
     let peak = one.iter().fold(0.0f32, |peak, light| peak.max(*light));
     let pairs = one.iter().zip(&other);
@@ -232,7 +232,7 @@ fn every_tile_knows_all_strokes_that_reach_it() {
             tile.planes.resize(3 * PLANE, 0.0);
             tile.lit = true;
             if let Some(track) = Track::new(&wide, stroke, corner) {
-                let mut room = Room::new();
+                let mut room = Scratch::new();
                 track.find(&mut room);
                 track.write(&room, &mut tile.planes);
             }
@@ -348,9 +348,9 @@ fn focus_keeps_the_light_and_spreads_it() {
     let sharp = draw(&beam(700), &line);
     let blurred = draw(&Beam { blur: 6.0, ..beam(700) }, &line);
     assert!((sharp.total()[0] / blurred.total()[0] - 1.0).abs() < 1e-4);
-    let peak = |light: &Light| pixels(light).into_iter().fold(0.0, f32::max);
+    let peak = |light: &ScreenLight| pixels(light).into_iter().fold(0.0, f32::max);
     assert!(peak(&blurred) < 0.25 * peak(&sharp), "{} {}", peak(&blurred), peak(&sharp));
-    let sum = |light: &Light| pixels(light).into_iter().map(f64::from).sum::<f64>();
+    let sum = |light: &ScreenLight| pixels(light).into_iter().map(f64::from).sum::<f64>();
     assert!((sum(&sharp) / sum(&blurred) - 1.0).abs() < 1e-4);
 }
 

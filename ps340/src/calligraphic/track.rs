@@ -15,7 +15,7 @@ const ROWS: usize = 2 * TILE_HEIGHT;
 /// two error functions would be all rounding. The first term left out is 1e-7 of the stroke's light here.
 const SHORT: f64 = 0.25;
 /// Room for the places of a tile, and for some that are not counted.
-const PLACES: usize = TILE_HEIGHT * TILE_WIDTH / LANES + TOGETHER;
+const MAX_GROUPS: usize = TILE_HEIGHT * TILE_WIDTH / LANES + TOGETHER;
 /// What a row counts in a place of the list; more than its columns.
 const ROW: u16 = 256;
 /// Stands for the pixels per spot along a row where the direction makes them infinitely many.
@@ -101,14 +101,14 @@ impl Track {
 
     /// Notes the pixels that light can reach.
     #[inline(always)]
-    pub fn find(&self, room: &mut Room) {
-        self.look(&mut room.rows);
+    pub fn find(&self, room: &mut Scratch) {
+        self.compute_rows(&mut room.rows);
         room.count = self.list(&room.rows, &mut room.places);
     }
 
     /// Adds the light to the planes of a tile, one, or three for red, green and blue, after [`Track::find`].
     #[inline(always)]
-    pub fn write(&self, room: &Room, planes: &mut [f32]) {
+    pub fn write(&self, room: &Scratch, planes: &mut [f32]) {
         let (planes, _) = planes.as_chunks_mut();
         if let [plane] = planes {
             self.draw(room, std::array::from_mut(plane));
@@ -118,7 +118,7 @@ impl Track {
     }
 
     #[inline(always)]
-    fn draw<const GUNS: usize>(&self, room: &Room, planes: &mut [[f32; PLANE]; GUNS]) {
+    fn draw<const GUNS: usize>(&self, room: &Scratch, planes: &mut [[f32; PLANE]; GUNS]) {
         match self.current {
             Current::Point(terms) => self.fill(room, planes, Point { terms }),
             Current::Both(current, 0.0) => self.fill(room, planes, EvenBetween { current }),
@@ -131,7 +131,7 @@ impl Track {
     #[inline(always)]
     fn fill<const GUNS: usize>(
         &self,
-        Room { rows, places, count }: &Room,
+        Scratch { rows, places, count }: &Scratch,
         planes: &mut [[f32; PLANE]; GUNS],
         profile: impl Profile,
     ) {
@@ -172,7 +172,7 @@ impl Track {
     ///
     /// A list, because the processor can foresee the way through it, and not where in each row the light ends.
     #[inline(always)]
-    fn list(&self, rows: &Rows, places: &mut [u16; PLACES]) -> usize {
+    fn list(&self, rows: &Rows, places: &mut [u16; MAX_GROUPS]) -> usize {
         let mut count = 0;
         let range = self.rows[0]..self.rows[1] + 1;
         for (first, eights) in rows.first[range.clone()].iter().zip(&rows.eights[range]) {
@@ -194,7 +194,7 @@ impl Track {
 
     /// Finds what is the same for all pixels of a row, many rows at a time, for the rows that light can reach.
     #[inline(always)]
-    fn look(&self, rows: &mut Rows) {
+    fn compute_rows(&self, rows: &mut Rows) {
         // -reach <= u + step[0] x <= length + reach, and -reach <= v - step[1] x <= reach.
         let width = |step: f32| if step.abs() > 1.0 / ENDLESS { step.recip() } else { ENDLESS };
         let (along, across) = (width(self.step[0]), width(self.step[1]));
@@ -241,18 +241,18 @@ const COLUMNS: [f32; STRIDE] = {
 };
 
 /// What is noted of a stroke before it is written; what was noted before does not matter.
-pub(super) struct Room {
+pub(super) struct Scratch {
     rows: Rows,
-    places: [u16; PLACES],
+    places: [u16; MAX_GROUPS],
     /// How many of them count.
     count: usize,
 }
 
-impl Room {
+impl Scratch {
     /// Nothing noted.
     pub const fn new() -> Self {
         let rows = Rows { first: [0; ROWS], eights: [0; ROWS], u: [0.0; ROWS], rest: [0.0; ROWS], v: [ENDLESS; ROWS] };
-        Self { rows, places: [0; PLACES], count: 0 }
+        Self { rows, places: [0; MAX_GROUPS], count: 0 }
     }
 }
 

@@ -1,6 +1,6 @@
 //! `ps340 decode`: what every byte of a stream means.
 
-use super::trouble::{Trouble, of_output, open};
+use super::trouble::{ToolError, of_output, open};
 use protocol::{
     capture::{CaptureReader, Event, Record, is_capture},
     listing::{Listing, Sender},
@@ -20,17 +20,17 @@ const PIECE: usize = 64 << 10;
 #[derive(clap::Args, Debug)]
 #[command(after_help = "A capture, as 'ps340 --capture FILE' writes it, is recognised by its first line; both \
                         directions of every line are listed in it.")]
-pub struct Arguments {
+pub struct DecodeArguments {
     /// A plain stream or a capture; '-' is the standard input.
     file: PathBuf,
     /// Who sent a plain stream; of a capture, whose bytes are listed.
     #[arg(long, value_enum)]
-    from: Option<From>,
+    from: Option<StreamSide>,
 }
 
 /// Whose bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum From {
+enum StreamSide {
     /// The host: commands and packets. The default of a plain stream.
     Host,
     /// The machine: messages.
@@ -40,10 +40,10 @@ enum From {
 }
 
 /// Lists a file.
-pub(super) fn run(arguments: &Arguments) -> Result<ExitCode, Trouble> {
+pub(super) fn run(arguments: &DecodeArguments) -> Result<ExitCode, ToolError> {
     let name = arguments.file.display().to_string();
     let mut file = open(&arguments.file)?;
-    let of_file = |error| Trouble::File { file: name.clone(), error };
+    let of_file = |error| ToolError::File { file: name.clone(), error };
     let mut first = vec![0; PIECE];
     let mut length = 0;
     // A pipe may give a few bytes at a time; the first line must be whole to be recognised.
@@ -55,12 +55,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitCode, Trouble> {
     }
     first.truncate(length);
     if is_capture(&first) {
-        return capture(arguments.from.unwrap_or(From::Both), &first, &mut file, &name);
+        return capture(arguments.from.unwrap_or(StreamSide::Both), &first, &mut file, &name);
     }
     let sender = match arguments.from {
-        None | Some(From::Host) => Sender::Host,
-        Some(From::Machine) => Sender::Machine,
-        Some(From::Both) => return Err(Trouble::Usage("--from both is for captures; a plain stream has one".into())),
+        None | Some(StreamSide::Host) => Sender::Host,
+        Some(StreamSide::Machine) => Sender::Machine,
+        Some(StreamSide::Both) => return Err(ToolError::Usage("--from both is for captures; a plain stream has one".into())),
     };
     let mut out = BufWriter::new(io::stdout().lock());
     let mut listing = Listing::of(sender);
@@ -81,7 +81,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitCode, Trouble> {
 }
 
 /// Lists the records of a capture, each with the time and its line.
-fn capture(from: From, first: &[u8], file: &mut dyn Read, name: &str) -> Result<ExitCode, Trouble> {
+fn capture(from: StreamSide, first: &[u8], file: &mut dyn Read, name: &str) -> Result<ExitCode, ToolError> {
     let mut out = BufWriter::new(io::stdout().lock());
     let mut listings: BTreeMap<(u64, bool), Listing> = BTreeMap::new();
     let (mut reader, mut text, mut code) = (CaptureReader::default(), String::new(), ExitCode::SUCCESS);
@@ -108,7 +108,7 @@ fn capture(from: From, first: &[u8], file: &mut dyn Read, name: &str) -> Result<
         }
         piece.resize(PIECE, 0);
         let read = read_some(file, &mut piece);
-        let read = read.map_err(|error| Trouble::File { file: name.into(), error })?;
+        let read = read.map_err(|error| ToolError::File { file: name.into(), error })?;
         piece.truncate(read);
     }
     for ((line, from_host), mut listing) in listings {
@@ -125,7 +125,7 @@ fn capture(from: From, first: &[u8], file: &mut dyn Read, name: &str) -> Result<
 }
 
 /// Lists one record of a capture. Offsets count the bytes of one direction of one line.
-fn list_record(record: &Record, from: From, listings: &mut BTreeMap<(u64, bool), Listing>, text: &mut String) {
+fn list_record(record: &Record, from: StreamSide, listings: &mut BTreeMap<(u64, bool), Listing>, text: &mut String) {
     let seconds = record.micros as f64 / 1e6;
     let (sender, bytes) = match &record.event {
         Event::Open(peer) => {
@@ -136,7 +136,7 @@ fn list_record(record: &Record, from: From, listings: &mut BTreeMap<(u64, bool),
             let _ = writeln!(text, "{seconds:.6} s, line {}: closed", record.line);
             return;
         }
-        Event::Order(order) => {
+        Event::OperatorCommand(order) => {
             let _ = writeln!(text, "{seconds:.6} s, operator: {order}");
             return;
         }
@@ -144,7 +144,7 @@ fn list_record(record: &Record, from: From, listings: &mut BTreeMap<(u64, bool),
         Event::ToHost(bytes) => (Sender::Machine, bytes),
     };
     let from_host = sender == Sender::Host;
-    if from != From::Both && (from == From::Host) != from_host {
+    if from != StreamSide::Both && (from == StreamSide::Host) != from_host {
         return;
     }
     let side = if from_host { "from the host" } else { "to the host" };
@@ -163,7 +163,7 @@ fn read_some(file: &mut dyn Read, into: &mut [u8]) -> io::Result<usize> {
 }
 
 /// Writes a text out and empties it.
-fn put(text: &mut String, out: &mut impl io::Write) -> Result<(), Trouble> {
+fn put(text: &mut String, out: &mut impl io::Write) -> Result<(), ToolError> {
     out.write_all(text.as_bytes()).map_err(of_output)?;
     text.clear();
     Ok(())

@@ -1,6 +1,6 @@
 //! `ps340 lint`: what is wrong in command files.
 
-use super::trouble::{Trouble, read, say};
+use super::trouble::{ToolError, read, print};
 use crate::lint::{Finding, Level, lint};
 use std::{path::PathBuf, process::ExitCode};
 
@@ -12,7 +12,7 @@ work; warnings are what is probably not meant, or is missing unless a host sends
 Lines that begin with '@' are directives for 'ps340 play': those that write files or end the machine are listed, the others
 passed over. Of a capture such orders are listed, and nothing else.
 Exit codes: 0 no errors, 1 errors (with --strict: or warnings), 2 usage.")]
-pub struct Arguments {
+pub struct LintArguments {
     /// Command files, read one after the other as if one host sent them; '-' is the standard input.
     #[arg(required = true)]
     files: Vec<PathBuf>,
@@ -25,7 +25,7 @@ pub struct Arguments {
 }
 
 /// Reads the files and prints the findings.
-pub(super) fn run(arguments: &Arguments) -> Result<ExitCode, Trouble> {
+pub(super) fn run(arguments: &LintArguments) -> Result<ExitCode, ToolError> {
     let mut files = Vec::new();
     for file in &arguments.files {
         files.push((file.display().to_string(), read(file)?));
@@ -35,9 +35,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitCode, Trouble> {
     let (errors, warnings) = (count(Level::Error), count(Level::Warning));
     if arguments.json {
         let all: Vec<serde_json::Value> = findings.iter().map(json).collect();
-        say(&format!("{:#}\n", serde_json::Value::from(all)))?;
+        print(&format!("{:#}\n", serde_json::Value::from(all)))?;
     } else {
-        say(&findings.iter().map(|finding| format!("{finding}\n")).collect::<String>())?;
+        print(&findings.iter().map(|finding| format!("{finding}\n")).collect::<String>())?;
         if errors + warnings > 0 {
             let plural = |n: usize| if n == 1 { "" } else { "s" };
             eprintln!("{errors} error{}, {warnings} warning{}", plural(errors), plural(warnings));

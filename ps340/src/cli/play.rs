@@ -1,13 +1,13 @@
 //! `ps340 play`: command files on a machine in virtual time, with pictures, a transcript and an exit code.
 
-use super::trouble::{Trouble, read, say};
+use super::trouble::{ToolError, read, print};
 use crate::{
     example::{EXAMPLES, example},
     machine::Settings,
     picture::Picture,
-    play::{End, Patience, Player, Script, Watcher},
+    play::{PlayEnd, PlayOptions, Player, Script, Watcher},
 };
-use files::{Beneath, Destination, Growing};
+use files::{Sandbox, Destination, LogFile};
 use std::{
     io::{self, BufWriter, IsTerminal, Write},
     path::PathBuf,
@@ -36,7 +36,7 @@ Lines that begin with '@' are directives, all others go to the machine:
   @ # ...                    a comment
 'within FRAMES' behind the first four changes how long they wait. Messages to the host go to standard output.
 Exit codes: 0 all came as expected, 1 a step failed or an error came that no step expected, 2 usage, 130 interrupted.")]
-pub struct Arguments {
+pub struct PlayArguments {
     /// Command files, played one after the other on one machine; '-' is the standard input.
     #[arg(required_unless_present_any = ["example", "list"])]
     files: Vec<PathBuf>,
@@ -76,14 +76,14 @@ pub struct Arguments {
 }
 
 /// Plays the files.
-pub(super) fn run(arguments: &Arguments) -> Result<ExitCode, Trouble> {
+pub(super) fn run(arguments: &PlayArguments) -> Result<ExitCode, ToolError> {
     if arguments.list {
         let lines = EXAMPLES.iter().map(|e| format!("{:<8} {}\n", e.name, e.summary()));
-        return say(&lines.collect::<String>()).map(|()| ExitCode::SUCCESS);
+        return print(&lines.collect::<String>()).map(|()| ExitCode::SUCCESS);
     }
-    let chosen = arguments.example.as_deref().map(example).transpose().map_err(Trouble::Usage)?;
+    let chosen = arguments.example.as_deref().map(example).transpose().map_err(ToolError::Usage)?;
     if let Some(chosen) = chosen.filter(|_| arguments.print) {
-        return say(chosen.text).map(|()| ExitCode::SUCCESS);
+        return print(chosen.text).map(|()| ExitCode::SUCCESS);
     }
     let mut scripts = Vec::new();
     let mut readable = true;
@@ -104,23 +104,23 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitCode, Trouble> {
         return Ok(ExitCode::from(2));
     }
     let picture = arguments.picture.as_deref().map(Picture::destination).transpose()?;
-    let patience = Patience { frames: arguments.patience, keep_going: arguments.keep_going };
+    let patience = PlayOptions { frames: arguments.patience, keep_going: arguments.keep_going };
     let below = || {
         let folder = &arguments.below;
-        Beneath::open(folder).map_err(|error| Trouble::File { file: folder.display().to_string(), error })
+        Sandbox::open(folder).map_err(|error| ToolError::File { file: folder.display().to_string(), error })
     };
     let files = arguments.orders.then(below).transpose()?;
     let mut player = Player::new(Settings::default(), patience, files);
-    let mut screen = Screen::new(arguments, &scripts)?;
+    let mut screen = Transcript::new(arguments, &scripts)?;
     let end = play(&mut player, &scripts, arguments.frames, &mut screen);
     screen.clear();
     finish(&mut player, end, arguments, picture.as_ref(), screen)
 }
 
-fn play(player: &mut Player, scripts: &[Script], frames: u64, screen: &mut Screen) -> End {
+fn play(player: &mut Player, scripts: &[Script], frames: u64, screen: &mut Transcript) -> PlayEnd {
     for script in scripts {
         match player.play(script, screen) {
-            End::Played => {}
+            PlayEnd::Played => {}
             end => return end,
         }
     }
@@ -132,11 +132,11 @@ fn play(player: &mut Player, scripts: &[Script], frames: u64, screen: &mut Scree
 /// Writes what is to be left at the end, and judges.
 fn finish(
     player: &mut Player,
-    end: End,
-    arguments: &Arguments,
+    end: PlayEnd,
+    arguments: &PlayArguments,
     picture: Option<&Destination>,
-    screen: Screen,
-) -> Result<ExitCode, Trouble> {
+    screen: Transcript,
+) -> Result<ExitCode, ToolError> {
     if let Some(file) = picture {
         player.machine().vector_picture(None).write(file)?;
     }
@@ -154,15 +154,15 @@ fn finish(
         );
     }
     Ok(match end {
-        End::Stopped => ExitCode::from(130),
+        PlayEnd::Stopped => ExitCode::from(130),
         _ if failures.is_empty() => ExitCode::SUCCESS,
         _ => ExitCode::from(1),
     })
 }
 
 /// Where what is heard goes: standard output, the transcript, progress on a terminal.
-struct Screen {
-    transcript: Option<BufWriter<Growing>>,
+struct Transcript {
+    transcript: Option<BufWriter<LogFile>>,
     /// The first error of the transcript; it is reported at the end.
     broken: Option<io::Error>,
     quiet: bool,
@@ -172,13 +172,13 @@ struct Screen {
     interrupted: Arc<AtomicBool>,
 }
 
-impl Screen {
-    fn new(arguments: &Arguments, scripts: &[Script]) -> Result<Screen, Trouble> {
-        let transcript = arguments.transcript.as_ref().map(|path| Growing::create(Destination::of(path)?));
+impl Transcript {
+    fn new(arguments: &PlayArguments, scripts: &[Script]) -> Result<Transcript, ToolError> {
+        let transcript = arguments.transcript.as_ref().map(|path| LogFile::create(Destination::of(path)?));
         let lines = scripts.iter().map(|script| script.lines.len()).sum();
         let interrupted = Arc::new(AtomicBool::new(false));
         watch_interrupt(interrupted.clone());
-        Ok(Screen {
+        Ok(Transcript {
             transcript: transcript.transpose()?.map(BufWriter::new),
             broken: None,
             quiet: arguments.quiet,
@@ -195,19 +195,19 @@ impl Screen {
         }
     }
 
-    fn close(mut self) -> Result<(), Trouble> {
+    fn close(mut self) -> Result<(), ToolError> {
         let Some(transcript) = self.transcript.take() else { return Ok(()) };
         let file = transcript.get_ref().part().display().to_string();
         let whole = match self.broken {
             Some(error) => Err(error),
             None => transcript.into_inner().map_err(io::IntoInnerError::into_error),
         };
-        Ok(whole.map_err(|error| Trouble::File { file, error })?.finish()?)
+        Ok(whole.map_err(|error| ToolError::File { file, error })?.finish()?)
     }
 }
 
-impl Watcher for Screen {
-    fn heard(&mut self, sign: char, text: &[u8]) {
+impl Watcher for Transcript {
+    fn log(&mut self, sign: char, text: &[u8]) {
         if let Some(transcript) = &mut self.transcript
             && self.broken.is_none()
         {

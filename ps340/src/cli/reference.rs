@@ -1,26 +1,26 @@
 //! `ps340 functions` and `ps340 commands`: the reference, from the tables.
 
-use super::trouble::{Trouble, say};
+use super::trouble::{ToolError, print};
 use crate::functions::page;
 use protocol::command::reference;
 use std::process::ExitCode;
 
 /// Tells about the functions: all in a table, or one in full.
-pub(super) fn functions(name: Option<&str>) -> Result<ExitCode, Trouble> {
+pub(super) fn functions(name: Option<&str>) -> Result<ExitCode, ToolError> {
     let text = match name {
         None => page::table(),
-        Some(name) => page::page(name).map_err(|error| Trouble::Usage(error.to_string()))?,
+        Some(name) => page::page(name).map_err(|error| ToolError::Usage(error.to_string()))?,
     };
-    say(&text).map(|()| ExitCode::SUCCESS)
+    print(&text).map(|()| ExitCode::SUCCESS)
 }
 
 /// Tells about the commands: all in a table, or one in full.
-pub(super) fn commands(words: &[String]) -> Result<ExitCode, Trouble> {
+pub(super) fn commands(words: &[String]) -> Result<ExitCode, ToolError> {
     let text = if words.is_empty() {
         reference::list()
     } else {
-        let rows = reference::find(&words.join(" ")).map_err(|error| Trouble::Usage(error.to_string()))?;
+        let rows = reference::find(&words.join(" ")).map_err(|error| ToolError::Usage(error.to_string()))?;
         rows.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
     };
-    say(&text).map(|()| ExitCode::SUCCESS)
+    print(&text).map(|()| ExitCode::SUCCESS)
 }

@@ -1,6 +1,6 @@
 //! The tools by their names, and how each is run.
 
-use super::{decode, lint, play, reference, trouble::Trouble};
+use super::{decode, lint, play, reference, trouble::ToolError};
 use clap::Subcommand;
 use std::process::ExitCode;
 
@@ -8,11 +8,11 @@ use std::process::ExitCode;
 #[derive(Subcommand, Debug)]
 pub enum Tool {
     /// Lists a stream of a host line byte by byte: offset, bytes, meaning.
-    Decode(decode::Arguments),
+    Decode(decode::DecodeArguments),
     /// Plays command files on a machine without a window, in virtual time, and checks what it says.
-    Play(play::Arguments),
+    Play(play::PlayArguments),
     /// Finds what is wrong in command files: names, inputs, kinds, functions that never fire.
-    Lint(lint::Arguments),
+    Lint(lint::LintArguments),
     /// Tells about the functions of the machine: all in a table, or one in full.
     Functions {
         /// Which one, such as ROUTE or F:ROUTE.
@@ -37,14 +37,14 @@ pub fn run(tool: &Tool) -> ExitCode {
         Tool::Functions { name } => reference::functions(name.as_deref()),
         Tool::Commands { name } => reference::commands(name),
         #[cfg(feature = "window")]
-        Tool::Mapping => super::trouble::say(crate::console::DEFAULT_MAPPING).map(|()| ExitCode::SUCCESS),
+        Tool::Mapping => super::trouble::print(crate::console::DEFAULT_MAPPING).map(|()| ExitCode::SUCCESS),
     };
     match result {
         Ok(code) => code,
-        Err(Trouble::Closed) => ExitCode::SUCCESS,
+        Err(ToolError::Closed) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("ps340: {error}");
-            ExitCode::from(if matches!(error, Trouble::Usage(_)) { 2 } else { 1 })
+            ExitCode::from(if matches!(error, ToolError::Usage(_)) { 2 } else { 1 })
         }
     }
 }

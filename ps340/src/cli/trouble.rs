@@ -7,7 +7,7 @@ use std::{
 
 /// What went wrong while a tool ran.
 #[derive(Debug, thiserror::Error)]
-pub(super) enum Trouble {
+pub(super) enum ToolError {
     /// A file cannot be read or written.
     #[error("{file}: {error}")]
     File {
@@ -31,32 +31,32 @@ pub(super) enum Trouble {
 }
 
 /// Opens a file; `-` is the standard input.
-pub(super) fn open(file: &Path) -> Result<Box<dyn Read>, Trouble> {
+pub(super) fn open(file: &Path) -> Result<Box<dyn Read>, ToolError> {
     if file.as_os_str() == "-" {
         return Ok(Box::new(io::stdin().lock()));
     }
     let opened = std::fs::File::open(file);
-    Ok(Box::new(opened.map_err(|error| Trouble::File { file: file.display().to_string(), error })?))
+    Ok(Box::new(opened.map_err(|error| ToolError::File { file: file.display().to_string(), error })?))
 }
 
 /// Reads a whole file; `-` is the standard input.
-pub(super) fn read(file: &Path) -> Result<Vec<u8>, Trouble> {
+pub(super) fn read(file: &Path) -> Result<Vec<u8>, ToolError> {
     let mut bytes = Vec::new();
     let read = open(file)?.read_to_end(&mut bytes);
-    read.map_err(|error| Trouble::File { file: file.display().to_string(), error })?;
+    read.map_err(|error| ToolError::File { file: file.display().to_string(), error })?;
     Ok(bytes)
 }
 
 /// Writes to the standard output.
-pub(super) fn say(text: &str) -> Result<(), Trouble> {
+pub(super) fn print(text: &str) -> Result<(), ToolError> {
     let mut out = io::stdout().lock();
     out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(of_output)
 }
 
 /// What an error of the standard output is.
-pub(super) fn of_output(error: io::Error) -> Trouble {
+pub(super) fn of_output(error: io::Error) -> ToolError {
     match error.kind() {
-        io::ErrorKind::BrokenPipe => Trouble::Closed,
-        _ => Trouble::File { file: "standard output".into(), error },
+        io::ErrorKind::BrokenPipe => ToolError::Closed,
+        _ => ToolError::File { file: "standard output".into(), error },
     }
 }

@@ -3,20 +3,20 @@
 use super::{
     Appearance,
     bar::Bar,
-    choices::{Choices, RasterPlace, Role},
+    choices::{Choices, RasterPlacement, MouseRole},
     devices,
-    dials::Dials,
+    dials::DialPanel,
     keys::Row,
     link::{Link, WINDOW},
     mapping::Mapping,
-    orders::Orders,
+    orders::OperatorCommands,
     pad::Pad,
     screens::{RasterScreen, VectorScreen},
     split::Split,
     views::{self, View},
-    welcome::{self, Guests},
+    welcome::{self, AttachedHosts},
 };
-use crate::shell::{Asked, Mirror, Shown};
+use crate::shell::{MirrorRequest, Mirror, MirrorFrame};
 use egui::{CentralPanel, Color32, Panel, RichText, Ui, UiBuilder, ViewportBuilder, ViewportId, vec2};
 use std::{
     sync::{Arc, Mutex, PoisonError},
@@ -31,19 +31,19 @@ const VIEW_WIDTH: f32 = 460.0;
 /// The window.
 pub struct App {
     mirror: Arc<Mirror>,
-    orders: Orders,
+    orders: OperatorCommands,
     mapping: Mapping,
     vector: VectorScreen,
     raster: RasterScreen,
     /// Whether something was ever on the raster screen: then it comes into view by itself.
     raster_seen: bool,
     split: Split,
-    dials: Dials,
+    dials: DialPanel,
     pad: Pad,
     row: Row,
     views: Vec<Box<dyn View>>,
     choices: Choices,
-    guests: Guests,
+    guests: AttachedHosts,
     /// Where hosts attach.
     lines: Arc<Mutex<Vec<String>>>,
     /// What draws the window, in words.
@@ -70,18 +70,18 @@ impl App {
         };
         tracing::info!("the window is drawn by {drawn_by}");
         App {
-            orders: Orders::new(orders),
+            orders: OperatorCommands::new(orders),
             vector: VectorScreen::new(context.clone(), mirror.screen().clone(), appearance.mapping.mouse()),
             mirror,
             raster: RasterScreen::default(),
             raster_seen: false,
             split: Split::default(),
-            dials: Dials::default(),
+            dials: DialPanel::default(),
             pad: Pad::new(context),
             row: Row::default(),
             views: views::all(appearance.mapping.mouse()),
-            choices: Choices { raster: RasterPlace::default(), devices: true, view: None, role: None },
-            guests: Guests::default(),
+            choices: Choices { raster: RasterPlacement::default(), devices: true, view: None, role: None },
+            guests: AttachedHosts::default(),
             lines,
             enlargement: appearance.scale.is_none().then_some(1.0),
             drawn_by,
@@ -121,11 +121,11 @@ impl App {
     }
 
     /// The screens, in the space that is left.
-    fn show_screens(&mut self, ui: &mut Ui, shown: &Shown, role: Role) {
+    fn show_screens(&mut self, ui: &mut Ui, shown: &MirrorFrame, role: MouseRole) {
         ui.spacing_mut().item_spacing = vec2(0.0, 0.0);
         let space = ui.available_rect_before_wrap();
         let (vector, raster) = match self.choices.raster {
-            RasterPlace::Beside => {
+            RasterPlacement::Beside => {
                 let [vector, raster] = self.split.show(ui, space);
                 (vector, Some(raster))
             }
@@ -134,7 +134,7 @@ impl App {
         let lines = self.lines.lock().unwrap_or_else(PoisonError::into_inner).clone();
         ui.scope_builder(UiBuilder::new().max_rect(vector), |ui| {
             let App { vector, mapping, dials, orders, guests, .. } = self;
-            let screen = vector.show(ui, shown, mapping, orders, (role == Role::Dials).then_some(dials));
+            let screen = vector.show(ui, shown, mapping, orders, (role == MouseRole::Dials).then_some(dials));
             welcome::show(ui, screen, shown, guests, &lines, orders);
         });
         if let Some(raster) = raster {
@@ -143,15 +143,15 @@ impl App {
     }
 
     /// Asks for what the open view shows, if any.
-    fn ask(&self) {
-        let mut asked = Asked::default();
+    fn request_views(&self) {
+        let mut asked = MirrorRequest::default();
         if let Some(view) = self.choices.view.and_then(|index| self.views.get(index)) {
-            view.ask(&mut asked);
+            view.request(&mut asked);
         }
-        self.mirror.ask(&asked);
+        self.mirror.request(&asked);
     }
 
-    fn show_raster_window(&mut self, ui: &Ui, shown: &Shown) {
+    fn show_raster_window(&mut self, ui: &Ui, shown: &MirrorFrame) {
         let builder = ViewportBuilder::default().with_title("PS 340 raster screen").with_inner_size([640.0, 480.0]);
         let raster = &mut self.raster;
         let closed = ui.ctx().show_viewport_immediate(ViewportId::from_hash_of("raster"), builder, |ui, _class| {
@@ -159,7 +159,7 @@ impl App {
             ui.ctx().input(|input| input.viewport().close_requested())
         });
         if closed {
-            self.choices.raster = RasterPlace::Hidden;
+            self.choices.raster = RasterPlacement::Hidden;
         }
     }
 }
@@ -171,8 +171,8 @@ impl eframe::App for App {
         let shown = self.mirror.shown();
         if !self.raster_seen && !shown.raster.is_blank() {
             self.raster_seen = true;
-            if self.choices.raster == RasterPlace::Hidden {
-                self.choices.raster = RasterPlace::Beside;
+            if self.choices.raster == RasterPlacement::Hidden {
+                self.choices.raster = RasterPlacement::Beside;
             }
         }
         self.guests.note(&shown);
@@ -180,7 +180,7 @@ impl eframe::App for App {
             // How long ago the last one left is told.
             ui.ctx().request_repaint_after(Duration::from_secs(1));
         }
-        let usual = if shown.tablet_is_read { Role::Puck } else { Role::Dials };
+        let usual = if shown.tablet_is_read { MouseRole::Puck } else { MouseRole::Dials };
         let role = self.choices.role.unwrap_or(usual);
         let drawn_by =
             format!("the window is drawn by {}, the vector screen by {}", self.drawn_by, self.mirror.screen().drawer());
@@ -201,10 +201,10 @@ impl eframe::App for App {
                 view.show(ui, &shown, &mut self.orders);
             });
         }
-        self.ask();
+        self.request_views();
         let black = egui::Frame::NONE.fill(Color32::from_gray(12)).inner_margin(1.0);
         CentralPanel::default().frame(black).show(ui, |ui| self.show_screens(ui, &shown, role));
-        if self.choices.raster == RasterPlace::Apart {
+        if self.choices.raster == RasterPlacement::Apart {
             self.show_raster_window(ui, &shown);
         }
         let seconds = f64::from(ui.input(|input| input.stable_dt));

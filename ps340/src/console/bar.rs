@@ -1,13 +1,13 @@
 //! The bar at the top: who is attached, and what the window shows and does. It is one row, however narrow the window is.
 
 use super::{
-    choices::{Choices, RasterPlace, Role},
-    orders::Orders,
+    choices::{Choices, RasterPlacement, MouseRole},
+    orders::OperatorCommands,
     places,
     views::View,
-    welcome::Guests,
+    welcome::AttachedHosts,
 };
-use crate::{machine::KeyboardMode, shell::Shown};
+use crate::{machine::KeyboardMode, shell::MirrorFrame};
 use egui::{Align, Layout, RichText, Sense, Ui, vec2};
 
 /// From this width on, menus say what is chosen.
@@ -30,20 +30,20 @@ const SWITCHES: [(&str, &str); 3] = [
 /// The bar.
 pub struct Bar<'a> {
     /// What is to be seen of the machine.
-    pub shown: &'a Shown,
+    pub shown: &'a MirrorFrame,
     /// Who is attached.
-    pub guests: &'a Guests,
+    pub guests: &'a AttachedHosts,
     /// What can be opened beside the screens.
     pub views: &'a [Box<dyn View>],
     /// What the mouse does over the vector screen.
-    pub role: Role,
+    pub role: MouseRole,
     /// What draws window and screens, in words.
     pub drawn_by: &'a str,
 }
 
 impl Bar<'_> {
     /// Shows it; what is chosen becomes so, or an order.
-    pub fn show(&self, ui: &mut Ui, choices: &mut Choices, orders: &mut Orders) {
+    pub fn show(&self, ui: &mut Ui, choices: &mut Choices, orders: &mut OperatorCommands) {
         let is_wide = ui.available_width() >= WIDE;
         ui.horizontal(|ui| {
             ui.label(RichText::new("PS 340").strong()).on_hover_text(self.drawn_by);
@@ -72,7 +72,7 @@ fn title(name: &str, chosen: &str, is_wide: bool) -> String {
     if is_wide { format!("{name}: {chosen}") } else { name.into() }
 }
 
-fn show_keyboard(ui: &mut Ui, now: KeyboardMode, orders: &mut Orders, is_wide: bool) {
+fn show_keyboard(ui: &mut Ui, now: KeyboardMode, orders: &mut OperatorCommands, is_wide: bool) {
     let chosen = MODES.iter().find(|row| row.0 == now).map_or("", |row| row.1);
     let menu = ui.menu_button(title("Keyboard", chosen, is_wide), |ui| {
         for (mode, key, hint) in MODES {
@@ -92,11 +92,11 @@ fn show_keyboard(ui: &mut Ui, now: KeyboardMode, orders: &mut Orders, is_wide: b
     places::note(ui, "menu Keyboard", menu.response.rect.center());
 }
 
-fn show_mouse(ui: &mut Ui, choices: &mut Choices, role: Role, is_wide: bool) {
+fn show_mouse(ui: &mut Ui, choices: &mut Choices, role: MouseRole, is_wide: bool) {
     let menu = ui.menu_button(title("Mouse", role.word(), is_wide), |ui| {
         let rows = [
-            (Some(Role::Dials), "turns dials: drag turns, SHIFT or the right button moves, the wheel scales"),
-            (Some(Role::Puck), "is the puck of the tablet"),
+            (Some(MouseRole::Dials), "turns dials: drag turns, SHIFT or the right button moves, the wheel scales"),
+            (Some(MouseRole::Puck), "is the puck of the tablet"),
             (None, "is the puck as long as a program reads the tablet, and turns dials else"),
         ];
         for (chosen, text) in rows {
@@ -111,7 +111,7 @@ fn show_mouse(ui: &mut Ui, choices: &mut Choices, role: Role, is_wide: bool) {
 
 fn show_raster(ui: &mut Ui, choices: &mut Choices, is_wide: bool) {
     let menu = ui.menu_button(title("Raster", choices.raster.word(), is_wide), |ui| {
-        for place in [RasterPlace::Hidden, RasterPlace::Beside, RasterPlace::Apart] {
+        for place in [RasterPlacement::Hidden, RasterPlacement::Beside, RasterPlacement::Apart] {
             if ui.selectable_label(choices.raster == place, place.summary()).clicked() {
                 choices.raster = place;
                 ui.close();

@@ -2,7 +2,7 @@
 
 /// Where the raster screen is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum RasterPlace {
+pub enum RasterPlacement {
     /// Nowhere.
     #[default]
     Hidden,
@@ -12,41 +12,41 @@ pub enum RasterPlace {
     Apart,
 }
 
-impl RasterPlace {
+impl RasterPlacement {
     /// It in a word.
     pub fn word(self) -> &'static str {
         match self {
-            RasterPlace::Hidden => "off",
-            RasterPlace::Beside => "beside",
-            RasterPlace::Apart => "window",
+            RasterPlacement::Hidden => "off",
+            RasterPlacement::Beside => "beside",
+            RasterPlacement::Apart => "window",
         }
     }
 
     /// It in a phrase.
     pub fn summary(self) -> &'static str {
         match self {
-            RasterPlace::Hidden => "off",
-            RasterPlace::Beside => "beside the vector screen",
-            RasterPlace::Apart => "in a window of its own",
+            RasterPlacement::Hidden => "off",
+            RasterPlacement::Beside => "beside the vector screen",
+            RasterPlacement::Apart => "in a window of its own",
         }
     }
 }
 
 /// What the mouse is over the vector screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
+pub enum MouseRole {
     /// It turns dials.
     Dials,
     /// It is the puck of the tablet.
     Puck,
 }
 
-impl Role {
+impl MouseRole {
     /// It in a word.
     pub fn word(self) -> &'static str {
         match self {
-            Role::Dials => "dials",
-            Role::Puck => "puck",
+            MouseRole::Dials => "dials",
+            MouseRole::Puck => "puck",
         }
     }
 }
@@ -55,11 +55,11 @@ impl Role {
 #[derive(Debug)]
 pub struct Choices {
     /// Where the raster screen is.
-    pub raster: RasterPlace,
+    pub raster: RasterPlacement,
     /// Whether dials, keys and buttons are there.
     pub devices: bool,
     /// The view beside the screens, by its place in the list.
     pub view: Option<usize>,
     /// What the mouse is; none for what the program that runs needs.
-    pub role: Option<Role>,
+    pub role: Option<MouseRole>,
 }

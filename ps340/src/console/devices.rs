@@ -1,9 +1,9 @@
 //! Dials, function keys and lighted buttons, in rows that fit the width of the window.
 
 use super::{
-    dials::Dials,
+    dials::DialPanel,
     keys::{Row, show_buttons, show_keys},
-    orders::Orders,
+    orders::OperatorCommands,
 };
 use crate::machine::Panel;
 use egui::{Ui, vec2};
@@ -16,7 +16,7 @@ const BUTTONS: f32 = 264.0;
 const MOST: f32 = 1400.0;
 
 /// Shows them, and orders what is turned and pressed.
-pub fn show(ui: &mut Ui, panel: &Panel, dials: &mut Dials, row: &mut Row, orders: &mut Orders) {
+pub fn show(ui: &mut Ui, panel: &Panel, dials: &mut DialPanel, row: &mut Row, orders: &mut OperatorCommands) {
     ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
     let width = ui.available_width();
     if width >= WIDE {

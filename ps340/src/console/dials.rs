@@ -1,6 +1,6 @@
 //! The eight dials with their labels.
 
-use super::{orders::Orders, places};
+use super::{orders::OperatorCommands, places};
 use crate::{machine::Panel, port::Label};
 use egui::{
     Align2, Color32, Event, FontId, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke, Ui, Vec2,
@@ -24,7 +24,7 @@ pub const LIT: Color32 = Color32::from_rgb(255, 84, 56);
 
 /// The dials.
 #[derive(Default)]
-pub struct Dials {
+pub struct DialPanel {
     /// Where each mark points, in turns.
     turned: [f64; 8],
     /// What is turned but was not ordered yet.
@@ -33,7 +33,7 @@ pub struct Dials {
     grip: Option<(u8, Pos2)>,
 }
 
-impl Dials {
+impl DialPanel {
     /// Turns a dial (1..=8) by something else than its picture.
     pub fn turn(&mut self, dial: u8, turns: f64) {
         if let Some(index) = usize::from(dial).checked_sub(1).filter(|index| *index < 8) {
@@ -61,7 +61,7 @@ impl Dials {
     }
 
     /// Gives the orders of what was turned.
-    pub fn give(&mut self, orders: &mut Orders) {
+    pub fn give(&mut self, orders: &mut OperatorCommands) {
         for (dial, pending) in (1..).zip(&mut self.pending) {
             if *pending != 0.0 {
                 orders.give(format!("dial {dial} {pending}"));
@@ -180,7 +180,7 @@ mod tests {
             pressed,
             modifiers: Default::default(),
         };
-        let mut dials = Dials::default();
+        let mut dials = DialPanel::default();
         let events = [button(true, 25.0), Event::PointerMoved(Pos2::new(85.0, 25.0)), button(false, 145.0)];
         assert_eq!(dials.drag(&events, &knobs), [(1, 0.25), (1, 0.25)]);
         assert_eq!(dials.drag(&[Event::PointerMoved(Pos2::new(125.0, 25.0))], &knobs), []);

@@ -1,12 +1,12 @@
 //! The keyboard of the window: typed characters and keys become orders.
 
-use super::{mapping::Mapping, orders::Orders};
+use super::{mapping::Mapping, orders::OperatorCommands};
 use egui::{Event, Key, Modifiers};
 
 /// The orders that events of the keyboard mean.
 ///
 /// A key of the mapping is its order; CONTROL with a letter is the control character; other text is typed.
-pub fn orders_of(events: &[Event], mapping: &Mapping) -> Vec<String> {
+pub fn commands_of(events: &[Event], mapping: &Mapping) -> Vec<String> {
     let mut orders: Vec<String> = Vec::new();
     let mut typed = String::new();
     for event in events {
@@ -29,8 +29,8 @@ pub fn orders_of(events: &[Event], mapping: &Mapping) -> Vec<String> {
 }
 
 /// Gives the orders.
-pub fn type_events(events: &[Event], mapping: &Mapping, orders: &mut Orders) {
-    orders_of(events, mapping).into_iter().for_each(|order| orders.give(order));
+pub fn type_events(events: &[Event], mapping: &Mapping, orders: &mut OperatorCommands) {
+    commands_of(events, mapping).into_iter().for_each(|order| orders.give(order));
 }
 
 fn flush(typed: &mut String, orders: &mut Vec<String>) {
@@ -81,21 +81,21 @@ mod tests {
             key(Key::F3, Modifiers::SHIFT),
             key(Key::C, Modifiers::CTRL),
         ];
-        let orders = orders_of(&events, &Mapping::default());
+        let orders = commands_of(&events, &Mapping::default());
         assert_eq!(orders, ["type d\\x20\\\\", "key return", "key 3 shift", "type \\x03"]);
     }
 
     #[test]
     fn what_is_not_ascii_is_left_out_and_pasted_lines_end_with_return() {
         let events = [Event::Text("é".into()), Event::Paste("A;\nB;\r\n".into())];
-        assert_eq!(orders_of(&events, &Mapping::default()), ["type A;\\x0dB;\\x0d"]);
+        assert_eq!(commands_of(&events, &Mapping::default()), ["type A;\\x0dB;\\x0d"]);
     }
 
     #[test]
     fn every_order_is_one_that_the_machine_reads() {
         for letter in 'A'..='Z' {
             let events = [key(Key::from_name(&letter.to_string()).unwrap(), Modifiers::CTRL)];
-            for order in orders_of(&events, &Mapping::default()) {
+            for order in commands_of(&events, &Mapping::default()) {
                 assert!(crate::operator::parse(&order).is_ok(), "{order}");
             }
         }

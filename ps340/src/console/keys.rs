@@ -2,7 +2,7 @@
 
 use super::{
     dials::{LIT, show_label},
-    orders::Orders,
+    orders::OperatorCommands,
     places,
 };
 use crate::{machine::Panel, port::Label};
@@ -26,7 +26,7 @@ const BUTTON_HEIGHT: f32 = 22.0;
 const CHOICE: f32 = 58.0;
 
 /// Shows the function keys in a row of a width, and orders those that are pressed.
-pub fn show_keys(ui: &mut Ui, panel: &Panel, row: &mut Row, width: f32, orders: &mut Orders) {
+pub fn show_keys(ui: &mut Ui, panel: &Panel, row: &mut Row, width: f32, orders: &mut OperatorCommands) {
     ui.horizontal(|ui| {
         let column = ((width - CHOICE - 12.0 * ui.spacing().item_spacing.x) / 12.0).max(1.0);
         for key in 1..=12_u8 {
@@ -70,7 +70,7 @@ pub fn show_keys(ui: &mut Ui, panel: &Panel, row: &mut Row, width: f32, orders: 
 /// Shows the lighted buttons in rows, and orders those that are pressed.
 ///
 /// - `grid`: rows, and buttons in each of them. `width`: of a row.
-pub fn show_buttons(ui: &mut Ui, panel: &Panel, [rows, columns]: [u8; 2], width: f32, orders: &mut Orders) {
+pub fn show_buttons(ui: &mut Ui, panel: &Panel, [rows, columns]: [u8; 2], width: f32, orders: &mut OperatorCommands) {
     ui.vertical(|ui| {
         ui.spacing_mut().item_spacing = vec2(3.0, 3.0);
         let column = ((width - 3.0 * f32::from(columns - 1)) / f32::from(columns)).max(1.0);
@@ -84,7 +84,7 @@ pub fn show_buttons(ui: &mut Ui, panel: &Panel, [rows, columns]: [u8; 2], width:
     });
 }
 
-fn show_button(ui: &mut Ui, panel: &Panel, button: u8, width: f32, orders: &mut Orders) {
+fn show_button(ui: &mut Ui, panel: &Panel, button: u8, width: f32, orders: &mut OperatorCommands) {
     let (area, response) = ui.allocate_exact_size(vec2(width, BUTTON_HEIGHT), Sense::click());
     let is_lit = panel.light(button);
     let name = format!("button {button}{}", if is_lit { ", lit" } else { "" });

@@ -1,7 +1,7 @@
 //! What keys of the window, the mouse and a game controller do: a table from a file, each entry an order of the
 //! operator.
 
-use crate::operator::{self, Order, OrderError};
+use crate::operator::{self, OperatorCommand, OperatorCommandError};
 use egui::{Key, Modifiers, PointerButton};
 use std::collections::HashMap;
 
@@ -10,7 +10,7 @@ pub const DEFAULT_MAPPING: &str = include_str!("default.map");
 
 /// Keys that are held beside another, or beside a button of the mouse.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-struct Held {
+struct HeldModifiers {
     shift: bool,
     ctrl: bool,
     alt: bool,
@@ -20,7 +20,7 @@ struct Held {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Chord {
     key: Key,
-    held: Held,
+    held: HeldModifiers,
 }
 
 /// A dial, and by how many turns it is turned.
@@ -32,7 +32,7 @@ pub enum Click {
     /// It is a button of the puck, with this code, as long as it is down.
     Puck(u8),
     /// An order, when it goes down.
-    Order(String),
+    OperatorCommand(String),
 }
 
 /// What the mouse does: over a picture of the tablet, besides moving the puck, and over the vector screen while it turns
@@ -40,7 +40,7 @@ pub enum Click {
 #[derive(Clone, Debug, Default)]
 pub struct Mouse {
     /// What drags turn, along x and y.
-    drags: HashMap<(usize, Held), [Option<Turn>; 2]>,
+    drags: HashMap<(usize, HeldModifiers), [Option<Turn>; 2]>,
     /// What a step of the wheel turns.
     roll: Option<Turn>,
     /// In the order of [`MOUSE_BUTTONS`].
@@ -92,7 +92,7 @@ pub enum MappingProblem {
     Key(String),
     /// The order is none.
     #[error(transparent)]
-    Order(#[from] OrderError),
+    OperatorCommand(#[from] OperatorCommandError),
     /// The order of an axis or a drag does not turn a dial.
     #[error("axes and drags turn a dial: 'dial N TURNS'")]
     Axis,
@@ -142,8 +142,8 @@ impl Mapping {
         } else if let Some(name) = key.strip_prefix("mouse ") {
             let place = MOUSE_BUTTONS.iter().position(|row| row.0.eq_ignore_ascii_case(name.trim()));
             self.mouse.buttons[place.ok_or_else(unknown)?] = parsed.map(|parsed| match parsed {
-                Order::PuckPress(code) => Click::Puck(code),
-                _ => Click::Order(order.into()),
+                OperatorCommand::PuckPress(code) => Click::Puck(code),
+                _ => Click::OperatorCommand(order.into()),
             });
         } else if let Some(direction) = key.strip_prefix("wheel ") {
             let place = ["up", "down"].iter().position(|name| name.eq_ignore_ascii_case(direction.trim()));
@@ -204,7 +204,7 @@ impl Mouse {
         }
         let (button, axis) = name.rsplit_once(' ')?;
         let axis = ["x", "y"].iter().position(|name| name.eq_ignore_ascii_case(axis))?;
-        let (held, button) = Held::before(button.trim());
+        let (held, button) = HeldModifiers::before(button.trim());
         let place = MOUSE_BUTTONS.iter().position(|row| row.0.eq_ignore_ascii_case(button))?;
         Some(&mut self.drags.entry((place, held)).or_default()[axis])
     }
@@ -225,23 +225,23 @@ fn put<K: std::hash::Hash + Eq>(table: &mut HashMap<K, String>, key: K, order: &
 }
 
 /// The dial that an order turns; none for no order.
-fn turn(order: Option<Order>) -> Result<Option<Turn>, MappingProblem> {
+fn turn(order: Option<OperatorCommand>) -> Result<Option<Turn>, MappingProblem> {
     match order {
         None => Ok(None),
-        Some(Order::Dial { dial, turns }) => Ok(Some((dial, turns))),
+        Some(OperatorCommand::Dial { dial, turns }) => Ok(Some((dial, turns))),
         Some(_) => Err(MappingProblem::Axis),
     }
 }
 
-impl From<Modifiers> for Held {
-    fn from(held: Modifiers) -> Held {
-        Held { shift: held.shift, ctrl: held.ctrl, alt: held.alt }
+impl From<Modifiers> for HeldModifiers {
+    fn from(held: Modifiers) -> HeldModifiers {
+        HeldModifiers { shift: held.shift, ctrl: held.ctrl, alt: held.alt }
     }
 }
 
-impl Held {
+impl HeldModifiers {
     /// The keys that a name such as `Shift+Ctrl+left` begins with, and what follows them.
-    fn before(name: &str) -> (Held, &str) {
+    fn before(name: &str) -> (HeldModifiers, &str) {
         let mut rest = name;
         let mut held = |prefix: &str| match rest.get(..prefix.len()) {
             Some(start) if start.eq_ignore_ascii_case(prefix) && rest.len() > prefix.len() => {
@@ -250,14 +250,14 @@ impl Held {
             }
             _ => false,
         };
-        let held = Held { shift: held("Shift+"), ctrl: held("Ctrl+"), alt: held("Alt+") };
+        let held = HeldModifiers { shift: held("Shift+"), ctrl: held("Ctrl+"), alt: held("Alt+") };
         (held, rest)
     }
 }
 
 impl Chord {
     fn named(name: &str) -> Option<Chord> {
-        let (held, rest) = Held::before(name);
+        let (held, rest) = HeldModifiers::before(name);
         Some(Chord { key: Key::from_name(rest)?, held })
     }
 }
@@ -291,7 +291,7 @@ mod tests {
         assert_eq!(mapping.axis(2), Some((8, -1.0)));
         mapping.read("mouse right = key 5\nmouse middle =\nwheel down = dial 4 -0.02\n").unwrap();
         let mouse = mapping.mouse();
-        assert_eq!(mouse.button(PointerButton::Secondary), Some(&Click::Order("key 5".into())));
+        assert_eq!(mouse.button(PointerButton::Secondary), Some(&Click::OperatorCommand("key 5".into())));
         assert_eq!(mouse.button(PointerButton::Middle), None);
         assert_eq!((mouse.wheel(true), mouse.wheel(false)), (None, Some("dial 4 -0.02")));
         mapping.read("drag ctrl+Alt+right y = dial 8 2\ndrag left x =\ndrag wheel = dial 7 1\n").unwrap();

@@ -8,17 +8,17 @@ use tokio::sync::oneshot;
 const MAX_WAITING: usize = 1024;
 
 /// Gives orders to the machine, and takes its replies.
-pub struct Orders {
+pub struct OperatorCommands {
     sender: mpsc::Sender<OperatorLine>,
     waiting: Vec<(String, oneshot::Receiver<Reply>)>,
     /// The latest reply that says that something went wrong, with its order.
     pub failure: Option<String>,
 }
 
-impl Orders {
+impl OperatorCommands {
     /// Orders that go to the other end of `sender`.
-    pub fn new(sender: mpsc::Sender<OperatorLine>) -> Orders {
-        Orders { sender, waiting: Vec::new(), failure: None }
+    pub fn new(sender: mpsc::Sender<OperatorLine>) -> OperatorCommands {
+        OperatorCommands { sender, waiting: Vec::new(), failure: None }
     }
 
     /// Gives an order, a line of the operator's language. A machine that has ended takes none.

@@ -5,7 +5,7 @@
 //! milliseconds (u32), value (i16), kind (u8: 1 button, 2 axis, 128 added for the state at the start), number (u8).
 //! Elsewhere there is no controller.
 
-use super::{dials::Dials, mapping::Mapping, orders::Orders};
+use super::{dials::DialPanel, mapping::Mapping, orders::OperatorCommands};
 use std::{
     collections::BTreeMap,
     fs::File,
@@ -78,8 +78,8 @@ impl Pad {
         &mut self,
         seconds: f64,
         mapping: &Mapping,
-        dials: &mut Dials,
-        orders: &mut Orders,
+        dials: &mut DialPanel,
+        orders: &mut OperatorCommands,
         context: &egui::Context,
     ) {
         for event in self.events.try_iter() {

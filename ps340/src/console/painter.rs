@@ -1,29 +1,29 @@
 //! The thread that draws the vector screen, so that neither the machine nor the window waits for it.
 
-use crate::calligraphic::{Scene, Screen};
+use crate::calligraphic::{Scene, SharedDisplay};
 use egui::ColorImage;
 use std::sync::{Arc, Condvar, Mutex};
 
 /// What is to be drawn.
 #[derive(Clone)]
-pub struct Wanted {
+pub struct DrawRequest {
     /// What to show.
     pub scene: Scene,
     /// Width and height in pixels.
     pub size: [u32; 2],
 }
 
-impl Wanted {
-    fn is(&self, other: &Wanted) -> bool {
-        let numbers = |wanted: &Wanted| (wanted.scene.version, wanted.scene.settings, wanted.size);
+impl DrawRequest {
+    fn is(&self, other: &DrawRequest) -> bool {
+        let numbers = |wanted: &DrawRequest| (wanted.scene.version, wanted.scene.settings, wanted.size);
         numbers(self) == numbers(other)
     }
 }
 
 /// What the two threads share.
 #[derive(Default)]
-struct Easel {
-    wanted: Option<Wanted>,
+struct PainterState {
+    wanted: Option<DrawRequest>,
     painted: Option<Arc<ColorImage>>,
     /// Whether what is seen depends on what was seen before.
     remembers: bool,
@@ -32,21 +32,21 @@ struct Easel {
 
 /// Draws what was wanted last, as often as it can.
 pub struct Painter {
-    easel: Arc<(Mutex<Easel>, Condvar)>,
-    asked: Option<Wanted>,
+    easel: Arc<(Mutex<PainterState>, Condvar)>,
+    asked: Option<DrawRequest>,
 }
 
 impl Painter {
     /// Starts the thread, which draws on `screen`; it asks `context` for a repaint after each picture.
-    pub fn new(context: egui::Context, screen: Arc<Screen>) -> Painter {
-        let easel = Arc::new((Mutex::new(Easel::default()), Condvar::new()));
+    pub fn new(context: egui::Context, screen: Arc<SharedDisplay>) -> Painter {
+        let easel = Arc::new((Mutex::new(PainterState::default()), Condvar::new()));
         let shared = easel.clone();
         std::thread::spawn(move || paint(&shared, &context, &screen));
         Painter { easel, asked: None }
     }
 
     /// Says what is to be seen. A picture that is drawn already, or being drawn, is not drawn again.
-    pub fn want(&mut self, wanted: Wanted) {
+    pub fn want(&mut self, wanted: DrawRequest) {
         let same = self.asked.as_ref().is_some_and(|asked| asked.is(&wanted));
         // A display that remembers goes along with every frame.
         let goes_on = lock(&self.easel.0).remembers
@@ -75,7 +75,7 @@ impl Drop for Painter {
 }
 
 /// The thread.
-fn paint((easel, changed): &(Mutex<Easel>, Condvar), context: &egui::Context, screen: &Screen) {
+fn paint((easel, changed): &(Mutex<PainterState>, Condvar), context: &egui::Context, screen: &SharedDisplay) {
     let mut latest = None;
     loop {
         let mut guard = lock(easel);
@@ -89,7 +89,7 @@ fn paint((easel, changed): &(Mutex<Easel>, Condvar), context: &egui::Context, sc
             guard = changed.wait(guard).unwrap_or_else(|poisoned| poisoned.into_inner());
         };
         drop(guard);
-        let (image, remembers) = screen.look(&wanted.scene, Some(wanted.size), |seen| {
+        let (image, remembers) = screen.with_display(&wanted.scene, Some(wanted.size), |seen| {
             let is_new = latest.replace(seen.shown) != Some(seen.shown);
             let size = seen.display.size().map(|pixels| pixels as usize);
             let image = || Arc::new(ColorImage::from_rgba_unmultiplied(size, seen.display.frame()));
@@ -124,7 +124,7 @@ mod tests {
 
     /// What the window shows of the scene, once it is drawn.
     fn painted(painter: &mut Painter, machine: &mut Machine, size: [u32; 2]) -> Arc<ColorImage> {
-        painter.want(Wanted { scene: machine.scene().clone(), size });
+        painter.want(DrawRequest { scene: machine.scene().clone(), size });
         let begin = Instant::now();
         loop {
             if let Some(image) = painter.take() {
@@ -144,7 +144,7 @@ mod tests {
         let size = [90, 70];
         for (name, steady) in [("P22", true), ("P22", false), ("P39", true), ("P7", false), ("P31", true)] {
             let mut machine = Machine::new(Settings::default());
-            let screen = Arc::new(Screen::default());
+            let screen = Arc::new(SharedDisplay::default());
             machine.share_screen(screen.clone(), true);
             let mut painter = Painter::new(egui::Context::default(), screen);
             let controls = Controls { phosphor: phosphor(name).unwrap(), steady, ..Controls::default() };
@@ -174,14 +174,14 @@ mod tests {
 
     /// The picture of now without a past.
     fn alone(machine: &mut Machine, size: [u32; 2]) -> Vec<u8> {
-        let screen = Screen::default();
-        screen.look(machine.scene(), Some(size), |seen| seen.display.picture().to_srgb())
+        let screen = SharedDisplay::default();
+        screen.with_display(machine.scene(), Some(size), |seen| seen.display.picture().to_srgb())
     }
 
     #[test]
     fn a_picture_that_was_ordered_first_is_what_the_window_shows_then() {
         let mut machine = Machine::new(Settings::default());
-        let screen = Arc::new(Screen::default());
+        let screen = Arc::new(SharedDisplay::default());
         machine.share_screen(screen.clone(), true);
         let mut painter = Painter::new(egui::Context::default(), screen);
         let text = "V := VECTOR_LIST N = 2 -0.5,0 0.5,0.2; DISPLAY V;";

@@ -2,7 +2,7 @@
 
 use super::{
     mapping::{Click, Mouse},
-    orders::Orders,
+    orders::OperatorCommands,
 };
 use egui::{Event, MouseWheelUnit, Pos2, Rect, Response, Ui};
 
@@ -28,11 +28,11 @@ pub struct Puck {
 
 impl Puck {
     /// Gives the orders that the mouse means while it is over the area of `response`.
-    pub fn follow(&mut self, ui: &Ui, response: &Response, orders: &mut Orders) {
+    pub fn follow(&mut self, ui: &Ui, response: &Response, orders: &mut OperatorCommands) {
         // Under another window, or a menu, the mouse is no puck.
         let is_covered = !response.contains_pointer() && self.pressed == 0 && ui.ui_contains_pointer();
         if !is_covered {
-            let meant = ui.input(|input| self.orders(&input.events, response.rect));
+            let meant = ui.input(|input| self.commands(&input.events, response.rect));
             meant.into_iter().for_each(|order| orders.give(order));
         }
     }
@@ -48,14 +48,14 @@ impl Puck {
     }
 
     /// Takes it off the tablet.
-    pub fn take_off(&mut self, orders: &mut Orders) {
+    pub fn take_off(&mut self, orders: &mut OperatorCommands) {
         if self.place.take().is_some() {
             orders.give("puck away");
         }
     }
 
     /// Where it is, -1..=1, if it is on the tablet.
-    pub fn place(&self) -> Option<[f32; 2]> {
+    pub fn position(&self) -> Option<[f32; 2]> {
         self.place
     }
 
@@ -67,7 +67,7 @@ impl Puck {
     /// The orders that events of the mouse mean, in their order, so that none is lost however slowly pictures come.
     ///
     /// A press counts where it began: on the screen. Until it ends, the puck stays on the tablet.
-    fn orders(&mut self, events: &[Event], area: Rect) -> Vec<String> {
+    fn commands(&mut self, events: &[Event], area: Rect) -> Vec<String> {
         let mut orders = Vec::new();
         for event in events {
             match event {
@@ -79,7 +79,7 @@ impl Puck {
                     match self.mouse.button(*button) {
                         Some(Click::Puck(code)) if is_here => self.press(self.pressed | code, &mut orders),
                         Some(Click::Puck(code)) if !pressed => self.press(self.pressed & !code, &mut orders),
-                        Some(Click::Order(order)) if is_here => orders.push(order.clone()),
+                        Some(Click::OperatorCommand(order)) if is_here => orders.push(order.clone()),
                         _ => {}
                     }
                     if !pressed {
@@ -99,7 +99,7 @@ impl Puck {
     fn go(&mut self, at: Option<Pos2>, area: Rect, orders: &mut Vec<String>) {
         let is_drawing = self.pressed != 0;
         let place = match at {
-            Some(at) if is_drawing || area.contains(at) => Some(place(at, area)),
+            Some(at) if is_drawing || area.contains(at) => Some(position_in(at, area)),
             _ if is_drawing || self.stays => self.place,
             _ => None,
         };
@@ -130,7 +130,7 @@ impl Puck {
 }
 
 /// The place of the tablet under a point of the screen, -1..=1.
-fn place(at: Pos2, area: Rect) -> [f32; 2] {
+fn position_in(at: Pos2, area: Rect) -> [f32; 2] {
     let from_center = (at - area.center()) / (area.size() / 2.0);
     [from_center.x, 0.0 - from_center.y].map(|c| c.clamp(-1.0, 1.0))
 }
@@ -144,10 +144,10 @@ mod tests {
     #[test]
     fn the_corners_of_the_screen_are_those_of_the_tablet() {
         let area = Rect::from_min_max(Pos2::new(100.0, 50.0), Pos2::new(300.0, 250.0));
-        assert_eq!(place(Pos2::new(100.0, 50.0), area), [-1.0, 1.0]);
-        assert_eq!(place(Pos2::new(300.0, 250.0), area), [1.0, -1.0]);
-        assert_eq!(place(Pos2::new(200.0, 150.0), area), [0.0, 0.0]);
-        assert_eq!(place(Pos2::new(900.0, 150.0), area), [1.0, 0.0]);
+        assert_eq!(position_in(Pos2::new(100.0, 50.0), area), [-1.0, 1.0]);
+        assert_eq!(position_in(Pos2::new(300.0, 250.0), area), [1.0, -1.0]);
+        assert_eq!(position_in(Pos2::new(200.0, 150.0), area), [0.0, 0.0]);
+        assert_eq!(position_in(Pos2::new(900.0, 150.0), area), [1.0, 0.0]);
     }
 
     #[test]
@@ -161,7 +161,7 @@ mod tests {
         };
         let mapping = Mapping::default();
         let mut puck = Puck::new(mapping.mouse());
-        let mut orders = |events: &[Event]| puck.orders(events, area).join("; ");
+        let mut orders = |events: &[Event]| puck.commands(events, area).join("; ");
         let click = [Event::PointerMoved(Pos2::new(150.0, 100.0)), button(true, 150.0), button(false, 150.0)];
         assert_eq!(orders(&click), "puck move 0.5 0; puck press 2; puck release");
         // A press that began on the screen keeps the puck on the tablet; one that began elsewhere is none.
@@ -179,13 +179,13 @@ mod tests {
             source: MouseWheelSource::Unknown,
             modifiers: Modifiers::NONE,
         };
-        assert_eq!(puck.orders(&[roll(3.0)], area).join("; "), "");
+        assert_eq!(puck.commands(&[roll(3.0)], area).join("; "), "");
         let events =
             [Event::PointerMoved(Pos2::new(150.0, 100.0)), roll(0.5), roll(1.5), roll(-1.0), button(true, 150.0)];
-        assert_eq!(puck.orders(&events, area).join("; "), "puck move 0.5 0; dial 4 0.02; dial 4 0.02; key 5");
+        assert_eq!(puck.commands(&events, area).join("; "), "puck move 0.5 0; dial 4 0.02; dial 4 0.02; key 5");
         // One that stays is left where it was when the mouse goes.
         let mut puck = Puck::that_stays(mapping.mouse());
-        let left = puck.orders(&[Event::PointerMoved(Pos2::new(150.0, 100.0)), Event::PointerGone], area);
-        assert_eq!((left.join("; ").as_str(), puck.place()), ("puck move 0.5 0", Some([0.5, 0.0])));
+        let left = puck.commands(&[Event::PointerMoved(Pos2::new(150.0, 100.0)), Event::PointerGone], area);
+        assert_eq!((left.join("; ").as_str(), puck.position()), ("puck move 0.5 0", Some([0.5, 0.0])));
     }
 }

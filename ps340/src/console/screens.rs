@@ -1,16 +1,16 @@
 //! The two screens: their pictures, and the mouse on the vector screen as puck.
 
 use super::{
-    dials::Dials,
+    dials::DialPanel,
     keyboard,
     mapping::{Mapping, Mouse},
-    orders::Orders,
-    painter::{Painter, Wanted},
+    orders::OperatorCommands,
+    painter::{Painter, DrawRequest},
     places,
     puck::Puck,
     steering::Steering,
 };
-use crate::{calligraphic::Screen, raster::FrameBuffer, shell::Shown};
+use crate::{calligraphic::SharedDisplay, raster::FrameBuffer, shell::MirrorFrame};
 use egui::{
     Align2, Color32, ColorImage, FontId, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, TextureHandle,
     TextureOptions, Ui, Vec2, WidgetInfo, vec2,
@@ -30,7 +30,7 @@ pub struct VectorScreen {
 
 impl VectorScreen {
     /// A window on a screen.
-    pub fn new(context: egui::Context, screen: Arc<Screen>, mouse: &Mouse) -> VectorScreen {
+    pub fn new(context: egui::Context, screen: Arc<SharedDisplay>, mouse: &Mouse) -> VectorScreen {
         VectorScreen {
             painter: Painter::new(context, screen),
             texture: None,
@@ -46,16 +46,16 @@ impl VectorScreen {
     pub fn show(
         &mut self,
         ui: &mut Ui,
-        shown: &Shown,
+        shown: &MirrorFrame,
         mapping: &Mapping,
-        orders: &mut Orders,
-        dials: Option<&mut Dials>,
+        orders: &mut OperatorCommands,
+        dials: Option<&mut DialPanel>,
     ) -> Rect {
         let side = ui.available_size().min_elem().max(1.0);
         let (space, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
         let area = Rect::from_center_size(space.center(), Vec2::splat(side));
         let pixels = (side * ui.pixels_per_point()).round().clamp(1.0, MAX_PIXELS);
-        self.painter.want(Wanted { scene: shown.scene.clone(), size: [pixels as u32; 2] });
+        self.painter.want(DrawRequest { scene: shown.scene.clone(), size: [pixels as u32; 2] });
         if let Some(image) = self.painter.take() {
             put(&mut self.texture, ui, "vector screen", image, TextureOptions::LINEAR);
         }
@@ -79,7 +79,7 @@ impl VectorScreen {
     }
 
     /// Gives what is typed to the machine while the screen has the focus, which it takes at the start and by a press.
-    fn keyboard(&mut self, ui: &Ui, response: &Response, mapping: &Mapping, orders: &mut Orders) {
+    fn keyboard(&mut self, ui: &Ui, response: &Response, mapping: &Mapping, orders: &mut OperatorCommands) {
         let nobody = ui.memory(|memory| memory.focused().is_none());
         if nobody || response.is_pointer_button_down_on() || response.clicked() {
             response.request_focus();
@@ -111,7 +111,7 @@ pub struct RasterScreen {
 
 impl RasterScreen {
     /// Shows the screen as the largest 4 by 3 of the space that is left.
-    pub fn show(&mut self, ui: &mut Ui, shown: &Shown) {
+    pub fn show(&mut self, ui: &mut Ui, shown: &MirrorFrame) {
         let (space, response) = ui.allocate_exact_size(ui.available_size().max(vec2(1.0, 1.0)), Sense::hover());
         let width = space.width().min(space.height() * 4.0 / 3.0);
         let area = Rect::from_center_size(space.center(), vec2(width, width * 0.75));

@@ -1,6 +1,6 @@
 //! The mouse over the vector screen while it turns dials: drags turn and move what is shown, the wheel scales it.
 
-use super::{dials::Dials, mapping::Mouse, places};
+use super::{dials::DialPanel, mapping::Mouse, places};
 use egui::{Event, Modifiers, MouseWheelUnit, PointerButton, Pos2, Rect, Response, Ui};
 
 /// Points of a wheel that count as a step.
@@ -19,7 +19,7 @@ pub struct Steering {
 
 impl Steering {
     /// Turns the dials that events of the mouse mean over the area of `response`.
-    pub fn follow(&mut self, ui: &Ui, response: &Response, mouse: &Mouse, dials: &mut Dials) {
+    pub fn follow(&mut self, ui: &Ui, response: &Response, mouse: &Mouse, dials: &mut DialPanel) {
         places::note(ui, "view", response.rect.center());
         let is_over = response.contains_pointer();
         let turned = ui.input(|input| self.turns(&input.events, response.rect, is_over, mouse));

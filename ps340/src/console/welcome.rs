@@ -1,7 +1,7 @@
 //! What stands on the vector screen while nobody shows anything there: where hosts attach, and what one can do.
 
-use super::{orders::Orders, places};
-use crate::{example::EXAMPLES, shell::Shown};
+use super::{orders::OperatorCommands, places};
+use crate::{example::EXAMPLES, shell::MirrorFrame};
 use egui::{Align2, Color32, FontId, Layout, Rect, RichText, Ui, UiBuilder, vec2};
 
 /// Width that the text takes at most.
@@ -14,16 +14,16 @@ const GOOD: Color32 = Color32::from_rgb(120, 200, 130);
 
 /// Hosts as they came and went.
 #[derive(Debug, Default)]
-pub struct Guests {
+pub struct AttachedHosts {
     /// Who is attached.
     present: Vec<String>,
     /// Who left last, and when, in microseconds of the machine.
     left: Option<(String, u64)>,
 }
 
-impl Guests {
+impl AttachedHosts {
     /// Notes who is attached now.
-    pub fn note(&mut self, shown: &Shown) {
+    pub fn note(&mut self, shown: &MirrorFrame) {
         if self.present != shown.hosts {
             let gone = self.present.iter().find(|host| !shown.hosts.contains(host));
             self.left = gone.map(|host| (host.clone(), shown.micros)).or(self.left.take());
@@ -67,7 +67,7 @@ impl Guests {
 /// Shows what one can do, if nothing is on the screen, or that the host has left.
 ///
 /// - `lines`: where hosts attach.
-pub fn show(ui: &mut Ui, screen: Rect, shown: &Shown, guests: &Guests, lines: &[String], orders: &mut Orders) {
+pub fn show(ui: &mut Ui, screen: Rect, shown: &MirrorFrame, guests: &AttachedHosts, lines: &[String], orders: &mut OperatorCommands) {
     let is_empty = shown.scene.strokes.is_empty();
     match (is_empty, guests.present.is_empty(), guests.have_left()) {
         (true, true, has_left) => show_welcome(ui, screen, has_left, lines, orders),
@@ -86,7 +86,7 @@ fn note(ui: &Ui, screen: Rect, text: &str) {
     ui.painter().galley(Align2::CENTER_CENTER.anchor_size(at, text.size()).min, text, WEAK);
 }
 
-fn show_welcome(ui: &mut Ui, screen: Rect, has_left: bool, lines: &[String], orders: &mut Orders) {
+fn show_welcome(ui: &mut Ui, screen: Rect, has_left: bool, lines: &[String], orders: &mut OperatorCommands) {
     let width = WIDTH.min(screen.width() - 24.0).max(1.0);
     let size = vec2(width, (screen.height() - 24.0).max(1.0));
     let area = Rect::from_center_size(screen.center(), size);
@@ -144,11 +144,11 @@ mod tests {
 
     #[test]
     fn hosts_come_and_leave() {
-        let mut guests = Guests::default();
-        let shown = |hosts: &[&str], seconds: u64| Shown {
+        let mut guests = AttachedHosts::default();
+        let shown = |hosts: &[&str], seconds: u64| MirrorFrame {
             hosts: hosts.iter().map(|host| (*host).to_owned()).collect(),
             micros: seconds * 1_000_000,
-            ..Shown::default()
+            ..MirrorFrame::default()
         };
         let mut state = |hosts: &[&str], seconds: u64| {
             let shown = shown(hosts, seconds);

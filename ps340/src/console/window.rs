@@ -6,7 +6,7 @@ use super::{
     libraries,
     link::{Link, WINDOW},
 };
-use crate::shell::{End, Mirror, Options, Window, run};
+use crate::shell::{ExitReason, Mirror, Options, Window, run};
 use std::{
     io,
     panic::{AssertUnwindSafe, catch_unwind},
@@ -19,7 +19,7 @@ use std::{
 ///
 /// # Errors
 /// Why there is no window; then the machine is not run either.
-pub fn open(options: &Options, appearance: Appearance, ready: impl FnMut(&str) + Send) -> Result<End, ConsoleError> {
+pub fn open(options: &Options, appearance: Appearance, ready: impl FnMut(&str) + Send) -> Result<ExitReason, ConsoleError> {
     libraries::check()?;
     let context = Arc::new(OnceLock::<egui::Context>::new());
     let woken = context.clone();

@@ -1,7 +1,7 @@
 //! Accumulation and change: sums and means, limits, and messages that pass only when something changed.
 
 use super::{
-    Example, FunctionRow, Source,
+    FunctionExample, FunctionRow, Source,
     algebra::{difference, distance, limited, product, quotient, sum},
 };
 use crate::port::{
@@ -36,20 +36,20 @@ pub static ROWS: &[FunctionRow] = &[
         memory: 1,
         behaviour: accumulate,
         examples: &[
-            Example::of(
+            FunctionExample::of(
                 &[(2, V3([0.0; 3])), (4, R(5.0)), (5, R(100.0)), (6, R(-100.0)), (1, V3([0.1, 0.0, 0.0]))],
                 &[(1, V3([0.5, 0.0, 0.0]))],
             ),
-            Example::of(&[(1, V2([1.0, 2.0])), (1, V2([1.0, 2.0]))], &[(1, V2([1.0, 2.0])), (1, V2([2.0, 4.0]))]),
-            Example::of(&[(1, I(2)), (1, I(3)), (2, I(10)), (1, I(0))], &[(1, I(2)), (1, I(5)), (1, I(10))]),
-            Example::of(&[(3, R(1.0)), (1, R(0.6)), (1, R(0.6)), (1, R(0.6))], &[(1, R(0.6)), (1, R(1.8))]),
-            Example::of(
+            FunctionExample::of(&[(1, V2([1.0, 2.0])), (1, V2([1.0, 2.0]))], &[(1, V2([1.0, 2.0])), (1, V2([2.0, 4.0]))]),
+            FunctionExample::of(&[(1, I(2)), (1, I(3)), (2, I(10)), (1, I(0))], &[(1, I(2)), (1, I(5)), (1, I(10))]),
+            FunctionExample::of(&[(3, R(1.0)), (1, R(0.6)), (1, R(0.6)), (1, R(0.6))], &[(1, R(0.6)), (1, R(1.8))]),
+            FunctionExample::of(
                 &[(5, R(1.0)), (6, R(-1.0)), (1, V2([3.0, -0.5])), (1, V2([-0.5, -3.0]))],
                 &[(1, V2([1.0, -0.5])), (1, V2([0.5, -1.0]))],
             ),
-            Example::of(&[(2, V3([1.0; 3])), (1, R(1.0)), (1, V3([1.0, 0.0, 0.0]))], &[(1, V3([2.0, 1.0, 1.0]))])
+            FunctionExample::of(&[(2, V3([1.0; 3])), (1, R(1.0)), (1, V3([1.0, 0.0, 0.0]))], &[(1, V3([2.0, 1.0, 1.0]))])
                 .faults(&[5]),
-            Example::of(&[(5, R(-1.0)), (6, R(1.0)), (1, R(0.0))], &[]).faults(&[6]),
+            FunctionExample::of(&[(5, R(-1.0)), (6, R(1.0)), (1, R(0.0))], &[]).faults(&[6]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -71,8 +71,8 @@ pub static ROWS: &[FunctionRow] = &[
             Ok(())
         },
         examples: &[
-            Example::of(&[(2, I(1)), (1, I(1)), (1, I(1)), (1, I(0)), (1, I(1))], &[(1, I(1)), (1, I(0)), (1, I(1))]),
-            Example::of(
+            FunctionExample::of(&[(2, I(1)), (1, I(1)), (1, I(1)), (1, I(0)), (1, I(1))], &[(1, I(1)), (1, I(0)), (1, I(1))]),
+            FunctionExample::of(
                 &[(2, R(1.0)), (1, V2([0.0, 0.0])), (1, V2([0.6, 0.0])), (1, V2([0.6, 0.8]))],
                 &[(1, V2([0.0, 0.0])), (1, V2([0.6, 0.8]))],
             ),
@@ -93,11 +93,11 @@ pub static ROWS: &[FunctionRow] = &[
             if edge { f.emit(1, value) } else { Ok(()) }
         },
         examples: &[
-            Example::of(
+            FunctionExample::of(
                 &[(2, B(true)), (1, B(true)), (1, B(true)), (1, B(false)), (1, B(true))],
                 &[(1, B(true)), (1, B(true))],
             ),
-            Example::of(
+            FunctionExample::of(
                 &[(2, B(false)), (1, B(true)), (1, B(false)), (1, B(false)), (2, B(true)), (1, B(true))],
                 &[(1, B(false)), (1, B(true))],
             ),
@@ -113,16 +113,16 @@ pub static ROWS: &[FunctionRow] = &[
         memory: 2,
         behaviour: average,
         examples: &[
-            Example::of(
+            FunctionExample::of(
                 &[(2, I(2)), (1, I(1)), (1, I(2)), (1, R(5.0)), (2, I(1)), (1, I(7)), (1, I(4))],
                 &[(1, R(1.5)), (1, R(6.0)), (1, R(4.0))],
             ),
-            Example::of(
+            FunctionExample::of(
                 &[(2, I(2)), (1, V2([1.0, 2.0])), (1, V3([1.0; 3])), (1, V2([3.0, 4.0]))],
                 &[(1, V2([2.0, 3.0]))],
             )
             .faults(&[5]),
-            Example::of(&[(2, I(0)), (1, I(1))], &[]).faults(&[6]),
+            FunctionExample::of(&[(2, I(0)), (1, I(1))], &[]).faults(&[6]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -140,9 +140,9 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["<1> x <2> x the larger of 1 and |<1>| / <3>"],
         behaviour: scale_by_size,
         examples: &[
-            Example::of(&[(2, R(10.0)), (3, R(0.5)), (1, R(0.25)), (1, R(-2.0))], &[(1, R(2.5)), (1, R(-80.0))]),
-            Example::of(&[(1, V2([3.0, 4.0])), (1, I(1))], &[(1, V2([15.0, 20.0])), (1, R(1.0))]),
-            Example::of(&[(3, R(0.0)), (1, R(1.0))], &[]).faults(&[6]),
+            FunctionExample::of(&[(2, R(10.0)), (3, R(0.5)), (1, R(0.25)), (1, R(-2.0))], &[(1, R(2.5)), (1, R(-80.0))]),
+            FunctionExample::of(&[(1, V2([3.0, 4.0])), (1, I(1))], &[(1, V2([15.0, 20.0])), (1, R(1.0))]),
+            FunctionExample::of(&[(3, R(0.0)), (1, R(1.0))], &[]).faults(&[6]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -161,11 +161,11 @@ pub static ROWS: &[FunctionRow] = &[
             f.emit(1, value)
         },
         examples: &[
-            Example::of(
+            FunctionExample::of(
                 &[(2, R(1.0)), (3, R(-1.0)), (1, R(3.0)), (1, I(-2)), (1, R(0.5))],
                 &[(1, R(1.0)), (1, I(-1)), (1, R(0.5))],
             ),
-            Example::of(&[(2, R(-1.0)), (3, R(1.0)), (1, R(3.0))], &[]).faults(&[6]),
+            FunctionExample::of(&[(2, R(-1.0)), (3, R(1.0)), (1, R(3.0))], &[]).faults(&[6]),
         ],
         ..FunctionRow::PLAIN
     },

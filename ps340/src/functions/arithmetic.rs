@@ -5,7 +5,7 @@
 //! a matrix is their product in row-vector order. Anything else is a fault.
 
 use super::algebra::{difference, product, quotient, sum};
-use super::{Example, FunctionRow, Order, Source};
+use super::{FunctionExample, FunctionRow, QueuePosition, Source};
 use crate::{
     matrices::sine_and_cosine,
     port::{
@@ -50,17 +50,17 @@ pub static ROWS: &[FunctionRow] = &[
         behaviour: add,
         in_place: Some(add_in_place),
         examples: &[
-            Example::of(&[(1, I(2)), (2, I(3))], &[(1, I(5))]),
-            Example::of(&[(1, I(i32::MAX)), (2, I(1))], &[(1, I(i32::MIN))]),
-            Example::of(&[(1, I(2)), (2, R(0.5))], &[(1, R(2.5))]),
-            Example::of(&[(1, V3([1.0, 2.0, 3.0])), (2, V3([1.0, 0.0, -3.0]))], &[(1, V3([2.0, 2.0, 0.0]))]),
-            Example::of(
+            FunctionExample::of(&[(1, I(2)), (2, I(3))], &[(1, I(5))]),
+            FunctionExample::of(&[(1, I(i32::MAX)), (2, I(1))], &[(1, I(i32::MIN))]),
+            FunctionExample::of(&[(1, I(2)), (2, R(0.5))], &[(1, R(2.5))]),
+            FunctionExample::of(&[(1, V3([1.0, 2.0, 3.0])), (2, V3([1.0, 0.0, -3.0]))], &[(1, V3([2.0, 2.0, 0.0]))]),
+            FunctionExample::of(
                 &[(1, M2([[1.0, 2.0], [3.0, 4.0]])), (2, M2([[1.0; 2]; 2]))],
                 &[(1, M2([[2.0, 3.0], [4.0, 5.0]]))],
             ),
-            Example::of(&[(1, V2([1.0, 2.0])), (2, V3([1.0, 0.0, 0.0])), (2, V2([1.0, 1.0]))], &[(1, V2([2.0, 3.0]))])
+            FunctionExample::of(&[(1, V2([1.0, 2.0])), (2, V3([1.0, 0.0, 0.0])), (2, V2([1.0, 1.0]))], &[(1, V2([2.0, 3.0]))])
                 .faults(&[5]),
-            Example::of(&[(1, R(1.7e308)), (2, R(1.7e308))], &[]).faults(&[7]),
+            FunctionExample::of(&[(1, R(1.7e308)), (2, R(1.7e308))], &[]).faults(&[7]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -73,8 +73,8 @@ pub static ROWS: &[FunctionRow] = &[
         behaviour: add,
         in_place: Some(add_in_place),
         examples: &[
-            Example::of(&[(2, I(1)), (1, I(0)), (1, I(8))], &[(1, I(1)), (1, I(9))]),
-            Example::of(&[(2, I(1)), (1, V2([1.0, 1.0])), (1, I(1))], &[(1, I(2))]).faults(&[5]),
+            FunctionExample::of(&[(2, I(1)), (1, I(0)), (1, I(8))], &[(1, I(1)), (1, I(9))]),
+            FunctionExample::of(&[(2, I(1)), (1, V2([1.0, 1.0])), (1, I(1))], &[(1, I(2))]).faults(&[5]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -87,9 +87,9 @@ pub static ROWS: &[FunctionRow] = &[
         behaviour: subtract,
         in_place: Some(subtract_in_place),
         examples: &[
-            Example::of(&[(1, I(2)), (2, I(3))], &[(1, I(-1))]),
-            Example::of(&[(1, I(i32::MIN)), (2, I(1))], &[(1, I(i32::MAX))]),
-            Example::of(&[(1, V2([1.0, 2.0])), (2, V2([3.0, 1.0]))], &[(1, V2([-2.0, 1.0]))]),
+            FunctionExample::of(&[(1, I(2)), (2, I(3))], &[(1, I(-1))]),
+            FunctionExample::of(&[(1, I(i32::MIN)), (2, I(1))], &[(1, I(i32::MAX))]),
+            FunctionExample::of(&[(1, V2([1.0, 2.0])), (2, V2([3.0, 1.0]))], &[(1, V2([-2.0, 1.0]))]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -102,8 +102,8 @@ pub static ROWS: &[FunctionRow] = &[
         behaviour: subtract,
         in_place: Some(subtract_in_place),
         examples: &[
-            Example::of(&[(2, I(1)), (1, I(2))], &[(1, I(1))]),
-            Example::of(&[(2, I(1)), (1, V2([1.0, 1.0])), (1, R(0.5))], &[(1, R(-0.5))]).faults(&[5]),
+            FunctionExample::of(&[(2, I(1)), (1, I(2))], &[(1, I(1))]),
+            FunctionExample::of(&[(2, I(1)), (1, V2([1.0, 1.0])), (1, R(0.5))], &[(1, R(-0.5))]).faults(&[5]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -116,8 +116,8 @@ pub static ROWS: &[FunctionRow] = &[
         behaviour: subtract,
         in_place: Some(subtract_in_place),
         examples: &[
-            Example::of(&[(1, R(1.0)), (2, I(2))], &[(1, R(-1.0))]),
-            Example::of(&[(1, V2([1.0, 1.0])), (2, V2([0.0, 2.0])), (2, V3([0.0; 3]))], &[(1, V2([1.0, -1.0]))])
+            FunctionExample::of(&[(1, R(1.0)), (2, I(2))], &[(1, R(-1.0))]),
+            FunctionExample::of(&[(1, V2([1.0, 1.0])), (2, V2([0.0, 2.0])), (2, V3([0.0; 3]))], &[(1, V2([1.0, -1.0]))])
                 .faults(&[5]),
         ],
         ..FunctionRow::PLAIN
@@ -133,21 +133,21 @@ pub static ROWS: &[FunctionRow] = &[
         behaviour: multiply,
         in_place: Some(multiply_in_place),
         examples: &[
-            Example::of(&[(1, I(-3)), (2, I(4))], &[(1, I(-12))]),
-            Example::of(&[(1, R(2.0)), (2, V3([1.0, 2.0, 3.0]))], &[(1, V3([2.0, 4.0, 6.0]))]),
-            Example::of(&[(1, V2([1.0, 10.0])), (2, M2([[1.0, 2.0], [3.0, 4.0]]))], &[(1, V2([31.0, 42.0]))]),
-            Example::of(
+            FunctionExample::of(&[(1, I(-3)), (2, I(4))], &[(1, I(-12))]),
+            FunctionExample::of(&[(1, R(2.0)), (2, V3([1.0, 2.0, 3.0]))], &[(1, V3([2.0, 4.0, 6.0]))]),
+            FunctionExample::of(&[(1, V2([1.0, 10.0])), (2, M2([[1.0, 2.0], [3.0, 4.0]]))], &[(1, V2([31.0, 42.0]))]),
+            FunctionExample::of(
                 &[(1, M2([[1.0, 2.0], [3.0, 4.0]])), (2, M2([[0.0, 1.0], [1.0, 0.0]]))],
                 &[(1, M2([[2.0, 1.0], [4.0, 3.0]]))],
             ),
-            Example::of(
+            FunctionExample::of(
                 &[
                     (1, V3([1.0, 1.0, 1.0])),
                     (2, M43([[1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 1.0], [5.0, 6.0, 7.0]])),
                 ],
                 &[(1, V3([6.0, 8.0, 8.0]))],
             ),
-            Example::of(
+            FunctionExample::of(
                 &[(1, M2([[1.0, 2.0], [3.0, 4.0]])), (2, M3([[1.0; 3]; 3])), (2, I(2))],
                 &[(1, M2([[2.0, 4.0], [6.0, 8.0]]))],
             )
@@ -164,8 +164,8 @@ pub static ROWS: &[FunctionRow] = &[
         behaviour: multiply,
         in_place: Some(multiply_in_place),
         examples: &[
-            Example::of(&[(2, R(4.0)), (1, R(0.25))], &[(1, R(1.0))]),
-            Example::of(&[(2, I(3)), (1, I(2)), (1, V3([1.0, 0.0, -1.0]))], &[(1, I(6)), (1, V3([3.0, 0.0, -3.0]))]),
+            FunctionExample::of(&[(2, R(4.0)), (1, R(0.25))], &[(1, R(1.0))]),
+            FunctionExample::of(&[(2, I(3)), (1, I(2)), (1, V3([1.0, 0.0, -1.0]))], &[(1, I(6)), (1, V3([3.0, 0.0, -3.0]))]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -178,11 +178,11 @@ pub static ROWS: &[FunctionRow] = &[
         behaviour: multiply,
         in_place: Some(multiply_in_place),
         examples: &[
-            Example::of(
+            FunctionExample::of(
                 &[(1, M2([[1.0, 2.0], [3.0, 4.0]])), (2, M2([[0.0, 1.0], [1.0, 0.0]]))],
                 &[(1, M2([[2.0, 1.0], [4.0, 3.0]]))],
             ),
-            Example::of(&[(1, R(0.5)), (2, I(3)), (2, V2([2.0, 4.0]))], &[(1, R(1.5)), (1, V2([1.0, 2.0]))]),
+            FunctionExample::of(&[(1, R(0.5)), (2, I(3)), (2, V2([2.0, 4.0]))], &[(1, R(1.5)), (1, V2([1.0, 2.0]))]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -194,11 +194,11 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["<1> / <2>"],
         behaviour: divide,
         examples: &[
-            Example::of(&[(1, I(-7)), (2, I(2))], &[(1, I(-3))]),
-            Example::of(&[(1, I(i32::MIN)), (2, I(-1))], &[(1, I(i32::MIN))]),
-            Example::of(&[(1, I(7)), (2, R(2.0))], &[(1, R(3.5))]),
-            Example::of(&[(1, V4([2.0, 4.0, 6.0, 8.0])), (2, I(2))], &[(1, V4([1.0, 2.0, 3.0, 4.0]))]),
-            Example::of(&[(1, I(1)), (2, I(0)), (1, R(1.0)), (2, R(0.0)), (1, I(4)), (2, I(2))], &[(1, I(2))])
+            FunctionExample::of(&[(1, I(-7)), (2, I(2))], &[(1, I(-3))]),
+            FunctionExample::of(&[(1, I(i32::MIN)), (2, I(-1))], &[(1, I(i32::MIN))]),
+            FunctionExample::of(&[(1, I(7)), (2, R(2.0))], &[(1, R(3.5))]),
+            FunctionExample::of(&[(1, V4([2.0, 4.0, 6.0, 8.0])), (2, I(2))], &[(1, V4([1.0, 2.0, 3.0, 4.0]))]),
+            FunctionExample::of(&[(1, I(1)), (2, I(0)), (1, R(1.0)), (2, R(0.0)), (1, I(4)), (2, I(2))], &[(1, I(2))])
                 .faults(&[7, 7]),
         ],
         ..FunctionRow::PLAIN
@@ -211,8 +211,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["<1> / <2>"],
         behaviour: divide,
         examples: &[
-            Example::of(&[(2, I(4)), (1, M3([[4.0; 3]; 3]))], &[(1, M3([[1.0; 3]; 3]))]),
-            Example::of(&[(2, I(0)), (1, I(1)), (2, I(-2)), (1, I(7))], &[(1, I(-3))]).faults(&[7]),
+            FunctionExample::of(&[(2, I(4)), (1, M3([[4.0; 3]; 3]))], &[(1, M3([[1.0; 3]; 3]))]),
+            FunctionExample::of(&[(2, I(0)), (1, I(1)), (2, I(-2)), (1, I(7))], &[(1, I(-3))]).faults(&[7]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -224,8 +224,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["<1> / <2>"],
         behaviour: divide,
         examples: &[
-            Example::of(&[(1, R(1.0)), (2, R(8.0)), (2, I(0)), (2, I(2))], &[(1, R(0.125)), (1, R(0.5))]).faults(&[7]),
-            Example::of(&[(1, I(7)), (2, I(2)), (2, R(2.0))], &[(1, I(3)), (1, R(3.5))]),
+            FunctionExample::of(&[(1, R(1.0)), (2, R(8.0)), (2, I(0)), (2, I(2))], &[(1, R(0.125)), (1, R(0.5))]).faults(&[7]),
+            FunctionExample::of(&[(1, I(7)), (2, I(2)), (2, R(2.0))], &[(1, I(3)), (1, R(3.5))]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -237,8 +237,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["remainder"],
         behaviour: modulo,
         examples: &[
-            Example::of(&[(1, I(-7)), (2, I(3))], &[(1, I(-1))]),
-            Example::of(&[(1, I(7)), (2, I(0))], &[]).faults(&[7]),
+            FunctionExample::of(&[(1, I(-7)), (2, I(3))], &[(1, I(-1))]),
+            FunctionExample::of(&[(1, I(7)), (2, I(0))], &[]).faults(&[7]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -250,8 +250,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["remainder"],
         behaviour: modulo,
         examples: &[
-            Example::of(&[(2, I(3)), (1, I(8))], &[(1, I(2))]),
-            Example::of(&[(2, I(0)), (1, I(8)), (2, I(-3)), (1, I(8)), (1, R(8.0))], &[(1, I(2))]).faults(&[7, 5]),
+            FunctionExample::of(&[(2, I(3)), (1, I(8))], &[(1, I(2))]),
+            FunctionExample::of(&[(2, I(0)), (1, I(8)), (2, I(-3)), (1, I(8)), (1, R(8.0))], &[(1, I(2))]).faults(&[7, 5]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -266,8 +266,8 @@ pub static ROWS: &[FunctionRow] = &[
             f.emit(1, Value::Real(root))
         },
         examples: &[
-            Example::of(&[(1, I(16)), (1, R(-1.0)), (1, R(0.25))], &[(1, R(4.0)), (1, R(0.5))]).faults(&[7]),
-            Example::of(&[(1, R(0.0)), (1, V2([1.0, 1.0]))], &[(1, R(0.0))]).faults(&[5]),
+            FunctionExample::of(&[(1, I(16)), (1, R(-1.0)), (1, R(0.25))], &[(1, R(4.0)), (1, R(0.5))]).faults(&[7]),
+            FunctionExample::of(&[(1, R(0.0)), (1, V2([1.0, 1.0]))], &[(1, R(0.0))]).faults(&[5]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -283,8 +283,8 @@ pub static ROWS: &[FunctionRow] = &[
             f.emit(2, Value::Real(cosine))
         },
         examples: &[
-            Example::of(&[(1, R(90.0))], &[(1, R(1.0)), (2, R(0.0))]),
-            Example::of(&[(1, I(-720))], &[(1, R(0.0)), (2, R(1.0))]),
+            FunctionExample::of(&[(1, R(90.0))], &[(1, R(1.0)), (2, R(0.0))]),
+            FunctionExample::of(&[(1, I(-720))], &[(1, R(0.0)), (2, R(1.0))]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -296,8 +296,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["integer"],
         behaviour: |f| to_integer(f, f64::round),
         examples: &[
-            Example::of(&[(1, R(2.5)), (1, R(-2.5)), (1, R(3e9))], &[(1, I(3)), (1, I(-3))]).faults(&[6]),
-            Example::of(&[(1, I(7)), (1, R(-0.4))], &[(1, I(7)), (1, I(0))]),
+            FunctionExample::of(&[(1, R(2.5)), (1, R(-2.5)), (1, R(3e9))], &[(1, I(3)), (1, I(-3))]).faults(&[6]),
+            FunctionExample::of(&[(1, I(7)), (1, R(-0.4))], &[(1, I(7)), (1, I(0))]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -309,8 +309,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["integer"],
         behaviour: |f| to_integer(f, f64::trunc),
         examples: &[
-            Example::of(&[(1, R(2.9)), (1, R(-2.9))], &[(1, I(2)), (1, I(-2))]),
-            Example::of(&[(1, R(-2147483648.5)), (1, R(2147483648.0))], &[(1, I(i32::MIN))]).faults(&[6]),
+            FunctionExample::of(&[(1, R(2.9)), (1, R(-2.9))], &[(1, I(2)), (1, I(-2))]),
+            FunctionExample::of(&[(1, R(-2147483648.5)), (1, R(2147483648.0))], &[(1, I(i32::MIN))]).faults(&[6]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -322,8 +322,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["integer"],
         behaviour: |f| to_integer(f, f64::ceil),
         examples: &[
-            Example::of(&[(1, R(2.1)), (1, R(-2.9))], &[(1, I(3)), (1, I(-2))]),
-            Example::of(&[(1, R(-0.5)), (1, I(4)), (1, R(2147483647.5))], &[(1, I(0)), (1, I(4))]).faults(&[6]),
+            FunctionExample::of(&[(1, R(2.1)), (1, R(-2.9))], &[(1, I(3)), (1, I(-2))]),
+            FunctionExample::of(&[(1, R(-0.5)), (1, I(4)), (1, R(2147483647.5))], &[(1, I(0)), (1, I(4))]).faults(&[6]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -338,26 +338,26 @@ pub static ROWS: &[FunctionRow] = &[
             f.emit(1, Value::Real(real))
         },
         examples: &[
-            Example::of(&[(1, I(-3))], &[(1, R(-3.0))]),
-            Example::of(&[(1, R(0.5)), (1, I(i32::MIN))], &[(1, R(0.5)), (1, R(-2147483648.0))]),
+            FunctionExample::of(&[(1, I(-3))], &[(1, R(-3.0))]),
+            FunctionExample::of(&[(1, R(0.5)), (1, I(i32::MIN))], &[(1, R(0.5)), (1, R(-2147483648.0))]),
         ],
         ..FunctionRow::PLAIN
     },
 ];
 
-fn add_in_place(message: &mut Value, constant: &Value, _: Order) -> bool {
+fn add_in_place(message: &mut Value, constant: &Value, _: QueuePosition) -> bool {
     real_in_place(message, constant, |m, c| m + c)
 }
 
-fn subtract_in_place(message: &mut Value, constant: &Value, order: Order) -> bool {
-    real_in_place(message, constant, |m, c| if order == Order::MessageFirst { m - c } else { c - m })
+fn subtract_in_place(message: &mut Value, constant: &Value, order: QueuePosition) -> bool {
+    real_in_place(message, constant, |m, c| if order == QueuePosition::MessageFirst { m - c } else { c - m })
 }
 
-fn multiply_in_place(message: &mut Value, constant: &Value, order: Order) -> bool {
+fn multiply_in_place(message: &mut Value, constant: &Value, order: QueuePosition) -> bool {
     if let (Value::Matrix4(message), Value::Matrix4(constant)) = (&mut *message, constant) {
         let product = match order {
-            Order::MessageFirst => matrix_product(message, constant),
-            Order::ConstantFirst => matrix_product(constant, message),
+            QueuePosition::MessageFirst => matrix_product(message, constant),
+            QueuePosition::ConstantFirst => matrix_product(constant, message),
         };
         let finite = is_finite(&product);
         if finite {

@@ -1,6 +1,6 @@
 //! Characters: codes, masks, and lines gathered from what comes in pieces.
 
-use super::{Example, FunctionRow, Source, strings::find};
+use super::{FunctionExample, FunctionRow, Source, strings::find};
 use crate::port::{
     Firing, KindSet,
     Literal::{I, S},
@@ -37,8 +37,8 @@ pub static ROWS: &[FunctionRow] = &[
             text.iter().try_for_each(|&byte| f.emit(1, Value::Integer(byte.into())))
         },
         examples: &[
-            Example::of(&[(1, S("AB\r"))], &[(1, I(65)), (1, I(66)), (1, I(13))]),
-            Example::of(&[(1, S("")), (1, S("0"))], &[(1, I(48))]),
+            FunctionExample::of(&[(1, S("AB\r"))], &[(1, I(65)), (1, I(66)), (1, I(13))]),
+            FunctionExample::of(&[(1, S("")), (1, S("0"))], &[(1, I(48))]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -54,8 +54,8 @@ pub static ROWS: &[FunctionRow] = &[
             f.emit(1, Value::String(masked.into()))
         },
         examples: &[
-            Example::of(&[(1, S("\u{c1}")), (2, I(95)), (1, S("abc"))], &[(1, S("C\u{1}")), (1, S("ABC"))]),
-            Example::of(&[(2, I(256)), (1, S("A"))], &[]).faults(&[6]),
+            FunctionExample::of(&[(1, S("\u{c1}")), (2, I(95)), (1, S("abc"))], &[(1, S("C\u{1}")), (1, S("ABC"))]),
+            FunctionExample::of(&[(2, I(256)), (1, S("A"))], &[]).faults(&[6]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -70,8 +70,8 @@ pub static ROWS: &[FunctionRow] = &[
             f.emit(1, text)
         },
         examples: &[
-            Example::of(&[(2, I(1)), (1, S("A")), (1, S(""))], &[(1, S("A")), (1, S(""))]),
-            Example::of(&[(2, I(1)), (1, I(65))], &[]).faults(&[5]),
+            FunctionExample::of(&[(2, I(1)), (1, S("A")), (1, S(""))], &[(1, S("A")), (1, S(""))]),
+            FunctionExample::of(&[(2, I(1)), (1, I(65))], &[]).faults(&[5]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -90,9 +90,9 @@ pub static ROWS: &[FunctionRow] = &[
         memory: 1,
         behaviour: gather,
         examples: &[
-            Example::of(&[(1, S("HE")), (1, S("LLO\rWOR")), (1, S("LD\r"))], &[(1, S("HELLO")), (1, S("WORLD"))]),
-            Example::of(&[(2, S("--")), (1, S("A-")), (1, S("-----B"))], &[(1, S("A")), (1, S("")), (1, S(""))]),
-            Example::of(&[(2, S("")), (1, S("A"))], &[]).faults(&[6]),
+            FunctionExample::of(&[(1, S("HE")), (1, S("LLO\rWOR")), (1, S("LD\r"))], &[(1, S("HELLO")), (1, S("WORLD"))]),
+            FunctionExample::of(&[(2, S("--")), (1, S("A-")), (1, S("-----B"))], &[(1, S("A")), (1, S("")), (1, S(""))]),
+            FunctionExample::of(&[(2, S("")), (1, S("A"))], &[]).faults(&[6]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -108,11 +108,11 @@ pub static ROWS: &[FunctionRow] = &[
         memory: 1,
         behaviour: edit,
         examples: &[
-            Example::of(
+            FunctionExample::of(
                 &[(1, S("A")), (1, S("X")), (1, S("\u{7f}")), (1, S("B")), (1, S("\r"))],
                 &[(2, S("A")), (2, S("X")), (2, S("\u{8} \u{8}")), (2, S("B")), (1, S("AB")), (2, S("\r\n"))],
             ),
-            Example::of(
+            FunctionExample::of(
                 &[(1, S("\u{7f}")), (1, S("ABC\u{15}D\rE\r\u{7}"))],
                 &[(1, S("D")), (1, S("E")), (2, S("ABC\u{8} \u{8}\u{8} \u{8}\u{8} \u{8}D\r\nE\r\n"))],
             ),
@@ -129,7 +129,7 @@ fn line(f: &Firing) -> Vec<u8> {
     }
 }
 
-fn keep(f: &mut Firing, line: &[u8]) {
+fn append_line(f: &mut Firing, line: &[u8]) {
     if line.is_empty() {
         f.forget(LINE);
     } else {
@@ -156,7 +156,7 @@ fn gather(f: &mut Firing) -> Result<(), Problem> {
     if rest.len() > MAX_GATHERED || lines.iter().any(|line| line.len() > MAX_STRING) {
         return Err(Problem::TooLong);
     }
-    keep(f, rest);
+    append_line(f, rest);
     lines.into_iter().try_for_each(|line| f.emit(1, Value::string(line)))
 }
 
@@ -180,7 +180,7 @@ fn edit(f: &mut Firing) -> Result<(), Problem> {
             _ => {}
         }
     }
-    keep(f, &line);
+    append_line(f, &line);
     lines.into_iter().try_for_each(|line| f.emit(1, Value::String(line.into())))?;
     for part in echo.chunks(MAX_STRING) {
         f.emit(2, Value::string(part))?;

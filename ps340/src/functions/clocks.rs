@@ -10,7 +10,7 @@
 //! - A fault stops the clock (<4> becomes FALSE), so that it does not come again at each frame.
 
 use super::{
-    Example, FunctionRow, Source,
+    FunctionExample, FunctionRow, Source,
     algebra::{difference, sum},
 };
 use crate::port::{
@@ -81,8 +81,8 @@ pub static ROWS: &[FunctionRow] = &[
         },
         clock: Some(time_out),
         examples: &[
-            Example::of(&[(2, I(50)), (3, S("LATE")), (1, B(true))], &[]),
-            Example::of(&[(2, I(0)), (3, S("LATE")), (1, B(true))], &[]).faults(&[6]),
+            FunctionExample::of(&[(2, I(50)), (3, S("LATE")), (1, B(true))], &[]),
+            FunctionExample::of(&[(2, I(0)), (3, S("LATE")), (1, B(true))], &[]).faults(&[6]),
         ],
         ..FunctionRow::PLAIN
     },

@@ -3,7 +3,7 @@
 //! Integers and reals compare by value. EQ and NE also compare Booleans, strings, vectors and matrices of the same
 //! kind; values of different kinds are a fault.
 
-use super::{Behaviour, Example, FunctionRow, Source};
+use super::{Behaviour, FunctionExample, FunctionRow, Source};
 use crate::port::{
     Firing, KindSet,
     Literal::{B, I, R, S, V2, V3},
@@ -29,7 +29,7 @@ const fn ordering(
     summary: &'static str,
     constant: u16,
     behaviour: Behaviour,
-    examples: &'static [Example],
+    examples: &'static [FunctionExample],
 ) -> FunctionRow {
     const FORMS: [&[PortSpec]; 3] = [&pair(ORDERED, 0), &pair(ORDERED, 1), &pair(ORDERED, 2)];
     FunctionRow {
@@ -54,8 +54,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["Boolean"],
         behaviour: |f| equate(f, true),
         examples: &[
-            Example::of(&[(1, I(2)), (2, R(2.0)), (1, S("A")), (2, S("a"))], &[(1, B(true)), (1, B(false))]),
-            Example::of(&[(1, V2([1.0, 2.0])), (2, V3([1.0, 2.0, 0.0])), (2, V2([1.0, 2.0]))], &[(1, B(true))])
+            FunctionExample::of(&[(1, I(2)), (2, R(2.0)), (1, S("A")), (2, S("a"))], &[(1, B(true)), (1, B(false))]),
+            FunctionExample::of(&[(1, V2([1.0, 2.0])), (2, V3([1.0, 2.0, 0.0])), (2, V2([1.0, 2.0]))], &[(1, B(true))])
                 .faults(&[5]),
         ],
         ..FunctionRow::PLAIN
@@ -68,8 +68,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["Boolean"],
         behaviour: |f| equate(f, true),
         examples: &[
-            Example::of(&[(2, B(true)), (1, B(true)), (1, B(false))], &[(1, B(true)), (1, B(false))]),
-            Example::of(&[(2, S("A")), (1, S("A")), (1, I(1)), (1, S("B"))], &[(1, B(true)), (1, B(false))])
+            FunctionExample::of(&[(2, B(true)), (1, B(true)), (1, B(false))], &[(1, B(true)), (1, B(false))]),
+            FunctionExample::of(&[(2, S("A")), (1, S("A")), (1, I(1)), (1, S("B"))], &[(1, B(true)), (1, B(false))])
                 .faults(&[5]),
         ],
         ..FunctionRow::PLAIN
@@ -82,8 +82,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["Boolean"],
         behaviour: |f| equate(f, false),
         examples: &[
-            Example::of(&[(1, V2([1.0, 2.0])), (2, V2([1.0, 2.5]))], &[(1, B(true))]),
-            Example::of(&[(1, S("A")), (2, I(1)), (2, S("A"))], &[(1, B(false))]).faults(&[5]),
+            FunctionExample::of(&[(1, V2([1.0, 2.0])), (2, V2([1.0, 2.5]))], &[(1, B(true))]),
+            FunctionExample::of(&[(1, S("A")), (2, I(1)), (2, S("A"))], &[(1, B(false))]).faults(&[5]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -95,8 +95,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["Boolean"],
         behaviour: |f| equate(f, false),
         examples: &[
-            Example::of(&[(2, S("X")), (1, S("X")), (1, S("Y"))], &[(1, B(false)), (1, B(true))]),
-            Example::of(&[(2, I(2)), (1, R(2.0)), (1, B(true))], &[(1, B(false))]).faults(&[5]),
+            FunctionExample::of(&[(2, S("X")), (1, S("X")), (1, S("Y"))], &[(1, B(false)), (1, B(true))]),
+            FunctionExample::of(&[(2, I(2)), (1, R(2.0)), (1, B(true))], &[(1, B(false))]).faults(&[5]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -104,20 +104,20 @@ pub static ROWS: &[FunctionRow] = &[
         "GT",
         "whether <1> is greater than <2>",
         0,
-        |f| order(f, Ordering::is_gt),
+        |f| compare_ordered(f, Ordering::is_gt),
         &[
-            Example::of(&[(1, I(3)), (2, R(2.5)), (1, I(2)), (2, I(2))], &[(1, B(true)), (1, B(false))]),
-            Example::of(&[(1, S("A")), (1, R(-0.0)), (2, I(0))], &[(1, B(false))]).faults(&[5]),
+            FunctionExample::of(&[(1, I(3)), (2, R(2.5)), (1, I(2)), (2, I(2))], &[(1, B(true)), (1, B(false))]),
+            FunctionExample::of(&[(1, S("A")), (1, R(-0.0)), (2, I(0))], &[(1, B(false))]).faults(&[5]),
         ],
     ),
     ordering(
         "GTC",
         "whether <1> is greater than the constant <2>",
         2,
-        |f| order(f, Ordering::is_gt),
+        |f| compare_ordered(f, Ordering::is_gt),
         &[
-            Example::of(&[(2, R(0.0)), (1, R(0.5)), (1, R(-0.5))], &[(1, B(true)), (1, B(false))]),
-            Example::of(&[(2, I(0)), (1, R(-0.0)), (1, B(true)), (1, R(1e300))], &[(1, B(false)), (1, B(true))])
+            FunctionExample::of(&[(2, R(0.0)), (1, R(0.5)), (1, R(-0.5))], &[(1, B(true)), (1, B(false))]),
+            FunctionExample::of(&[(2, I(0)), (1, R(-0.0)), (1, B(true)), (1, R(1e300))], &[(1, B(false)), (1, B(true))])
                 .faults(&[5]),
         ],
     ),
@@ -125,10 +125,10 @@ pub static ROWS: &[FunctionRow] = &[
         "CGT",
         "whether the constant <1> is greater than <2>",
         1,
-        |f| order(f, Ordering::is_gt),
+        |f| compare_ordered(f, Ordering::is_gt),
         &[
-            Example::of(&[(1, R(0.0)), (2, R(0.5)), (2, R(-0.5))], &[(1, B(false)), (1, B(true))]),
-            Example::of(&[(1, I(0)), (2, R(-0.0)), (2, B(true)), (2, R(1e300))], &[(1, B(false)), (1, B(false))])
+            FunctionExample::of(&[(1, R(0.0)), (2, R(0.5)), (2, R(-0.5))], &[(1, B(false)), (1, B(true))]),
+            FunctionExample::of(&[(1, I(0)), (2, R(-0.0)), (2, B(true)), (2, R(1e300))], &[(1, B(false)), (1, B(false))])
                 .faults(&[5]),
         ],
     ),
@@ -136,20 +136,20 @@ pub static ROWS: &[FunctionRow] = &[
         "GE",
         "whether <1> is not less than <2>",
         0,
-        |f| order(f, Ordering::is_ge),
+        |f| compare_ordered(f, Ordering::is_ge),
         &[
-            Example::of(&[(1, I(2)), (2, I(2)), (1, I(1)), (2, I(2))], &[(1, B(true)), (1, B(false))]),
-            Example::of(&[(1, S("A")), (1, R(-0.0)), (2, I(0))], &[(1, B(true))]).faults(&[5]),
+            FunctionExample::of(&[(1, I(2)), (2, I(2)), (1, I(1)), (2, I(2))], &[(1, B(true)), (1, B(false))]),
+            FunctionExample::of(&[(1, S("A")), (1, R(-0.0)), (2, I(0))], &[(1, B(true))]).faults(&[5]),
         ],
     ),
     ordering(
         "GEC",
         "whether <1> is not less than the constant <2>",
         2,
-        |f| order(f, Ordering::is_ge),
+        |f| compare_ordered(f, Ordering::is_ge),
         &[
-            Example::of(&[(2, I(1)), (1, I(1)), (1, I(0))], &[(1, B(true)), (1, B(false))]),
-            Example::of(&[(2, I(0)), (1, R(-0.0)), (1, B(true)), (1, R(1e300))], &[(1, B(true)), (1, B(true))])
+            FunctionExample::of(&[(2, I(1)), (1, I(1)), (1, I(0))], &[(1, B(true)), (1, B(false))]),
+            FunctionExample::of(&[(2, I(0)), (1, R(-0.0)), (1, B(true)), (1, R(1e300))], &[(1, B(true)), (1, B(true))])
                 .faults(&[5]),
         ],
     ),
@@ -157,10 +157,10 @@ pub static ROWS: &[FunctionRow] = &[
         "CGE",
         "whether the constant <1> is not less than <2>",
         1,
-        |f| order(f, Ordering::is_ge),
+        |f| compare_ordered(f, Ordering::is_ge),
         &[
-            Example::of(&[(1, I(1)), (2, I(1)), (2, I(2))], &[(1, B(true)), (1, B(false))]),
-            Example::of(&[(1, I(0)), (2, R(-0.0)), (2, B(true)), (2, R(1e300))], &[(1, B(true)), (1, B(false))])
+            FunctionExample::of(&[(1, I(1)), (2, I(1)), (2, I(2))], &[(1, B(true)), (1, B(false))]),
+            FunctionExample::of(&[(1, I(0)), (2, R(-0.0)), (2, B(true)), (2, R(1e300))], &[(1, B(true)), (1, B(false))])
                 .faults(&[5]),
         ],
     ),
@@ -168,20 +168,20 @@ pub static ROWS: &[FunctionRow] = &[
         "LT",
         "whether <1> is less than <2>",
         0,
-        |f| order(f, Ordering::is_lt),
+        |f| compare_ordered(f, Ordering::is_lt),
         &[
-            Example::of(&[(1, I(2)), (2, I(2)), (1, I(1)), (2, I(2))], &[(1, B(false)), (1, B(true))]),
-            Example::of(&[(1, S("A")), (1, R(-0.0)), (2, I(0))], &[(1, B(false))]).faults(&[5]),
+            FunctionExample::of(&[(1, I(2)), (2, I(2)), (1, I(1)), (2, I(2))], &[(1, B(false)), (1, B(true))]),
+            FunctionExample::of(&[(1, S("A")), (1, R(-0.0)), (2, I(0))], &[(1, B(false))]).faults(&[5]),
         ],
     ),
     ordering(
         "LTC",
         "whether <1> is less than the constant <2>",
         2,
-        |f| order(f, Ordering::is_lt),
+        |f| compare_ordered(f, Ordering::is_lt),
         &[
-            Example::of(&[(2, I(1)), (1, I(1)), (1, I(0))], &[(1, B(false)), (1, B(true))]),
-            Example::of(&[(2, I(0)), (1, R(-0.0)), (1, B(true)), (1, R(1e300))], &[(1, B(false)), (1, B(false))])
+            FunctionExample::of(&[(2, I(1)), (1, I(1)), (1, I(0))], &[(1, B(false)), (1, B(true))]),
+            FunctionExample::of(&[(2, I(0)), (1, R(-0.0)), (1, B(true)), (1, R(1e300))], &[(1, B(false)), (1, B(false))])
                 .faults(&[5]),
         ],
     ),
@@ -189,10 +189,10 @@ pub static ROWS: &[FunctionRow] = &[
         "CLT",
         "whether the constant <1> is less than <2>",
         1,
-        |f| order(f, Ordering::is_lt),
+        |f| compare_ordered(f, Ordering::is_lt),
         &[
-            Example::of(&[(1, I(1)), (2, I(1)), (2, I(2))], &[(1, B(false)), (1, B(true))]),
-            Example::of(&[(1, I(0)), (2, R(-0.0)), (2, B(true)), (2, R(1e300))], &[(1, B(false)), (1, B(true))])
+            FunctionExample::of(&[(1, I(1)), (2, I(1)), (2, I(2))], &[(1, B(false)), (1, B(true))]),
+            FunctionExample::of(&[(1, I(0)), (2, R(-0.0)), (2, B(true)), (2, R(1e300))], &[(1, B(false)), (1, B(true))])
                 .faults(&[5]),
         ],
     ),
@@ -200,20 +200,20 @@ pub static ROWS: &[FunctionRow] = &[
         "LE",
         "whether <1> is not greater than <2>",
         0,
-        |f| order(f, Ordering::is_le),
+        |f| compare_ordered(f, Ordering::is_le),
         &[
-            Example::of(&[(1, I(2)), (2, I(2)), (1, I(3)), (2, I(2))], &[(1, B(true)), (1, B(false))]),
-            Example::of(&[(1, S("A")), (1, R(-0.0)), (2, I(0))], &[(1, B(true))]).faults(&[5]),
+            FunctionExample::of(&[(1, I(2)), (2, I(2)), (1, I(3)), (2, I(2))], &[(1, B(true)), (1, B(false))]),
+            FunctionExample::of(&[(1, S("A")), (1, R(-0.0)), (2, I(0))], &[(1, B(true))]).faults(&[5]),
         ],
     ),
     ordering(
         "LEC",
         "whether <1> is not greater than the constant <2>",
         2,
-        |f| order(f, Ordering::is_le),
+        |f| compare_ordered(f, Ordering::is_le),
         &[
-            Example::of(&[(2, I(1)), (1, I(1)), (1, I(2))], &[(1, B(true)), (1, B(false))]),
-            Example::of(&[(2, I(0)), (1, R(-0.0)), (1, B(true)), (1, R(1e300))], &[(1, B(true)), (1, B(false))])
+            FunctionExample::of(&[(2, I(1)), (1, I(1)), (1, I(2))], &[(1, B(true)), (1, B(false))]),
+            FunctionExample::of(&[(2, I(0)), (1, R(-0.0)), (1, B(true)), (1, R(1e300))], &[(1, B(true)), (1, B(false))])
                 .faults(&[5]),
         ],
     ),
@@ -221,10 +221,10 @@ pub static ROWS: &[FunctionRow] = &[
         "CLE",
         "whether the constant <1> is not greater than <2>",
         1,
-        |f| order(f, Ordering::is_le),
+        |f| compare_ordered(f, Ordering::is_le),
         &[
-            Example::of(&[(1, I(1)), (2, I(1)), (2, I(0))], &[(1, B(true)), (1, B(false))]),
-            Example::of(&[(1, I(0)), (2, R(-0.0)), (2, B(true)), (2, R(1e300))], &[(1, B(true)), (1, B(true))])
+            FunctionExample::of(&[(1, I(1)), (2, I(1)), (2, I(0))], &[(1, B(true)), (1, B(false))]),
+            FunctionExample::of(&[(1, I(0)), (2, R(-0.0)), (2, B(true)), (2, R(1e300))], &[(1, B(true)), (1, B(true))])
                 .faults(&[5]),
         ],
     ),
@@ -240,7 +240,7 @@ fn equate(f: &mut Firing, wanted: bool) -> Result<(), Problem> {
     f.emit(1, Value::Boolean(equal == wanted))
 }
 
-fn order(f: &mut Firing, holds: fn(Ordering) -> bool) -> Result<(), Problem> {
+fn compare_ordered(f: &mut Firing, holds: fn(Ordering) -> bool) -> Result<(), Problem> {
     let ordering = f.number(1)?.partial_cmp(&f.number(2)?).ok_or(Problem::Overflow)?;
     f.emit(1, Value::Boolean(holds(ordering)))
 }

@@ -4,11 +4,11 @@
 //! anywhere. Used: the packets of count mode and the routing bytes as remembered. Modelled: a packet on an arc is a
 //! string, its routing byte first. *Not modelled*: packets of escape mode.
 
-use super::{Example, Family, FunctionRow, Rule, Source};
+use super::{FunctionExample, Family, FunctionRow, Rule, Source};
 use crate::port::{
     Cause, Effect, Fault, Firing, KindSet,
     Literal::{I, S},
-    PortSpec, Problem, Stream,
+    PortSpec, Problem, StreamKind,
 };
 use protocol::{
     Value,
@@ -39,13 +39,13 @@ pub static ROWS: &[FunctionRow] = &[
         memory: 1,
         behaviour: unpack,
         examples: &[
-            Example::of(
+            FunctionExample::of(
                 &[(1, S("HI\u{1c} $0ABC!")), (1, S("\u{1c} !1"))],
                 &[(1, S("0ABC")), (2, S("HI!")), (1, S("1"))],
             ),
-            Example::of(&[(1, S("\u{1c}")), (1, S(" ")), (1, S("#0A")), (1, S("BC"))], &[(1, S("0AB")), (2, S("C"))]),
-            Example::of(&[(2, I(2)), (1, S("\u{2}\u{2} \"0X\u{1c}"))], &[(1, S("0X")), (2, S("\u{2}\u{1c}"))]),
-            Example::of(&[(2, I(256)), (1, S("A"))], &[]).faults(&[6]),
+            FunctionExample::of(&[(1, S("\u{1c}")), (1, S(" ")), (1, S("#0A")), (1, S("BC"))], &[(1, S("0AB")), (2, S("C"))]),
+            FunctionExample::of(&[(2, I(2)), (1, S("\u{2}\u{2} \"0X\u{1c}"))], &[(1, S("0X")), (2, S("\u{2}\u{1c}"))]),
+            FunctionExample::of(&[(2, I(256)), (1, S("A"))], &[]).faults(&[6]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -61,8 +61,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["packets as they stand on a line"],
         behaviour: pack,
         examples: &[
-            Example::of(&[(2, S("0")), (1, S("ABC")), (1, S(""))], &[(1, S("\u{1c} $0ABC")), (1, S("\u{1c} !0"))]),
-            Example::of(&[(2, S("01")), (1, S("A"))], &[]).faults(&[6]),
+            FunctionExample::of(&[(2, S("0")), (1, S("ABC")), (1, S(""))], &[(1, S("\u{1c} $0ABC")), (1, S("\u{1c} !0"))]),
+            FunctionExample::of(&[(2, S("01")), (1, S("A"))], &[]).faults(&[6]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -80,10 +80,10 @@ pub static ROWS: &[FunctionRow] = &[
         rule: Rule::Any,
         behaviour: route,
         examples: &[
-            Example::of(&[(1, S("0ABC")), (2, S("TEXT")), (1, S("1"))], &[(2, S("ABC")), (1, S("TEXT")), (3, S(""))])
+            FunctionExample::of(&[(1, S("0ABC")), (2, S("TEXT")), (1, S("1"))], &[(2, S("ABC")), (1, S("TEXT")), (3, S(""))])
                 .sized(3),
-            Example::of(&[(1, S("2A")), (1, S("/A")), (1, S(""))], &[]).sized(3).faults(&[6, 6, 6]),
-            Example::of(&[(3, I(65)), (1, S("A0"))], &[(2, S("0"))]).sized(2),
+            FunctionExample::of(&[(1, S("2A")), (1, S("/A")), (1, S(""))], &[]).sized(3).faults(&[6, 6, 6]),
+            FunctionExample::of(&[(3, I(65)), (1, S("A0"))], &[(2, S("0"))]).sized(2),
         ],
         ..FunctionRow::PLAIN
     },
@@ -95,10 +95,10 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: COMPLETED,
         family: Family::Device,
         memory: 1,
-        behaviour: |f| interpret(f, Stream::Text),
+        behaviour: |f| interpret(f, StreamKind::Text),
         examples: &[
-            Example::of(&[(1, S("SEND 1 TO "))], &[]),
-            Example::of(&[(1, I(1)), (1, S("<1>A;"))], &[]).sized(2).faults(&[5]),
+            FunctionExample::of(&[(1, S("SEND 1 TO "))], &[]),
+            FunctionExample::of(&[(1, I(1)), (1, S("<1>A;"))], &[]).sized(2).faults(&[5]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -109,7 +109,7 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &[PortSpec::active(KindSet::STRING, "records")],
         outputs: COMPLETED,
         memory: 1,
-        behaviour: |f| interpret(f, Stream::Binary),
+        behaviour: |f| interpret(f, StreamKind::Binary),
         examples: RECORDS,
         ..FunctionRow::PLAIN
     },
@@ -120,7 +120,7 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &[PortSpec::active(KindSet::STRING, "records")],
         outputs: COMPLETED,
         memory: 1,
-        behaviour: |f| interpret(f, Stream::Raster),
+        behaviour: |f| interpret(f, StreamKind::Raster),
         examples: RECORDS,
         ..FunctionRow::PLAIN
     },
@@ -131,8 +131,8 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &[PortSpec::active(KindSet::STRING, "S-records")],
         behaviour: refuse_user_code,
         examples: &[
-            Example::of(&[(1, S("S1130000285F245F2212226A000424290008237C2A"))], &[]),
-            Example::of(&[(1, S("S1070000AABBCCDDEA\r\nS9030000FC\r\n"))], &[]).faults(&[10]),
+            FunctionExample::of(&[(1, S("S1130000285F245F2212226A000424290008237C2A"))], &[]),
+            FunctionExample::of(&[(1, S("S1070000AABBCCDDEA\r\nS9030000FC\r\n"))], &[]).faults(&[10]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -147,15 +147,15 @@ pub static ROWS: &[FunctionRow] = &[
             Ok(())
         },
         examples: &[
-            Example::of(&[(1, S("\u{1b}[H\u{1b}[J"))], &[]),
-            Example::of(&[(1, I(13)), (1, S("\r"))], &[]).faults(&[5]),
+            FunctionExample::of(&[(1, S("\u{1b}[H\u{1b}[J"))], &[]),
+            FunctionExample::of(&[(1, I(13)), (1, S("\r"))], &[]).faults(&[5]),
         ],
         ..FunctionRow::PLAIN
     },
 ];
 
 const COMPLETED: &[&str] = &["how many commands the message completed"];
-const RECORDS: &[Example] = &[Example::of(&[(1, S(""))], &[]), Example::of(&[(1, I(0))], &[]).faults(&[5])];
+const RECORDS: &[FunctionExample] = &[FunctionExample::of(&[(1, S(""))], &[]), FunctionExample::of(&[(1, I(0))], &[]).faults(&[5])];
 
 /// The character that starts a packet, at an input.
 fn start(f: &Firing, input: u16) -> Result<u8, Problem> {
@@ -238,7 +238,7 @@ fn route(f: &mut Firing) -> Result<(), Problem> {
     Ok(())
 }
 
-fn interpret(f: &mut Firing, stream: Stream) -> Result<(), Problem> {
+fn interpret(f: &mut Firing, stream: StreamKind) -> Result<(), Problem> {
     let Value::String(bytes) = f.take(1) else { return Err(Problem::Kind(1)) };
     let fresh = f.memory(BEGUN).is_none();
     f.remember(BEGUN, Value::Boolean(true));

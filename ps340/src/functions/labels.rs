@@ -1,6 +1,6 @@
 //! Labels: made for a LABELS node, and read from one.
 
-use super::{Example, FunctionRow, Source};
+use super::{FunctionExample, FunctionRow, Source};
 use crate::port::{
     Effect, Firing, KindSet,
     Literal::{B, I, Label as L, S, V2, V3},
@@ -25,9 +25,9 @@ pub static ROWS: &[FunctionRow] = &[
             f.emit(1, Value::Label(Box::new(label)))
         },
         examples: &[
-            Example::of(&[(1, V3([1.0, 2.0, 3.0])), (2, S("CA"))], &[(1, L([1.0, 2.0, 3.0], "CA", true))]),
-            Example::of(&[(3, B(false)), (2, S("")), (1, V2([1.0, 2.0]))], &[(1, L([1.0, 2.0, 0.0], "", false))]),
-            Example::of(&[(2, I(1)), (1, V2([0.0; 2])), (2, S("A"))], &[(1, L([0.0; 3], "A", true))]).faults(&[5]),
+            FunctionExample::of(&[(1, V3([1.0, 2.0, 3.0])), (2, S("CA"))], &[(1, L([1.0, 2.0, 3.0], "CA", true))]),
+            FunctionExample::of(&[(3, B(false)), (2, S("")), (1, V2([1.0, 2.0]))], &[(1, L([1.0, 2.0, 0.0], "", false))]),
+            FunctionExample::of(&[(2, I(1)), (1, V2([0.0; 2])), (2, S("A"))], &[(1, L([0.0; 3], "A", true))]).faults(&[5]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -42,9 +42,9 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["text", "position, 3D", "whether it is shown"],
         behaviour: extract,
         examples: &[
-            Example::of(&[(2, S("ATOMS")), (1, I(1))], &[]),
-            Example::of(&[(2, S("ATOMS")), (1, I(0))], &[]).faults(&[6]),
-            Example::of(&[(2, S("NO NAME")), (1, I(1))], &[]).faults(&[6]),
+            FunctionExample::of(&[(2, S("ATOMS")), (1, I(1))], &[]),
+            FunctionExample::of(&[(2, S("ATOMS")), (1, I(0))], &[]).faults(&[6]),
+            FunctionExample::of(&[(2, S("NO NAME")), (1, I(1))], &[]).faults(&[6]),
         ],
         ..FunctionRow::PLAIN
     },

@@ -1,6 +1,6 @@
 //! Logic: and, or, exclusive or and not of Booleans.
 
-use super::{Example, FunctionRow, Source};
+use super::{FunctionExample, FunctionRow, Source};
 use crate::port::{
     Firing, KindSet,
     Literal::{B, I},
@@ -21,8 +21,8 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: BOTH,
         behaviour: |f| combine(f, |a, b| a && b),
         examples: &[
-            Example::of(&[(1, B(true)), (2, B(true)), (1, B(true)), (2, B(false))], &[(1, B(true)), (1, B(false))]),
-            Example::of(
+            FunctionExample::of(&[(1, B(true)), (2, B(true)), (1, B(true)), (2, B(false))], &[(1, B(true)), (1, B(false))]),
+            FunctionExample::of(
                 &[(1, B(true)), (1, B(false)), (2, I(1)), (2, B(true)), (2, B(true))],
                 &[(1, B(true)), (1, B(false))],
             )
@@ -36,8 +36,8 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: FIRST,
         behaviour: |f| combine(f, |a, b| a && b),
         examples: &[
-            Example::of(&[(2, B(true)), (1, B(true)), (1, B(false))], &[(1, B(true)), (1, B(false))]),
-            Example::of(&[(2, B(false)), (1, B(true)), (2, B(true)), (1, B(true))], &[(1, B(false)), (1, B(true))]),
+            FunctionExample::of(&[(2, B(true)), (1, B(true)), (1, B(false))], &[(1, B(true)), (1, B(false))]),
+            FunctionExample::of(&[(2, B(false)), (1, B(true)), (2, B(true)), (1, B(true))], &[(1, B(false)), (1, B(true))]),
         ],
         ..LOGICAL
     },
@@ -47,8 +47,8 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: BOTH,
         behaviour: |f| combine(f, |a, b| a || b),
         examples: &[
-            Example::of(&[(1, B(false)), (2, B(true)), (2, B(false)), (1, B(false))], &[(1, B(true)), (1, B(false))]),
-            Example::of(
+            FunctionExample::of(&[(1, B(false)), (2, B(true)), (2, B(false)), (1, B(false))], &[(1, B(true)), (1, B(false))]),
+            FunctionExample::of(
                 &[(1, B(true)), (1, B(false)), (2, I(1)), (2, B(true)), (2, B(true))],
                 &[(1, B(true)), (1, B(true))],
             )
@@ -62,8 +62,8 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: FIRST,
         behaviour: |f| combine(f, |a, b| a || b),
         examples: &[
-            Example::of(&[(2, B(false)), (1, B(true)), (1, B(false))], &[(1, B(true)), (1, B(false))]),
-            Example::of(&[(2, B(true)), (1, B(false)), (2, B(false)), (1, B(false))], &[(1, B(true)), (1, B(false))]),
+            FunctionExample::of(&[(2, B(false)), (1, B(true)), (1, B(false))], &[(1, B(true)), (1, B(false))]),
+            FunctionExample::of(&[(2, B(true)), (1, B(false)), (2, B(false)), (1, B(false))], &[(1, B(true)), (1, B(false))]),
         ],
         ..LOGICAL
     },
@@ -73,8 +73,8 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: BOTH,
         behaviour: |f| combine(f, |a, b| a != b),
         examples: &[
-            Example::of(&[(1, B(true)), (2, B(true)), (1, B(true)), (2, B(false))], &[(1, B(false)), (1, B(true))]),
-            Example::of(
+            FunctionExample::of(&[(1, B(true)), (2, B(true)), (1, B(true)), (2, B(false))], &[(1, B(false)), (1, B(true))]),
+            FunctionExample::of(
                 &[(1, B(true)), (1, B(false)), (2, I(1)), (2, B(true)), (2, B(true))],
                 &[(1, B(false)), (1, B(true))],
             )
@@ -88,8 +88,8 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: FIRST,
         behaviour: |f| combine(f, |a, b| a != b),
         examples: &[
-            Example::of(&[(2, B(true)), (1, B(true)), (1, B(false))], &[(1, B(false)), (1, B(true))]),
-            Example::of(&[(2, B(false)), (1, B(true)), (2, B(true)), (1, B(true))], &[(1, B(true)), (1, B(false))]),
+            FunctionExample::of(&[(2, B(true)), (1, B(true)), (1, B(false))], &[(1, B(false)), (1, B(true))]),
+            FunctionExample::of(&[(2, B(false)), (1, B(true)), (2, B(true)), (1, B(true))], &[(1, B(true)), (1, B(false))]),
         ],
         ..LOGICAL
     },
@@ -102,8 +102,8 @@ pub static ROWS: &[FunctionRow] = &[
             f.emit(1, Value::Boolean(opposite))
         },
         examples: &[
-            Example::of(&[(1, B(true)), (1, B(false))], &[(1, B(false)), (1, B(true))]),
-            Example::of(&[(1, I(0)), (1, B(false))], &[(1, B(true))]).faults(&[5]),
+            FunctionExample::of(&[(1, B(true)), (1, B(false))], &[(1, B(false)), (1, B(true))]),
+            FunctionExample::of(&[(1, I(0)), (1, B(false))], &[(1, B(true))]).faults(&[5]),
         ],
         ..LOGICAL
     },

@@ -27,7 +27,7 @@ pub mod vectors;
 pub mod viewing;
 
 pub use row::{
-    Behaviour, Clock, Confidence, Example, Family, FunctionRow, InPlace, MAX_SIZE, Order, Rule, Shape, SizeError,
+    Behaviour, ClockBehaviour, Confidence, FunctionExample, Family, FunctionRow, InPlace, MAX_SIZE, QueuePosition, Rule, Shape, SizeError,
     Source,
 };
 

@@ -1,6 +1,6 @@
 //! The rest of the machine by name: variables, inputs of any object, files of the disk.
 
-use super::{Example, FunctionRow, Source};
+use super::{FunctionExample, FunctionRow, Source};
 use crate::port::{
     Effect, FileName, Firing, KindSet,
     Literal::{B, I, R, S, V2},
@@ -25,8 +25,8 @@ pub static ROWS: &[FunctionRow] = &[
             Ok(())
         },
         examples: &[
-            Example::of(&[(2, S("ANGLE")), (1, B(true))], &[]),
-            Example::of(&[(2, S("1 2")), (1, B(true))], &[]).faults(&[6]),
+            FunctionExample::of(&[(2, S("ANGLE")), (1, B(true))], &[]),
+            FunctionExample::of(&[(2, S("1 2")), (1, B(true))], &[]).faults(&[6]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -41,10 +41,10 @@ pub static ROWS: &[FunctionRow] = &[
         ],
         behaviour: send,
         examples: &[
-            Example::of(&[(1, R(1.0)), (2, S("ROTATION")), (3, I(1))], &[]),
-            Example::of(&[(1, V2([0.0; 2])), (2, S("TEXT")), (3, I(-4))], &[]),
-            Example::of(&[(1, B(true)), (2, S("A")), (3, I(-7))], &[]).faults(&[6]),
-            Example::of(&[(1, B(true)), (2, S("")), (3, I(1))], &[]).faults(&[6]),
+            FunctionExample::of(&[(1, R(1.0)), (2, S("ROTATION")), (3, I(1))], &[]),
+            FunctionExample::of(&[(1, V2([0.0; 2])), (2, S("TEXT")), (3, I(-4))], &[]),
+            FunctionExample::of(&[(1, B(true)), (2, S("A")), (3, I(-7))], &[]).faults(&[6]),
+            FunctionExample::of(&[(1, B(true)), (2, S("")), (3, I(1))], &[]).faults(&[6]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -60,8 +60,8 @@ pub static ROWS: &[FunctionRow] = &[
             Ok(())
         },
         examples: &[
-            Example::of(&[(1, S("SITE.DAT"))], &[]),
-            Example::of(&[(1, S("../SECRET")), (1, S(""))], &[]).faults(&[6, 6]),
+            FunctionExample::of(&[(1, S("SITE.DAT"))], &[]),
+            FunctionExample::of(&[(1, S("../SECRET")), (1, S(""))], &[]).faults(&[6, 6]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -81,8 +81,8 @@ pub static ROWS: &[FunctionRow] = &[
             Ok(())
         },
         examples: &[
-            Example::of(&[(2, S("SITE.DAT")), (1, S("SEND 1 TO <1>A;"))], &[]),
-            Example::of(&[(2, S("C:\\SITE")), (1, S("X"))], &[]).faults(&[6]),
+            FunctionExample::of(&[(2, S("SITE.DAT")), (1, S("SEND 1 TO <1>A;"))], &[]),
+            FunctionExample::of(&[(2, S("C:\\SITE")), (1, S("X"))], &[]).faults(&[6]),
         ],
         ..FunctionRow::PLAIN
     },

@@ -1,7 +1,7 @@
 //! The reference of the functions as text, made from the rows.
 
-use super::{Confidence, Example, FAMILIES, Family, FunctionRow, Rule, devices};
-use crate::port::{PortSpec, Role};
+use super::{Confidence, FunctionExample, FAMILIES, Family, FunctionRow, Rule, devices};
+use crate::port::{PortSpec, QueueRole};
 use protocol::command::spelling::nearest;
 use std::fmt::Write;
 
@@ -118,15 +118,15 @@ fn fires(row: &FunctionRow) -> &'static str {
 
 fn input(port: &PortSpec) -> String {
     let role = match port.role {
-        Role::Active => "active".into(),
-        Role::Constant => "constant".into(),
-        Role::Optional => "constant, not needed".into(),
-        Role::Default(value) => format!("constant, {value} at first"),
+        QueueRole::Active => "active".into(),
+        QueueRole::Constant => "constant".into(),
+        QueueRole::Optional => "constant, not needed".into(),
+        QueueRole::Default(value) => format!("constant, {value} at first"),
     };
     format!("{} ({role}): {}", port.kinds, port.summary)
 }
 
-fn example(example: &Example) -> String {
+fn example(example: &FunctionExample) -> String {
     let list = |messages: &[(u16, crate::port::Literal)]| {
         messages.iter().map(|(place, value)| format!("<{place}> {value}")).collect::<Vec<_>>().join(", ")
     };

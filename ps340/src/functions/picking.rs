@@ -1,6 +1,6 @@
 //! Picking: asked for, and what was picked taken apart.
 
-use super::{Example, FunctionRow, Source};
+use super::{FunctionExample, FunctionRow, Source};
 use crate::port::{
     Effect, Firing, KindSet,
     Literal::{B, I, Pick, R, S, V2, V3},
@@ -39,9 +39,9 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["pick list", "FALSE if nothing was hit in time"],
         behaviour: pick,
         examples: &[
-            Example::of(&[(1, V2([0.25, -0.125]))], &[]),
-            Example::of(&[(3, I(0)), (1, V2([0.0; 2]))], &[]).faults(&[6]),
-            Example::of(&[(1, V3([0.0; 3]))], &[]).faults(&[5]),
+            FunctionExample::of(&[(1, V2([0.25, -0.125]))], &[]),
+            FunctionExample::of(&[(3, I(0)), (1, V2([0.0; 2]))], &[]).faults(&[6]),
+            FunctionExample::of(&[(1, V3([0.0; 3]))], &[]).faults(&[5]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -69,11 +69,11 @@ pub static ROWS: &[FunctionRow] = &[
         ],
         behaviour: take_apart,
         examples: &[
-            Example::of(
+            FunctionExample::of(
                 &[(2, I(50)), (1, Pick(PLAIN))],
                 &[(1, I(7)), (2, S("I00F,GROUP,WORLD")), (5, B(false)), (6, I(1)), (7, S("WORLD.DATA")), (9, S(""))],
             ),
-            Example::of(
+            FunctionExample::of(
                 &[(2, I(1)), (1, Pick(FLAT))],
                 &[
                     (1, I(7)),
@@ -86,7 +86,7 @@ pub static ROWS: &[FunctionRow] = &[
                     (9, S("GROUP,WORLD")),
                 ],
             ),
-            Example::of(
+            FunctionExample::of(
                 &[(2, I(0)), (1, Pick(ON_CURVE))],
                 &[
                     (1, I(7)),
@@ -100,7 +100,7 @@ pub static ROWS: &[FunctionRow] = &[
                     (9, S("I00F,GROUP,WORLD")),
                 ],
             ),
-            Example::of(&[(2, I(-1)), (1, Pick(PLAIN)), (1, S("I00F"))], &[]).faults(&[6, 5]),
+            FunctionExample::of(&[(2, I(-1)), (1, Pick(PLAIN)), (1, S("I00F"))], &[]).faults(&[6, 5]),
         ],
         ..FunctionRow::PLAIN
     },

@@ -4,7 +4,7 @@
 //! A real has at most nine significant digits, trailing zeros left out: as many as the machine's own
 //! single-precision format needs to be read back exactly.
 
-use super::{Example, FunctionRow, Source};
+use super::{FunctionExample, FunctionRow, Source};
 use crate::port::{
     KindSet,
     Literal::{B, I, Label, M2, M3, M4, M43, Pick, R, S, T, V2, V3, V4, Vectors},
@@ -44,13 +44,13 @@ pub static ROWS: &[FunctionRow] = &[FunctionRow {
         f.emit(1, Value::String(text.into()))
     },
     examples: &[
-        Example::of(&[(1, I(1)), (1, I(-20)), (1, R(20.0))], &[(1, S("1")), (1, S("-20")), (1, S("20"))]),
-        Example::of(&[(1, V2([0.25, -0.125]))], &[(1, S("V 0.25,-0.125"))]),
-        Example::of(&[(1, V3([1e-7, 1e9, -0.0]))], &[(1, S("V 1E-07,1E+09,0"))]),
-        Example::of(&[(1, S("I001")), (1, B(true))], &[(1, S("I001")), (1, S("TRUE"))]),
-        Example::of(&[(2, B(true)), (1, R(-0.15)), (1, I(3))], &[(1, S("-1.5E-01")), (1, S("3"))]),
-        Example::of(&[(1, M2([[1.0, 0.0], [0.5, 2.0]]))], &[(1, S("M 1,0 0.5,2"))]),
-        Example::of(
+        FunctionExample::of(&[(1, I(1)), (1, I(-20)), (1, R(20.0))], &[(1, S("1")), (1, S("-20")), (1, S("20"))]),
+        FunctionExample::of(&[(1, V2([0.25, -0.125]))], &[(1, S("V 0.25,-0.125"))]),
+        FunctionExample::of(&[(1, V3([1e-7, 1e9, -0.0]))], &[(1, S("V 1E-07,1E+09,0"))]),
+        FunctionExample::of(&[(1, S("I001")), (1, B(true))], &[(1, S("I001")), (1, S("TRUE"))]),
+        FunctionExample::of(&[(2, B(true)), (1, R(-0.15)), (1, I(3))], &[(1, S("-1.5E-01")), (1, S("3"))]),
+        FunctionExample::of(&[(1, M2([[1.0, 0.0], [0.5, 2.0]]))], &[(1, S("M 1,0 0.5,2"))]),
+        FunctionExample::of(
             &[
                 (1, V4([1.0, 2.0, 3.0, 0.5])),
                 (1, M3([[1.0; 3]; 3])),
@@ -58,22 +58,22 @@ pub static ROWS: &[FunctionRow] = &[FunctionRow {
             ],
             &[(1, S("V 1,2,3,0.5")), (1, S("M 1,1,1 1,1,1 1,1,1")), (1, S("M 1,1,1 2,2,2 3,3,3 4,4,4"))],
         ),
-        Example::of(
+        FunctionExample::of(
             &[(1, M4([[0.5; 4]; 4])), (1, T([[2.0; 4]; 4]))],
             &[
                 (1, S("M 0.5,0.5,0.5,0.5 0.5,0.5,0.5,0.5 0.5,0.5,0.5,0.5 0.5,0.5,0.5,0.5")),
                 (1, S("M 2,2,2,2 2,2,2,2 2,2,2,2 2,2,2,2")),
             ],
         ),
-        Example::of(
+        FunctionExample::of(
             &[(1, Pick(PICKED)), (1, Label([1.0, 2.0, 0.0], "A", true))],
             &[(1, S("3 I00F,GROUP WORLD.DATA")), (1, S("V 1,2,0 TRUE A"))],
         ),
-        Example::of(
+        FunctionExample::of(
             &[(1, Vectors(&[(false, [0.0; 3]), (true, [1.0, 0.0, 0.5])]))],
             &[(1, S("VECTOR_LIST ITEMIZED N=2 P 0,0,0 L 1,0,0.5"))],
         ),
-        Example::of(&[(2, B(true)), (1, V2([10.0, 0.0])), (1, S("TEXT"))], &[(1, S("V 1E+01,0E+00")), (1, S("TEXT"))]),
+        FunctionExample::of(&[(2, B(true)), (1, V2([10.0, 0.0])), (1, S("TEXT"))], &[(1, S("V 1E+01,0E+00")), (1, S("TEXT"))]),
     ],
     ..FunctionRow::PLAIN
 }];

@@ -1,6 +1,6 @@
 //! Routing and choosing: where a message goes on, which message goes on, and messages that wait for each other.
 
-use super::{Example, Family, FunctionRow, Rule, Source};
+use super::{FunctionExample, Family, FunctionRow, Rule, Source};
 use crate::port::{
     Firing, KindSet,
     Literal::{B, I, R, S},
@@ -21,8 +21,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["message"],
         behaviour: |f| pass(f, 1, 1),
         examples: &[
-            Example::of(&[(1, S("A")), (1, I(2))], &[(1, S("A")), (1, I(2))]),
-            Example::of(&[(1, B(false)), (1, R(0.5))], &[(1, B(false)), (1, R(0.5))]),
+            FunctionExample::of(&[(1, S("A")), (1, I(2))], &[(1, S("A")), (1, I(2))]),
+            FunctionExample::of(&[(1, B(false)), (1, R(0.5))], &[(1, B(false)), (1, R(0.5))]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -43,8 +43,8 @@ pub static ROWS: &[FunctionRow] = &[
             Ok(())
         },
         examples: &[
-            Example::of(&[(2, I(7)), (1, R(1.0)), (2, I(8))], &[(2, I(7)), (1, R(1.0)), (2, I(8))]).sized(3),
-            Example::of(&[(1, S("A")), (1, S("B")), (2, S("C"))], &[(1, S("A")), (1, S("B")), (2, S("C"))]).sized(2),
+            FunctionExample::of(&[(2, I(7)), (1, R(1.0)), (2, I(8))], &[(2, I(7)), (1, R(1.0)), (2, I(8))]).sized(3),
+            FunctionExample::of(&[(1, S("A")), (1, S("B")), (2, S("C"))], &[(1, S("A")), (1, S("B")), (2, S("C"))]).sized(2),
         ],
         ..FunctionRow::PLAIN
     },
@@ -56,8 +56,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["<2>"],
         behaviour: |f| pass(f, 2, 1),
         examples: &[
-            Example::of(&[(1, B(true)), (2, I(0)), (1, S("GO"))], &[(1, I(0)), (1, I(0))]),
-            Example::of(&[(2, I(1)), (2, S("LAST")), (1, I(0))], &[(1, S("LAST"))]),
+            FunctionExample::of(&[(1, B(true)), (2, I(0)), (1, S("GO"))], &[(1, I(0)), (1, I(0))]),
+            FunctionExample::of(&[(2, I(1)), (2, S("LAST")), (1, I(0))], &[(1, S("LAST"))]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -69,8 +69,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["<2> if TRUE", "<2> if FALSE"],
         behaviour: route_by_boolean,
         examples: &[
-            Example::of(&[(1, B(true)), (2, I(1)), (2, I(2)), (1, B(false))], &[(1, I(1)), (2, I(2))]),
-            Example::of(&[(1, I(1)), (1, B(true)), (2, S("A"))], &[(1, S("A"))]).faults(&[5]),
+            FunctionExample::of(&[(1, B(true)), (2, I(1)), (2, I(2)), (1, B(false))], &[(1, I(1)), (2, I(2))]),
+            FunctionExample::of(&[(1, I(1)), (1, B(true)), (2, S("A"))], &[(1, S("A"))]).faults(&[5]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -82,8 +82,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["<2> if TRUE", "<2> if FALSE"],
         behaviour: route_by_boolean,
         examples: &[
-            Example::of(&[(2, I(5)), (1, B(false)), (1, B(true))], &[(2, I(5)), (1, I(5))]),
-            Example::of(&[(2, S("A")), (2, S("B")), (1, B(true))], &[(1, S("B"))]),
+            FunctionExample::of(&[(2, I(5)), (1, B(false)), (1, B(true))], &[(2, I(5)), (1, I(5))]),
+            FunctionExample::of(&[(2, S("A")), (2, S("B")), (1, B(true))], &[(1, S("B"))]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -95,8 +95,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["<2> if TRUE", "<2> if FALSE"],
         behaviour: route_by_boolean,
         examples: &[
-            Example::of(&[(1, B(false)), (2, I(5)), (2, I(6))], &[(2, I(5)), (2, I(6))]),
-            Example::of(&[(1, B(true)), (2, I(1)), (1, B(false)), (2, I(2))], &[(1, I(1)), (2, I(2))]),
+            FunctionExample::of(&[(1, B(false)), (2, I(5)), (2, I(6))], &[(2, I(5)), (2, I(6))]),
+            FunctionExample::of(&[(1, B(true)), (2, I(1)), (1, B(false)), (2, I(2))], &[(1, I(1)), (2, I(2))]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -111,8 +111,8 @@ pub static ROWS: &[FunctionRow] = &[
             pass(f, chosen, 1)
         },
         examples: &[
-            Example::of(&[(2, S("YES")), (3, I(0)), (1, B(true)), (1, B(false))], &[(1, S("YES")), (1, I(0))]),
-            Example::of(&[(3, I(3)), (1, B(true)), (1, B(false)), (2, I(2))], &[(1, I(2)), (1, I(3))]),
+            FunctionExample::of(&[(2, S("YES")), (3, I(0)), (1, B(true)), (1, B(false))], &[(1, S("YES")), (1, I(0))]),
+            FunctionExample::of(&[(3, I(3)), (1, B(true)), (1, B(false)), (2, I(2))], &[(1, I(2)), (1, I(3))]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -125,8 +125,8 @@ pub static ROWS: &[FunctionRow] = &[
         family: Family::Outputs,
         behaviour: route_by_integer,
         examples: &[
-            Example::of(&[(1, I(9)), (2, I(9)), (1, I(2)), (2, I(2))], &[(9, I(9)), (2, I(2))]).sized(9),
-            Example::of(&[(1, I(0)), (2, S("A")), (1, I(4)), (2, S("B")), (1, I(3)), (2, S("C"))], &[(3, S("C"))])
+            FunctionExample::of(&[(1, I(9)), (2, I(9)), (1, I(2)), (2, I(2))], &[(9, I(9)), (2, I(2))]).sized(9),
+            FunctionExample::of(&[(1, I(0)), (2, S("A")), (1, I(4)), (2, S("B")), (1, I(3)), (2, S("C"))], &[(3, S("C"))])
                 .sized(3)
                 .faults(&[6, 6]),
         ],
@@ -141,8 +141,8 @@ pub static ROWS: &[FunctionRow] = &[
         family: Family::Outputs,
         behaviour: route_by_integer,
         examples: &[
-            Example::of(&[(2, S("X")), (1, I(2)), (1, I(3))], &[(2, S("X"))]).sized(2).faults(&[6]),
-            Example::of(&[(1, I(1)), (2, S("A")), (1, I(-1)), (1, I(2))], &[(1, S("A")), (2, S("A"))])
+            FunctionExample::of(&[(2, S("X")), (1, I(2)), (1, I(3))], &[(2, S("X"))]).sized(2).faults(&[6]),
+            FunctionExample::of(&[(1, I(1)), (2, S("A")), (1, I(-1)), (1, I(2))], &[(1, S("A")), (2, S("A"))])
                 .sized(2)
                 .faults(&[6]),
         ],
@@ -157,8 +157,8 @@ pub static ROWS: &[FunctionRow] = &[
         family: Family::Outputs,
         behaviour: route_by_integer,
         examples: &[
-            Example::of(&[(1, I(2)), (2, S("X")), (2, S("Y"))], &[(2, S("X")), (2, S("Y"))]).sized(2),
-            Example::of(&[(1, I(3)), (2, S("A")), (1, I(1)), (2, S("B"))], &[(1, S("B"))]).sized(2).faults(&[6]),
+            FunctionExample::of(&[(1, I(2)), (2, S("X")), (2, S("Y"))], &[(2, S("X")), (2, S("Y"))]).sized(2),
+            FunctionExample::of(&[(1, I(3)), (2, S("A")), (1, I(1)), (2, S("B"))], &[(1, S("B"))]).sized(2).faults(&[6]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -177,10 +177,10 @@ pub static ROWS: &[FunctionRow] = &[
             }
         },
         examples: &[
-            Example::of(&[(1, S("A")), (2, S("B")), (3, I(2)), (3, I(3)), (3, I(1))], &[(1, S("B")), (1, S("A"))])
+            FunctionExample::of(&[(1, S("A")), (2, S("B")), (3, I(2)), (3, I(3)), (3, I(1))], &[(1, S("B")), (1, S("A"))])
                 .sized(3)
                 .faults(&[6]),
-            Example::of(&[(1, I(7)), (2, I(0)), (2, I(1))], &[(1, I(7))]).sized(2).faults(&[6]),
+            FunctionExample::of(&[(1, I(7)), (2, I(0)), (2, I(1))], &[(1, I(7))]).sized(2).faults(&[6]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -204,11 +204,11 @@ pub static ROWS: &[FunctionRow] = &[
             f.emit(3, Value::Boolean(inside))
         },
         examples: &[
-            Example::of(
+            FunctionExample::of(
                 &[(2, I(1)), (3, I(3)), (1, I(3)), (1, R(3.5))],
                 &[(1, I(3)), (3, B(true)), (2, R(3.5)), (3, B(false))],
             ),
-            Example::of(&[(2, R(1.0)), (3, R(1.0)), (1, I(1)), (2, R(2.0)), (1, I(1))], &[(1, I(1)), (3, B(true))])
+            FunctionExample::of(&[(2, R(1.0)), (3, R(1.0)), (1, I(1)), (2, R(2.0)), (1, I(1))], &[(1, I(1)), (3, B(true))])
                 .faults(&[6]),
         ],
         ..FunctionRow::PLAIN
@@ -222,8 +222,8 @@ pub static ROWS: &[FunctionRow] = &[
         family: Family::Channels,
         behaviour: |f| (1..=f.size()).try_for_each(|channel| pass(f, channel, channel)),
         examples: &[
-            Example::of(&[(1, I(1)), (1, I(2)), (2, S("A"))], &[(1, I(1)), (2, S("A"))]).sized(2),
-            Example::of(&[(3, I(3)), (2, I(2)), (1, I(1))], &[(1, I(1)), (2, I(2)), (3, I(3))]).sized(3),
+            FunctionExample::of(&[(1, I(1)), (1, I(2)), (2, S("A"))], &[(1, I(1)), (2, S("A"))]).sized(2),
+            FunctionExample::of(&[(3, I(3)), (2, I(2)), (1, I(1))], &[(1, I(1)), (2, I(2)), (3, I(3))]).sized(3),
         ],
         ..FunctionRow::PLAIN
     },

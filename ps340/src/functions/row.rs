@@ -12,11 +12,11 @@ pub type Behaviour = fn(&mut Firing) -> Result<(), Problem>;
 /// What a behaviour with two inputs and one result does with the commonest values, worked out where the message lies.
 ///
 /// Returns false, and changes nothing, if the values are others or the result is not finite.
-pub type InPlace = fn(message: &mut Value, constant: &Value, order: Order) -> bool;
+pub type InPlace = fn(message: &mut Value, constant: &Value, order: QueuePosition) -> bool;
 
 /// Which of two inputs is the queue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Order {
+pub enum QueuePosition {
     /// Input 1; input 2 is a constant.
     MessageFirst,
     /// Input 2; input 1 is a constant.
@@ -24,7 +24,7 @@ pub enum Order {
 }
 
 /// What a clock does when time passes: returns how many outputs it left out.
-pub type Clock = fn(&mut Firing, &Elapsed) -> Result<u64, Problem>;
+pub type ClockBehaviour = fn(&mut Firing, &Elapsed) -> Result<u64, Problem>;
 
 /// What a function is and does.
 #[derive(Debug)]
@@ -50,9 +50,9 @@ pub struct FunctionRow {
     /// What it does when it fires, in the place of its input, if that pays.
     pub in_place: Option<InPlace>,
     /// What it does as time passes, if it is a clock.
-    pub clock: Option<Clock>,
+    pub clock: Option<ClockBehaviour>,
     /// Examples.
-    pub examples: &'static [Example],
+    pub examples: &'static [FunctionExample],
 }
 
 /// Where the knowledge about a function comes from.
@@ -103,7 +103,7 @@ pub enum Rule {
 
 /// Messages sent to a new instance, in order, and what comes of them.
 #[derive(Clone, Copy, Debug)]
-pub struct Example {
+pub struct FunctionExample {
     /// The n of a family, else 0.
     pub size: u16,
     /// Input and message.
@@ -223,20 +223,20 @@ impl Source {
     }
 }
 
-impl Example {
+impl FunctionExample {
     /// Messages and results, without faults.
-    pub const fn of(sends: &'static [(u16, Literal)], results: &'static [(u16, Literal)]) -> Example {
-        Example { size: 0, sends, results, faults: &[] }
+    pub const fn of(sends: &'static [(u16, Literal)], results: &'static [(u16, Literal)]) -> FunctionExample {
+        FunctionExample { size: 0, sends, results, faults: &[] }
     }
 
     /// This example for F:NAME(n).
-    pub const fn sized(self, size: u16) -> Example {
-        Example { size, ..self }
+    pub const fn sized(self, size: u16) -> FunctionExample {
+        FunctionExample { size, ..self }
     }
 
     /// This example with faults.
-    pub const fn faults(self, faults: &'static [u16]) -> Example {
-        Example { faults, ..self }
+    pub const fn faults(self, faults: &'static [u16]) -> FunctionExample {
+        FunctionExample { faults, ..self }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Transformed data and colour: asked from a node of the structure, joined, and written as commands.
 
-use super::{Example, Family, FunctionRow, Source, printing::decimal};
+use super::{FunctionExample, Family, FunctionRow, Source, printing::decimal};
 use crate::port::{
     Effect, Firing, KindSet,
     Literal::{I, R, S, T, Vectors},
@@ -42,10 +42,10 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["transformed data"],
         behaviour: request,
         examples: &[
-            Example::of(&[(2, S("R001.MXFORM1")), (1, I(0))], &[]),
-            Example::of(&[(2, S("1X")), (1, S(""))], &[]).faults(&[6]),
-            Example::of(&[(2, S("X")), (3, S("*")), (1, I(1))], &[]).faults(&[6]),
-            Example::of(&[(2, S("X")), (4, I(0)), (1, I(1)), (4, I(1)), (5, I(-1)), (1, I(1))], &[]).faults(&[6, 6]),
+            FunctionExample::of(&[(2, S("R001.MXFORM1")), (1, I(0))], &[]),
+            FunctionExample::of(&[(2, S("1X")), (1, S(""))], &[]).faults(&[6]),
+            FunctionExample::of(&[(2, S("X")), (3, S("*")), (1, I(1))], &[]).faults(&[6]),
+            FunctionExample::of(&[(2, S("X")), (4, I(0)), (1, I(1)), (4, I(1)), (5, I(-1)), (1, I(1))], &[]).faults(&[6, 6]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -63,7 +63,7 @@ pub static ROWS: &[FunctionRow] = &[
             lines.into_iter().try_for_each(|line| f.emit(1, Value::string(line)))
         },
         examples: &[
-            Example::of(
+            FunctionExample::of(
                 &[(1, T([[1.0, 0.0, 0.0, 0.0], [0.0, 0.5, -0.25, 0.0], [0.0, 0.0, 1.0, 0.0], [1e5, -3.0, 1e-9, 1.0]]))],
                 &[
                     (1, S("MATRIX_4X4")),
@@ -73,7 +73,7 @@ pub static ROWS: &[FunctionRow] = &[
                     (1, S(" 100000,-3,1E-09,1;")),
                 ],
             ),
-            Example::of(
+            FunctionExample::of(
                 &[(1, Vectors(&[(false, [0.0; 3]), (true, [1.0, -0.5, 1e-9])])), (1, Vectors(&[]))],
                 &[
                     (1, S("VECTOR_LIST ITEMIZED N=2")),
@@ -94,12 +94,12 @@ pub static ROWS: &[FunctionRow] = &[
         family: Family::Inputs,
         behaviour: concatenate,
         examples: &[
-            Example::of(
+            FunctionExample::of(
                 &[(2, Vectors(&[(false, [2.0; 3]), (true, [3.0; 3])])), (1, Vectors(&[(false, [1.0; 3])]))],
                 &[(1, Vectors(&[(false, [1.0; 3]), (false, [2.0; 3]), (true, [3.0; 3])]))],
             )
             .sized(2),
-            Example::of(
+            FunctionExample::of(
                 &[(1, T([[1.0; 4]; 4])), (1, Vectors(&[])), (2, Vectors(&[(false, [1.0; 3])]))],
                 &[(1, Vectors(&[(false, [1.0; 3])]))],
             )
@@ -123,8 +123,8 @@ pub static ROWS: &[FunctionRow] = &[
             f.emit(2, Value::Real(saturation))
         },
         examples: &[
-            Example::of(&[(1, I(120))], &[(1, R(120.0)), (2, R(1.0))]),
-            Example::of(
+            FunctionExample::of(&[(1, I(120))], &[(1, R(120.0)), (2, R(1.0))]),
+            FunctionExample::of(
                 &[(2, I(3)), (1, R(-30.0)), (2, R(-1.0)), (1, R(360.0))],
                 &[(1, R(330.0)), (2, R(1.0)), (1, R(0.0)), (2, R(0.0))],
             ),

@@ -1,6 +1,6 @@
 //! Strings: joined, measured, cut, searched, compared, translated, and read as numbers. Positions count from 1.
 
-use super::{Example, Family, FunctionRow, Source};
+use super::{FunctionExample, Family, FunctionRow, Source};
 use crate::port::{
     Firing, KindSet,
     Literal::{B, I, R, S},
@@ -21,8 +21,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["<1> then <2>"],
         behaviour: |f| join(f, 2),
         examples: &[
-            Example::of(&[(1, S("1")), (2, S("V 0.25,-0.125"))], &[(1, S("1V 0.25,-0.125"))]),
-            Example::of(&[(2, S("")), (2, S("B")), (1, S("")), (1, S("A"))], &[(1, S("")), (1, S("AB"))]),
+            FunctionExample::of(&[(1, S("1")), (2, S("V 0.25,-0.125"))], &[(1, S("1V 0.25,-0.125"))]),
+            FunctionExample::of(&[(2, S("")), (2, S("B")), (1, S("")), (1, S("A"))], &[(1, S("")), (1, S("AB"))]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -34,8 +34,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["<1> then <2>"],
         behaviour: |f| join(f, 2),
         examples: &[
-            Example::of(&[(2, S(" mm")), (1, S("3")), (1, S("4"))], &[(1, S("3 mm")), (1, S("4 mm"))]),
-            Example::of(&[(2, S("X")), (2, S("")), (1, S("A")), (1, I(1))], &[(1, S("A"))]).faults(&[5]),
+            FunctionExample::of(&[(2, S(" mm")), (1, S("3")), (1, S("4"))], &[(1, S("3 mm")), (1, S("4 mm"))]),
+            FunctionExample::of(&[(2, S("X")), (2, S("")), (1, S("A")), (1, I(1))], &[(1, S("A"))]).faults(&[5]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -47,8 +47,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["<1> then <2>"],
         behaviour: |f| join(f, 2),
         examples: &[
-            Example::of(&[(1, S("X=")), (2, S("3")), (2, S("4"))], &[(1, S("X=3")), (1, S("X=4"))]),
-            Example::of(&[(1, S("")), (2, S("")), (1, S("X")), (2, S("Y"))], &[(1, S("")), (1, S("XY"))]),
+            FunctionExample::of(&[(1, S("X=")), (2, S("3")), (2, S("4"))], &[(1, S("X=3")), (1, S("X=4"))]),
+            FunctionExample::of(&[(1, S("")), (2, S("")), (1, S("X")), (2, S("Y"))], &[(1, S("")), (1, S("XY"))]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -70,8 +70,8 @@ pub static ROWS: &[FunctionRow] = &[
             f.emit(1, Value::Integer(length))
         },
         examples: &[
-            Example::of(&[(1, S("PERIS")), (1, S(""))], &[(1, I(5)), (1, I(0))]),
-            Example::of(&[(1, I(5)), (1, S("\r"))], &[(1, I(1))]).faults(&[5]),
+            FunctionExample::of(&[(1, S("PERIS")), (1, S(""))], &[(1, I(5)), (1, I(0))]),
+            FunctionExample::of(&[(1, I(5)), (1, S("\r"))], &[(1, I(1))]).faults(&[5]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -87,12 +87,12 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["part"],
         behaviour: take,
         examples: &[
-            Example::of(&[(1, S("I00F")), (2, I(2)), (3, I(3))], &[(1, S("00F"))]),
-            Example::of(
+            FunctionExample::of(&[(1, S("I00F")), (2, I(2)), (3, I(3))], &[(1, S("00F"))]),
+            FunctionExample::of(
                 &[(1, S("ABC")), (2, I(3)), (3, I(i32::MAX)), (1, S("ABC")), (2, I(9)), (3, I(1))],
                 &[(1, S("C")), (1, S(""))],
             ),
-            Example::of(&[(1, S("A")), (2, I(0)), (3, I(1)), (1, S("A")), (2, I(1)), (3, I(-1))], &[]).faults(&[6, 6]),
+            FunctionExample::of(&[(1, S("A")), (2, I(0)), (3, I(1)), (1, S("A")), (2, I(1)), (3, I(-1))], &[]).faults(&[6, 6]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -108,12 +108,12 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["string"],
         behaviour: put,
         examples: &[
-            Example::of(&[(1, S("X=?.")), (2, I(3)), (3, S("5"))], &[(1, S("X=5."))]),
-            Example::of(
+            FunctionExample::of(&[(1, S("X=?.")), (2, I(3)), (3, S("5"))], &[(1, S("X=5."))]),
+            FunctionExample::of(
                 &[(1, S("AB")), (2, I(2)), (3, S("XYZ")), (1, S("")), (2, I(1)), (3, S("A"))],
                 &[(1, S("AXYZ")), (1, S("A"))],
             ),
-            Example::of(&[(1, S("AB")), (2, I(4)), (3, S("X")), (1, S("AB")), (2, I(0)), (3, S("X"))], &[])
+            FunctionExample::of(&[(1, S("AB")), (2, I(4)), (3, S("X")), (1, S("AB")), (2, I(0)), (3, S("X"))], &[])
                 .faults(&[6, 6]),
         ],
         ..FunctionRow::PLAIN
@@ -129,8 +129,8 @@ pub static ROWS: &[FunctionRow] = &[
             f.emit(1, Value::Integer(i32::try_from(at).map_err(|_| Problem::TooLong)?))
         },
         examples: &[
-            Example::of(&[(1, S("ABABAC")), (2, S("ABAC")), (1, S("ABC")), (2, S("D"))], &[(1, I(3)), (1, I(0))]),
-            Example::of(
+            FunctionExample::of(&[(1, S("ABABAC")), (2, S("ABAC")), (1, S("ABC")), (2, S("D"))], &[(1, I(3)), (1, I(0))]),
+            FunctionExample::of(
                 &[(1, S("A")), (2, S("")), (1, S("")), (2, S("A")), (1, S("abc")), (2, S("C"))],
                 &[(1, I(1)), (1, I(0)), (1, I(0))],
             ),
@@ -145,12 +145,12 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["before the separator", "after it"],
         behaviour: split,
         examples: &[
-            Example::of(&[(2, S(",")), (1, S("A,B,C"))], &[(1, S("A")), (2, S("B,C"))]),
-            Example::of(
+            FunctionExample::of(&[(2, S(",")), (1, S("A,B,C"))], &[(1, S("A")), (2, S("B,C"))]),
+            FunctionExample::of(
                 &[(2, S(", ")), (1, S("A,B")), (1, S(", "))],
                 &[(1, S("A,B")), (2, S("")), (1, S("")), (2, S(""))],
             ),
-            Example::of(&[(2, S("")), (1, S("A"))], &[]).faults(&[6]),
+            FunctionExample::of(&[(2, S("")), (1, S("A"))], &[]).faults(&[6]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -167,8 +167,8 @@ pub static ROWS: &[FunctionRow] = &[
             f.emit(1, Value::String(translated.into()))
         },
         examples: &[
-            Example::of(&[(2, S("0123456789")), (1, S("\u{1}\u{9}A"))], &[(1, S("19A"))]),
-            Example::of(&[(2, S("")), (1, S("AB")), (1, S(""))], &[(1, S("AB")), (1, S(""))]),
+            FunctionExample::of(&[(2, S("0123456789")), (1, S("\u{1}\u{9}A"))], &[(1, S("19A"))]),
+            FunctionExample::of(&[(2, S("")), (1, S("AB")), (1, S(""))], &[(1, S("AB")), (1, S(""))]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -183,12 +183,12 @@ pub static ROWS: &[FunctionRow] = &[
             f.emit(1, number)
         },
         examples: &[
-            Example::of(
+            FunctionExample::of(
                 &[(1, S(" -17 ")), (1, S("2.50")), (1, S("1E3")), (1, S("+.5D-1"))],
                 &[(1, I(-17)), (1, R(2.5)), (1, R(1000.0)), (1, R(0.05))],
             ),
-            Example::of(&[(1, S("2147483647")), (1, S("2147483648"))], &[(1, I(i32::MAX)), (1, R(2147483648.0))]),
-            Example::of(&[(1, S("")), (1, S("1 2")), (1, S("INF")), (1, S("1E")), (1, S(".")), (1, S("1E999"))], &[])
+            FunctionExample::of(&[(1, S("2147483647")), (1, S("2147483648"))], &[(1, I(i32::MAX)), (1, R(2147483648.0))]),
+            FunctionExample::of(&[(1, S("")), (1, S("1 2")), (1, S("INF")), (1, S("1E")), (1, S(".")), (1, S("1E999"))], &[])
                 .faults(&[6, 6, 6, 6, 6, 6]),
         ],
         ..FunctionRow::PLAIN
@@ -205,11 +205,11 @@ pub static ROWS: &[FunctionRow] = &[
             (1..).zip(answers).try_for_each(|(output, answer)| f.emit(output, Value::Boolean(answer)))
         },
         examples: &[
-            Example::of(
+            FunctionExample::of(
                 &[(2, S("B")), (1, S("B")), (1, S("AZ"))],
                 &[(1, B(true)), (2, B(false)), (3, B(false)), (1, B(false)), (2, B(true)), (3, B(false))],
             ),
-            Example::of(
+            FunctionExample::of(
                 &[(2, S("B")), (1, S("b")), (1, S(""))],
                 &[(1, B(false)), (2, B(false)), (3, B(true)), (1, B(false)), (2, B(true)), (3, B(false))],
             ),
@@ -227,8 +227,8 @@ const MCAT_STRING: FunctionRow = FunctionRow {
     family: Family::Inputs,
     behaviour: |f| join(f, f.size()),
     examples: &[
-        Example::of(&[(3, S("C")), (1, S("A")), (2, S("B"))], &[(1, S("ABC"))]).sized(3),
-        Example::of(&[(1, S("A")), (1, I(1)), (1, S("B"))], &[(1, S("A")), (1, S("B"))]).sized(1).faults(&[5]),
+        FunctionExample::of(&[(3, S("C")), (1, S("A")), (2, S("B"))], &[(1, S("ABC"))]).sized(3),
+        FunctionExample::of(&[(1, S("A")), (1, I(1)), (1, S("B"))], &[(1, S("A")), (1, S("B"))]).sized(1).faults(&[5]),
     ],
     ..FunctionRow::PLAIN
 };

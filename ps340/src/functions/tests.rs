@@ -1,6 +1,6 @@
 //! Facts about the whole table of functions.
 
-use super::{Confidence, Example, all, devices};
+use super::{Confidence, FunctionExample, all, devices};
 use crate::port::Literal;
 
 /// The names of the functions that are believed to have existed.
@@ -47,7 +47,7 @@ fn every_function_has_two_examples_and_one_of_them_with_a_result_or_a_fault() {
     let rows = || all().filter(|row| row.clock.is_none());
     let few: Vec<_> = rows().filter(|row| row.examples.len() < 2).map(|row| row.name).collect();
     assert!(few.is_empty(), "{few:?}");
-    let says_nothing = |example: &Example| example.results.is_empty() && example.faults.is_empty();
+    let says_nothing = |example: &FunctionExample| example.results.is_empty() && example.faults.is_empty();
     let idle: Vec<_> = rows().filter(|row| row.examples.iter().all(says_nothing)).map(|row| row.name).collect();
     assert!(idle.is_empty(), "{idle:?}");
 }

@@ -1,6 +1,6 @@
 //! Transformation: rotations and scales from numbers, at once or accumulated from the turns of a dial.
 
-use super::{Example, FunctionRow, Source};
+use super::{FunctionExample, FunctionRow, Source};
 use crate::{
     matrices::{rotation, scale},
     port::{
@@ -32,8 +32,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["3x3 rotation"],
         behaviour: |f| rotate(f, Axis::X),
         examples: &[
-            Example::of(&[(1, R(90.0))], &[(1, M3([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]))]),
-            Example::of(
+            FunctionExample::of(&[(1, R(90.0))], &[(1, M3([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]))]),
+            FunctionExample::of(
                 &[(1, V2([1.0, 0.0])), (1, I(360))],
                 &[(1, M3([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]))],
             )
@@ -49,8 +49,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["3x3 rotation"],
         behaviour: |f| rotate(f, Axis::Y),
         examples: &[
-            Example::of(&[(1, I(-270))], &[(1, M3([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]))]),
-            Example::of(
+            FunctionExample::of(&[(1, I(-270))], &[(1, M3([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]))]),
+            FunctionExample::of(
                 &[(1, V2([1.0, 0.0])), (1, I(360))],
                 &[(1, M3([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]))],
             )
@@ -66,8 +66,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["3x3 rotation"],
         behaviour: |f| rotate(f, Axis::Z),
         examples: &[
-            Example::of(&[(1, R(180.0))], &[(1, M3([[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]]))]),
-            Example::of(
+            FunctionExample::of(&[(1, R(180.0))], &[(1, M3([[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]]))]),
+            FunctionExample::of(
                 &[(1, V2([1.0, 0.0])), (1, I(360))],
                 &[(1, M3([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]))],
             )
@@ -83,7 +83,7 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: DIAL_OUTPUTS,
         behaviour: |f| rotate_by_dial(f, Axis::X),
         examples: &[
-            Example::of(
+            FunctionExample::of(
                 &[(2, R(0.0)), (3, R(200.0)), (1, R(0.1)), (1, R(-0.1))],
                 &[
                     (
@@ -99,7 +99,7 @@ pub static ROWS: &[FunctionRow] = &[
                     (2, R(0.0)),
                 ],
             ),
-            Example::of(
+            FunctionExample::of(
                 &[(2, R(300.0)), (1, R(150.0))],
                 &[(1, M3([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])), (2, R(90.0))],
             ),
@@ -114,11 +114,11 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: DIAL_OUTPUTS,
         behaviour: |f| rotate_by_dial(f, Axis::Y),
         examples: &[
-            Example::of(
+            FunctionExample::of(
                 &[(2, R(45.0)), (1, R(45.0))],
                 &[(1, M3([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])), (2, R(90.0))],
             ),
-            Example::of(
+            FunctionExample::of(
                 &[(1, R(90.0)), (2, R(0.0)), (1, R(0.0))],
                 &[
                     (1, M3([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])),
@@ -138,11 +138,11 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: DIAL_OUTPUTS,
         behaviour: |f| rotate_by_dial(f, Axis::Z),
         examples: &[
-            Example::of(
+            FunctionExample::of(
                 &[(3, I(100)), (1, R(4.5))],
                 &[(1, M3([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])), (2, R(90.0))],
             ),
-            Example::of(
+            FunctionExample::of(
                 &[(1, V3([0.0; 3])), (1, R(-90.0))],
                 &[(1, M3([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])), (2, R(-90.0))],
             )
@@ -165,9 +165,9 @@ pub static ROWS: &[FunctionRow] = &[
             f.emit(1, Value::Matrix3(Box::new(scale(factors))))
         },
         examples: &[
-            Example::of(&[(1, R(2.0))], &[(1, M3([[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]]))]),
-            Example::of(&[(1, V2([2.0, 3.0]))], &[(1, M3([[2.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 1.0]]))]),
-            Example::of(&[(1, V3([2.0, 3.0, 4.0]))], &[(1, M3([[2.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 4.0]]))]),
+            FunctionExample::of(&[(1, R(2.0))], &[(1, M3([[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]]))]),
+            FunctionExample::of(&[(1, V2([2.0, 3.0]))], &[(1, M3([[2.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 1.0]]))]),
+            FunctionExample::of(&[(1, V3([2.0, 3.0, 4.0]))], &[(1, M3([[2.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 4.0]]))]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -185,11 +185,11 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["3x3 scale", "accumulated scale"],
         behaviour: scale_by_dial,
         examples: &[
-            Example::of(
+            FunctionExample::of(
                 &[(2, R(1.0)), (3, R(0.2)), (4, R(1000.0)), (5, R(0.01)), (1, R(0.5))],
                 &[(1, M3([[1.1, 0.0, 0.0], [0.0, 1.1, 0.0], [0.0, 0.0, 1.1]])), (2, R(1.1))],
             ),
-            Example::of(
+            FunctionExample::of(
                 &[(4, R(2.0)), (1, R(5.0)), (1, R(-0.5))],
                 &[
                     (1, M3([[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]])),
@@ -198,7 +198,7 @@ pub static ROWS: &[FunctionRow] = &[
                     (2, R(1.5)),
                 ],
             ),
-            Example::of(&[(4, R(1.0)), (5, R(2.0)), (1, R(0.0))], &[]).faults(&[6]),
+            FunctionExample::of(&[(4, R(1.0)), (5, R(2.0)), (1, R(0.0))], &[]).faults(&[6]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -213,8 +213,8 @@ pub static ROWS: &[FunctionRow] = &[
             f.emit(1, Value::Matrix2(Box::new(DMat2::from_mat3(turned))))
         },
         examples: &[
-            Example::of(&[(1, R(90.0))], &[(1, M2([[0.0, 1.0], [-1.0, 0.0]]))]),
-            Example::of(&[(1, R(-450.0))], &[(1, M2([[0.0, -1.0], [1.0, 0.0]]))]),
+            FunctionExample::of(&[(1, R(90.0))], &[(1, M2([[0.0, 1.0], [-1.0, 0.0]]))]),
+            FunctionExample::of(&[(1, R(-450.0))], &[(1, M2([[0.0, -1.0], [1.0, 0.0]]))]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -232,11 +232,11 @@ pub static ROWS: &[FunctionRow] = &[
             f.emit(1, Value::Matrix2(Box::new(DMat2::from_diagonal(factors))))
         },
         examples: &[
-            Example::of(
+            FunctionExample::of(
                 &[(1, I(2)), (1, V2([1.0, 3.0]))],
                 &[(1, M2([[2.0, 0.0], [0.0, 2.0]])), (1, M2([[1.0, 0.0], [0.0, 3.0]]))],
             ),
-            Example::of(&[(1, V3([1.0; 3])), (1, R(0.0))], &[(1, M2([[0.0; 2]; 2]))]).faults(&[5]),
+            FunctionExample::of(&[(1, V3([1.0; 3])), (1, R(0.0))], &[(1, M2([[0.0; 2]; 2]))]).faults(&[5]),
         ],
         ..FunctionRow::PLAIN
     },

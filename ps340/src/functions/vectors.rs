@@ -1,6 +1,6 @@
 //! Vectors and rows: built from components, and taken apart.
 
-use super::{Example, FunctionRow, Source};
+use super::{FunctionExample, FunctionRow, Source};
 use crate::port::{
     Firing, KindSet,
     Literal::{I, M2, M3, M43, R, V2, V3, V4},
@@ -22,9 +22,9 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["vector"],
         behaviour: append,
         examples: &[
-            Example::of(&[(1, I(1)), (2, R(2.5))], &[(1, V2([1.0, 2.5]))]),
-            Example::of(&[(1, V2([1.0, 2.0])), (2, I(3))], &[(1, V3([1.0, 2.0, 3.0]))]),
-            Example::of(&[(1, V3([1.0, 2.0, 3.0])), (2, I(4))], &[(1, V4([1.0, 2.0, 3.0, 4.0]))]),
+            FunctionExample::of(&[(1, I(1)), (2, R(2.5))], &[(1, V2([1.0, 2.5]))]),
+            FunctionExample::of(&[(1, V2([1.0, 2.0])), (2, I(3))], &[(1, V3([1.0, 2.0, 3.0]))]),
+            FunctionExample::of(&[(1, V3([1.0, 2.0, 3.0])), (2, I(4))], &[(1, V4([1.0, 2.0, 3.0, 4.0]))]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -36,8 +36,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["vector"],
         behaviour: append,
         examples: &[
-            Example::of(&[(2, R(0.0)), (1, V2([1.0, 2.0]))], &[(1, V3([1.0, 2.0, 0.0]))]),
-            Example::of(
+            FunctionExample::of(&[(2, R(0.0)), (1, V2([1.0, 2.0]))], &[(1, V3([1.0, 2.0, 0.0]))]),
+            FunctionExample::of(
                 &[(2, I(4)), (1, I(3)), (1, V3([1.0, 2.0, 3.0])), (1, V4([0.0; 4]))],
                 &[(1, V2([3.0, 4.0])), (1, V4([1.0, 2.0, 3.0, 4.0]))],
             )
@@ -53,8 +53,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["vector"],
         behaviour: append,
         examples: &[
-            Example::of(&[(1, R(1.0)), (2, R(2.0)), (2, R(3.0))], &[(1, V2([1.0, 2.0])), (1, V2([1.0, 3.0]))]),
-            Example::of(&[(1, V2([1.0, 2.0])), (2, V2([0.0; 2])), (2, I(3))], &[(1, V3([1.0, 2.0, 3.0]))]).faults(&[5]),
+            FunctionExample::of(&[(1, R(1.0)), (2, R(2.0)), (2, R(3.0))], &[(1, V2([1.0, 2.0])), (1, V2([1.0, 3.0]))]),
+            FunctionExample::of(&[(1, V2([1.0, 2.0])), (2, V2([0.0; 2])), (2, I(3))], &[(1, V3([1.0, 2.0, 3.0]))]).faults(&[5]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -66,8 +66,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["3D vector"],
         behaviour: |f| along(f, DVec3::X),
         examples: &[
-            Example::of(&[(1, R(0.1))], &[(1, V3([0.1, 0.0, 0.0]))]),
-            Example::of(&[(1, V3([0.0; 3])), (1, R(2.0))], &[(1, V3([2.0, 0.0, 0.0]))]).faults(&[5]),
+            FunctionExample::of(&[(1, R(0.1))], &[(1, V3([0.1, 0.0, 0.0]))]),
+            FunctionExample::of(&[(1, V3([0.0; 3])), (1, R(2.0))], &[(1, V3([2.0, 0.0, 0.0]))]).faults(&[5]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -79,8 +79,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["3D vector"],
         behaviour: |f| along(f, DVec3::Y),
         examples: &[
-            Example::of(&[(1, I(-3))], &[(1, V3([0.0, -3.0, 0.0]))]),
-            Example::of(&[(1, V3([0.0; 3])), (1, R(2.0))], &[(1, V3([0.0, 2.0, 0.0]))]).faults(&[5]),
+            FunctionExample::of(&[(1, I(-3))], &[(1, V3([0.0, -3.0, 0.0]))]),
+            FunctionExample::of(&[(1, V3([0.0; 3])), (1, R(2.0))], &[(1, V3([0.0, 2.0, 0.0]))]).faults(&[5]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -92,8 +92,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["3D vector"],
         behaviour: |f| along(f, DVec3::Z),
         examples: &[
-            Example::of(&[(1, R(1.0))], &[(1, V3([0.0, 0.0, 1.0]))]),
-            Example::of(&[(1, V3([0.0; 3])), (1, R(2.0))], &[(1, V3([0.0, 0.0, 2.0]))]).faults(&[5]),
+            FunctionExample::of(&[(1, R(1.0))], &[(1, V3([0.0, 0.0, 1.0]))]),
+            FunctionExample::of(&[(1, V3([0.0; 3])), (1, R(2.0))], &[(1, V3([0.0, 0.0, 2.0]))]).faults(&[5]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -108,8 +108,8 @@ pub static ROWS: &[FunctionRow] = &[
             f.emit(1, Value::Matrix2(Box::new(matrix)))
         },
         examples: &[
-            Example::of(&[(1, V2([1.0, 2.0])), (2, V2([3.0, 4.0]))], &[(1, M2([[1.0, 2.0], [3.0, 4.0]]))]),
-            Example::of(
+            FunctionExample::of(&[(1, V2([1.0, 2.0])), (2, V2([3.0, 4.0]))], &[(1, M2([[1.0, 2.0], [3.0, 4.0]]))]),
+            FunctionExample::of(
                 &[(1, V2([1.0, 0.0])), (2, V3([0.0; 3])), (2, V2([0.0, 1.0]))],
                 &[(1, M2([[1.0, 0.0], [0.0, 1.0]]))],
             )
@@ -132,11 +132,11 @@ pub static ROWS: &[FunctionRow] = &[
             f.emit(1, Value::Matrix3(Box::new(matrix)))
         },
         examples: &[
-            Example::of(
+            FunctionExample::of(
                 &[(3, V3([0.5, 1.0, 0.0])), (1, V3([-0.9, 0.9, 0.0])), (2, V3([-0.8, 0.8, 0.0]))],
                 &[(1, M3([[-0.9, 0.9, 0.0], [-0.8, 0.8, 0.0], [0.5, 1.0, 0.0]]))],
             ),
-            Example::of(
+            FunctionExample::of(
                 &[(1, V3([1.0; 3])), (1, V3([9.0; 3])), (2, V3([2.0; 3])), (3, V3([3.0; 3]))],
                 &[(1, M3([[1.0; 3], [2.0; 3], [3.0; 3]]))],
             ),
@@ -159,11 +159,11 @@ pub static ROWS: &[FunctionRow] = &[
             f.emit(1, Value::Matrix4(Box::new(matrix)))
         },
         examples: &[
-            Example::of(
+            FunctionExample::of(
                 &[(1, V4([1.0; 4])), (2, V4([2.0; 4])), (3, V4([3.0; 4])), (4, V4([4.0; 4]))],
                 &[(1, crate::port::Literal::M4([[1.0; 4], [2.0; 4], [3.0; 4], [4.0; 4]]))],
             ),
-            Example::of(
+            FunctionExample::of(
                 &[(1, V4([1.0; 4])), (2, V3([0.0; 3])), (2, V4([2.0; 4])), (3, V4([3.0; 4])), (4, V4([4.0; 4]))],
                 &[(1, crate::port::Literal::M4([[1.0; 4], [2.0; 4], [3.0; 4], [4.0; 4]]))],
             )
@@ -179,9 +179,9 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["part 1", "part 2", "part 3", "part 4"],
         behaviour: parts,
         examples: &[
-            Example::of(&[(1, V3([1.0, 2.0, 3.0]))], &[(1, R(1.0)), (2, R(2.0)), (3, R(3.0))]),
-            Example::of(&[(1, M2([[1.0, 2.0], [3.0, 4.0]]))], &[(1, V2([1.0, 2.0])), (2, V2([3.0, 4.0]))]),
-            Example::of(
+            FunctionExample::of(&[(1, V3([1.0, 2.0, 3.0]))], &[(1, R(1.0)), (2, R(2.0)), (3, R(3.0))]),
+            FunctionExample::of(&[(1, M2([[1.0, 2.0], [3.0, 4.0]]))], &[(1, V2([1.0, 2.0])), (2, V2([3.0, 4.0]))]),
+            FunctionExample::of(
                 &[(1, M43([[1.0; 3], [2.0; 3], [3.0; 3], [4.0; 3]]))],
                 &[(1, V3([1.0; 3])), (2, V3([2.0; 3])), (3, V3([3.0; 3])), (4, V3([4.0; 3]))],
             ),

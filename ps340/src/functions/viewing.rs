@@ -1,6 +1,6 @@
 //! Viewing: matrices for the nodes LOOK, WINDOW and FIELD_OF_VIEW.
 
-use super::{Example, FunctionRow, Source};
+use super::{FunctionExample, FunctionRow, Source};
 use crate::{
     matrices::{field_of_view, look, window},
     port::{
@@ -15,7 +15,7 @@ use protocol::Value;
 const POINT: KindSet = KindSet::VECTOR2.or(KindSet::VECTOR3);
 const UP: PortSpec = PortSpec::constant(POINT, "UP: a point above AT, or a direction if it equals AT");
 const UP_NOTE: Source = Source::confirmed("UP as a point is our reading: for AT in the origin it is a direction too");
-const NO_SHIFT: Example = Example::of(
+const NO_SHIFT: FunctionExample = FunctionExample::of(
     &[(2, V3([0.0, 0.0, -10.0])), (3, V3([0.0, 1.0, 0.0])), (1, V3([0.0; 3]))],
     &[(1, M43([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 10.0]]))],
 );
@@ -34,7 +34,7 @@ pub static ROWS: &[FunctionRow] = &[
         },
         examples: &[
             NO_SHIFT,
-            Example::of(&[(2, V3([1.0; 3])), (3, V3([0.0, 1.0, 0.0])), (1, V3([1.0; 3]))], &[]).faults(&[7]),
+            FunctionExample::of(&[(2, V3([1.0; 3])), (3, V3([0.0, 1.0, 0.0])), (1, V3([1.0; 3]))], &[]).faults(&[7]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -49,11 +49,11 @@ pub static ROWS: &[FunctionRow] = &[
             view(f, at, from)
         },
         examples: &[
-            Example::of(
+            FunctionExample::of(
                 &[(2, V3([0.0; 3])), (3, V3([0.0, 1.0, 0.0])), (1, V3([-5.0, 0.0, 0.0]))],
                 &[(1, M43([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 5.0]]))],
             ),
-            Example::of(&[(2, V3([1.0; 3])), (3, V3([0.0, 1.0, 0.0])), (1, V3([1.0; 3]))], &[]).faults(&[7]),
+            FunctionExample::of(&[(2, V3([1.0; 3])), (3, V3([0.0, 1.0, 0.0])), (1, V3([1.0; 3]))], &[]).faults(&[7]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -78,18 +78,18 @@ pub static ROWS: &[FunctionRow] = &[
             f.emit(1, Value::Matrix4(Box::new(matrix)))
         },
         examples: &[
-            Example::of(
+            FunctionExample::of(
                 &[(2, I(0)), (3, I(4)), (4, I(-1)), (5, I(1)), (6, R(2.0)), (7, R(4.0)), (1, R(1.0))],
                 &[(1, M4([[0.5, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.5, 0.0], [-1.0, 0.0, -1.0, 1.0]]))],
             ),
-            Example::of(
+            FunctionExample::of(
                 &[(2, R(-1.0)), (3, R(1.0)), (4, R(-1.0)), (5, R(1.0)), (6, R(1e-15)), (7, R(1e15)), (1, B(true))],
                 &[(
                     1,
                     M4([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1e-15, 0.0], [0.0, 0.0, -1e-30, 1.0]]),
                 )],
             ),
-            Example::of(&[(2, I(1)), (3, I(1)), (4, I(-1)), (5, I(1)), (6, I(0)), (7, I(1)), (1, B(true))], &[])
+            FunctionExample::of(&[(2, I(1)), (3, I(1)), (4, I(-1)), (5, I(1)), (6, I(0)), (7, I(1)), (1, B(true))], &[])
                 .faults(&[7]),
         ],
         ..FunctionRow::PLAIN
@@ -114,12 +114,12 @@ pub static ROWS: &[FunctionRow] = &[
             f.emit(1, Value::Matrix4(Box::new(matrix)))
         },
         examples: &[
-            Example::of(
+            FunctionExample::of(
                 &[(2, R(90.0)), (3, R(1.0)), (4, R(3.0)), (1, B(true))],
                 &[(1, M4([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.5, 1.0], [0.0, 0.0, -1.5, 0.0]]))],
             ),
-            Example::of(&[(2, R(180.0)), (3, R(1.0)), (4, R(3.0)), (1, B(true))], &[]).faults(&[6]),
-            Example::of(&[(2, R(30.0)), (3, R(3.0)), (4, R(3.0)), (1, B(true))], &[]).faults(&[7]),
+            FunctionExample::of(&[(2, R(180.0)), (3, R(1.0)), (4, R(3.0)), (1, B(true))], &[]).faults(&[6]),
+            FunctionExample::of(&[(2, R(30.0)), (3, R(3.0)), (4, R(3.0)), (1, B(true))], &[]).faults(&[7]),
         ],
         ..FunctionRow::PLAIN
     },

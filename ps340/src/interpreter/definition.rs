@@ -28,7 +28,7 @@ pub(super) enum Content {
     /// What stood between BEGIN_FONT and END_FONT.
     Font(BTreeMap<u8, FontCharacter>),
     /// A node that needed nothing but its command: a curve.
-    Made(Box<Node>),
+    Node(Box<Node>),
 }
 
 /// Where references are looked up.
@@ -73,11 +73,11 @@ impl Content {
         Ok(match object {
             Object::Bspline(spline) => {
                 let expanded = curve::bspline(&spline).map_err(|e| range(e.to_string()))?;
-                Content::Made(Box::new(curve(expanded, spline.dimension)))
+                Content::Node(Box::new(curve(expanded, spline.dimension)))
             }
             Object::Polynomial(polynomial) => {
                 let expanded = curve::polynomial(&polynomial).map_err(|e| range(e.to_string()))?;
-                Content::Made(Box::new(curve(expanded, polynomial.dimension)))
+                Content::Node(Box::new(curve(expanded, polynomial.dimension)))
             }
             Object::Polygons(polygons) => {
                 check_polygons(&polygons).map_err(range)?;
@@ -98,7 +98,7 @@ impl Content {
     pub(super) fn bytes(&self) -> usize {
         match self {
             Content::Font(font) => font.values().map(font_bytes).sum(),
-            Content::Made(node) => node.bytes(),
+            Content::Node(node) => node.bytes(),
             Content::Object(object) => match object {
                 Object::VectorList(list) => size_of_val(list.points.as_slice()) + list.lines.len(),
                 Object::Characters(characters) => characters.text.len(),
@@ -142,7 +142,7 @@ pub(super) fn define(
 pub(super) fn node(content: Content, scope: Scope<'_>, memory: &mut MassMemory) -> Result<Node, Message> {
     let object = match content {
         Content::Font(font) => return Ok(Node::Font(Box::new(font))),
-        Content::Made(node) => return Ok(*node),
+        Content::Node(node) => return Ok(*node),
         Content::Object(object) => object,
     };
     Ok(match object {

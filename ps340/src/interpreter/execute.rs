@@ -5,7 +5,7 @@ use super::{
     definition::{self, Content, Scope},
     draft::Draft,
     edit, flow, service,
-    session::Font,
+    session::FontDraft,
 };
 use crate::{
     memory::{MASS_MEMORY, MassMemory, Refusal},
@@ -137,7 +137,7 @@ impl Interpreter {
                 Err(Message::Structure("BEGIN_FONT before END_FONT of the font before".into()))
             }
             Object::BeginFont => {
-                self.font = Some(Font { name, characters: BTreeMap::new() });
+                self.font = Some(FontDraft { name, characters: BTreeMap::new() });
                 Ok(())
             }
             Object::Function { function, size } => {

@@ -7,7 +7,7 @@ use crate::{
     port::{Cause, Fault, ObjectId},
     rendering::RenderingFault,
     structure::{Node, NodeFault},
-    traversal::Trouble,
+    traversal::UpdateFault,
 };
 use protocol::{Name, command::CommandError, record::BinaryError};
 
@@ -75,7 +75,7 @@ pub enum Message {
     /// I 11: an answer to COMMAND STATUS, SHOW INTERFACE and the like.
     Information(String),
     /// E 8: an update could not show everything.
-    Update(Trouble),
+    Update(UpdateFault),
     /// W 12: bytes on a line that were not a packet.
     Line(String),
     /// I 13: a packet on the diagnostic route.

@@ -12,7 +12,7 @@ pub const MAX_BEGINS: u32 = 1000;
 #[derive(Debug, Default)]
 pub struct Interpreter {
     pub(super) structure: Option<Draft>,
-    pub(super) font: Option<Font>,
+    pub(super) font: Option<FontDraft>,
     /// How many BEGIN wait for their END.
     pub(super) begun: u32,
     /// Between OPTIMIZE STRUCTURE and END OPTIMIZE. Nothing is built in another way there.
@@ -23,7 +23,7 @@ pub struct Interpreter {
 
 /// A font between BEGIN_FONT and END_FONT.
 #[derive(Debug)]
-pub(super) struct Font {
+pub(super) struct FontDraft {
     pub(super) name: Option<Name>,
     pub(super) characters: BTreeMap<u8, FontCharacter>,
 }

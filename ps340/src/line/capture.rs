@@ -1,7 +1,7 @@
 //! Capture of what passes on the host lines, and of what the operator does, to a file.
 
 use super::LineId;
-use files::{Destination, Growing};
+use files::{Destination, LogFile};
 use protocol::capture::{Event, HEADER, Record};
 use std::{
     io::{self, Write},
@@ -19,7 +19,7 @@ pub struct Capture {
 #[derive(Debug)]
 struct Tape {
     /// None after the file was finished or could not be written.
-    file: Option<Growing>,
+    file: Option<LogFile>,
     begin: Instant,
     text: String,
 }
@@ -30,7 +30,7 @@ impl Capture {
     /// # Errors
     /// Those of the file.
     pub fn create(path: &Path) -> io::Result<Capture> {
-        let mut file = Destination::of(path).and_then(Growing::create).map_err(io::Error::other)?;
+        let mut file = Destination::of(path).and_then(LogFile::create).map_err(io::Error::other)?;
         writeln!(file, "{HEADER}")?;
         let tape = Tape { file: Some(file), begin: Instant::now(), text: String::new() };
         Ok(Capture { shared: Arc::new(Mutex::new(tape)) })
@@ -38,7 +38,7 @@ impl Capture {
 
     /// Ends the capture, which gets its name now, in place of a file that had it.
     pub fn finish(&self) {
-        if let Some(Err(error)) = self.tape().file.take().map(Growing::finish) {
+        if let Some(Err(error)) = self.tape().file.take().map(LogFile::finish) {
             tracing::error!("the capture is not whole: {error}");
         }
     }
@@ -49,8 +49,8 @@ impl Capture {
     }
 
     /// Writes down that the operator did something now.
-    pub fn record_order(&self, order: &str) {
-        self.record(LineId(0), Event::Order(order.into()));
+    pub fn record_operator_command(&self, order: &str) {
+        self.record(LineId(0), Event::OperatorCommand(order.into()));
     }
 
     /// Writes down what happened on a line now.

@@ -1,12 +1,12 @@
 //! Host lines: whatever arrives goes to the machine, and back, as the conditions of the line allow.
 
 use super::{
-    Interface, LineEvent, LineId, Surroundings,
+    Interface, LineEvent, LineId, LineContext,
     conditions::{Flow, INPUT_QUEUE, XOFF, XON, leave},
     http,
     pace::Pace,
     places::Presence,
-    writer::{Waiting, Writer},
+    writer::{OutputQueue, Writer},
 };
 use protocol::{address::Conditions, capture::Event};
 use std::{io, sync::Arc};
@@ -22,7 +22,7 @@ pub const MAX_HOSTS: usize = 64;
 const READ_BYTES: usize = 64 << 10;
 
 /// The way to a host that is not there: what it is told is captured, and that is all. Needs a tokio runtime.
-pub(super) fn silent_writer(line: LineId, around: Surroundings) -> Writer {
+pub(super) fn silent_writer(line: LineId, around: LineContext) -> Writer {
     let (writer, mut waiting) = Writer::new();
     tokio::spawn(async move {
         while let Some(bytes) = waiting.next().await {
@@ -75,7 +75,7 @@ impl Host {
 pub(super) async fn serve(
     stream: impl AsyncRead + AsyncWrite + Send + Unpin + 'static,
     host: Host,
-    around: Surroundings,
+    around: LineContext,
 ) {
     let line = super::next_line();
     let (read, write) = tokio::io::split(stream);
@@ -89,7 +89,7 @@ pub(super) async fn serve(
     let presence = &host.presence;
     let end = tokio::select! {
         end = receive(read, line, &host, &flow, &around) => end,
-        () = presence.is_unwanted() => End::Dropped("it never spoke, and its place was wanted"),
+        () = presence.is_evicted() => End::Dropped("it never spoke, and its place was wanted"),
     };
     // Without the receiver, nothing that the host holds can be released.
     drop(flow);
@@ -104,7 +104,7 @@ pub(super) async fn serve(
     // The machine drops its writer when it sees the end; what is queued is still written.
     tokio::select! {
         _ = &mut sending => {}
-        () = presence.is_unwanted() => sending.abort(),
+        () = presence.is_evicted() => sending.abort(),
     }
 }
 
@@ -114,10 +114,10 @@ async fn receive(
     line: LineId,
     host: &Host,
     flow: &watch::Sender<Flow>,
-    around: &Surroundings,
+    around: &LineContext,
 ) -> End {
     let conditions = host.conditions;
-    let mut requests = http::Watch::default();
+    let mut requests = http::RequestDetector::default();
     let begin = Instant::now();
     let mut pace = Pace::new(conditions.speed);
     let most = if conditions.flow { INPUT_QUEUE / 4 } else { READ_BYTES };
@@ -131,7 +131,7 @@ async fn receive(
             result = read.read_buf(&mut arriving), if open && arriving.is_empty() && queue.len() < limit => match result {
                 Ok(0) => open = false,
                 Ok(count) => {
-                    host.presence.note_speech();
+                    host.presence.note_sent();
                     at = begin + pace.pass(count, begin.elapsed());
                     if host.may_be_browser && requests.finds_request(&mut arriving) {
                         (open, end) = (false, End::Dropped("it speaks HTTP, as a page in a browser does"));
@@ -189,11 +189,11 @@ struct Sender<W> {
     line: LineId,
     conditions: Conditions,
     flow: watch::Receiver<Flow>,
-    around: Surroundings,
+    around: LineContext,
 }
 
 impl<W: AsyncWrite + Unpin> Sender<W> {
-    async fn run(mut self, mut waiting: Waiting) {
+    async fn run(mut self, mut waiting: OutputQueue) {
         let begin = Instant::now();
         let mut pace = Pace::new(self.conditions.speed);
         let (mut bytes, mut sent) = (Vec::new(), 0);

@@ -34,7 +34,7 @@ fn begins_request(line: &[u8]) -> bool {
 /// A request begins what is said on a connection. There, a line that can only become a request is held back until it ends,
 /// so that nothing of its path is taken for a command.
 #[derive(Debug, Default)]
-pub(super) struct Watch {
+pub(super) struct RequestDetector {
     /// The current line as far as it is there, up to [`MAX_LINE`] bytes and one more.
     line: Vec<u8>,
     /// Whether a line has ended that was not empty.
@@ -43,7 +43,7 @@ pub(super) struct Watch {
     held: Vec<u8>,
 }
 
-impl Watch {
+impl RequestDetector {
     /// Takes the next bytes, and leaves those that may pass. Returns whether a request line ends in them; then the bytes of
     /// that line and all behind it do not pass.
     pub(super) fn finds_request(&mut self, bytes: &mut Vec<u8>) -> bool {
@@ -82,8 +82,8 @@ mod tests {
     use super::*;
 
     /// What passes of a stream that comes in pieces of some size, and whether a request ended it.
-    fn passed(stream: &[u8], piece: usize) -> (Vec<u8>, bool) {
-        let (mut watch, mut all) = (Watch::default(), Vec::new());
+    fn passed_bytes(stream: &[u8], piece: usize) -> (Vec<u8>, bool) {
+        let (mut watch, mut all) = (RequestDetector::default(), Vec::new());
         for piece in stream.chunks(piece) {
             let mut bytes = piece.to_vec();
             let found = watch.finds_request(&mut bytes);
@@ -128,9 +128,9 @@ mod tests {
     fn commands_pass_at_any_cut_as_they_come() {
         let stream = b"CONNECT a<1>:<1>b;DELETE x;\nPOST := F:NOP; DELETE /\nHTTP/1.1\nCONNECT a<1>:<1>b;";
         for piece in 1..=stream.len() {
-            assert_eq!(passed(stream, piece), (stream.to_vec(), false), "{piece}");
+            assert_eq!(passed_bytes(stream, piece), (stream.to_vec(), false), "{piece}");
         }
-        let mut watch = Watch::default();
+        let mut watch = RequestDetector::default();
         for byte in b"CONNECT a<1>:<1>b;" {
             let mut bytes = vec![*byte];
             assert!(!watch.finds_request(&mut bytes) && bytes == [*byte], "it does not wait for the end of the line");
@@ -143,7 +143,7 @@ mod tests {
             ["POST /;INITIALIZE; HTTP/1.1\r\nHost: a\r\n\r\nINITIALIZE;", "\r\nGET / HTTP/1.0\nINITIALIZE;\n"]
         {
             for piece in 1..=request.len() {
-                let (bytes, found) = passed(request.as_bytes(), piece);
+                let (bytes, found) = passed_bytes(request.as_bytes(), piece);
                 // A method alone is the beginning of a command as well.
                 let method = bytes.trim_ascii();
                 let is_harmless = method.iter().all(u8::is_ascii_uppercase) && method.len() <= 4;
@@ -156,7 +156,7 @@ mod tests {
     fn a_request_later_ends_the_stream_too() {
         let stream = b"A := F:NOP;\nGET / HTTP/1.1\nDELETE A;\n";
         for piece in 1..=stream.len() {
-            let (bytes, found) = passed(stream, piece);
+            let (bytes, found) = passed_bytes(stream, piece);
             assert!(found && bytes.starts_with(b"A := F:NOP;\n") && !bytes.ends_with(b"A;\n"), "{piece}");
         }
     }
@@ -166,7 +166,7 @@ mod tests {
         let mut stream = b"GET /".to_vec();
         stream.resize(3 * MAX_LINE, b'a');
         for piece in [1000, MAX_LINE, 3 * MAX_LINE] {
-            assert_eq!(passed(&stream, piece), (stream.clone(), false));
+            assert_eq!(passed_bytes(&stream, piece), (stream.clone(), false));
         }
     }
 }

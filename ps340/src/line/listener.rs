@@ -18,12 +18,12 @@ use tokio::{
 const ANSWER_TIME: Duration = Duration::from_secs(2);
 
 /// Bytes of a socket, whatever its kind.
-pub(super) trait Stream: AsyncRead + AsyncWrite + Send + Unpin {}
-impl<T: AsyncRead + AsyncWrite + Send + Unpin> Stream for T {}
+pub(super) trait SocketStream: AsyncRead + AsyncWrite + Send + Unpin {}
+impl<T: AsyncRead + AsyncWrite + Send + Unpin> SocketStream for T {}
 
 /// Who may come to a listening socket.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Visitors {
+pub enum AllowedPeers {
     /// Whoever reaches it.
     All,
     /// At a Unix socket only the user who runs the machine, and the administrator.
@@ -36,7 +36,7 @@ pub enum Listener {
     /// TCP.
     Tcp(TcpListener),
     /// Unix socket; the file is removed at the end.
-    Unix(UnixListener, SocketFile, Visitors),
+    Unix(UnixListener, SocketFile, AllowedPeers),
 }
 
 /// Removes the file of a Unix socket when dropped, unless another file has its name by then.
@@ -92,13 +92,13 @@ impl Listener {
     ///
     /// # Errors
     /// Those of the system, e.g. the address is in use.
-    pub async fn bind(address: &Address, visitors: Visitors) -> io::Result<Listener> {
+    pub async fn bind(address: &Address, visitors: AllowedPeers) -> io::Result<Listener> {
         match address {
             Address::Tcp(at) => Ok(Listener::Tcp(TcpListener::bind(at.as_str()).await?)),
             Address::Unix(path) => {
                 let bound = bind_unix(path).await?;
                 let file = SocketFile::new(path);
-                if visitors == Visitors::Owner {
+                if visitors == AllowedPeers::Owner {
                     std::fs::set_permissions(path, Permissions::from_mode(0o600))?;
                 }
                 Ok(Listener::Unix(bound, file, visitors))
@@ -122,7 +122,7 @@ impl Listener {
         }
     }
 
-    pub(super) async fn accept(&self) -> io::Result<(Box<dyn Stream>, String)> {
+    pub(super) async fn accept(&self) -> io::Result<(Box<dyn SocketStream>, String)> {
         match self {
             Listener::Tcp(listener) => {
                 let (stream, peer) = listener.accept().await?;
@@ -133,7 +133,7 @@ impl Listener {
                 let (stream, _) = listener.accept().await?;
                 // Before the file had its permissions, others may have come.
                 let visitor = stream.peer_cred()?.uid();
-                if *visitors == Visitors::Owner && visitor != 0 && visitor != rustix::process::geteuid().as_raw() {
+                if *visitors == AllowedPeers::Owner && visitor != 0 && visitor != rustix::process::geteuid().as_raw() {
                     let text = format!("user {visitor} is not the one who runs the machine");
                     return Err(io::Error::new(io::ErrorKind::PermissionDenied, text));
                 }

@@ -18,10 +18,10 @@ mod operator;
 pub use crate::port::LineId;
 pub use capture::Capture;
 pub use hosts::MAX_HOSTS;
-pub use listener::{Listener, SocketFile, Visitors};
+pub use listener::{Listener, SocketFile, AllowedPeers};
 pub use operator::{OperatorLine, Reply, serve_operators, serve_stdio, serve_window};
 pub use protocol::address::{Address, AddressError, LineAddress};
-pub use source::Source;
+pub use source::HostEndpoint;
 pub use terminal::{PseudoTerminal, open_serial};
 pub use token::{TOKEN_VARIABLE, Token};
 pub use writer::{MAX_WAITING_BYTES, Writer};
@@ -86,14 +86,14 @@ pub type Events = mpsc::Sender<LineEvent>;
 
 /// What a line works with: the machine's thread, and the capture.
 #[derive(Clone, Debug)]
-pub struct Surroundings {
+pub struct LineContext {
     /// The way into the machine's thread.
     pub events: Events,
     /// Takes what passes, if it is wanted.
     pub capture: Option<Capture>,
 }
 
-impl Surroundings {
+impl LineContext {
     /// Tells the machine's thread; false if that is gone.
     async fn send(&self, event: LineEvent) -> bool {
         self.events.send(event).await.is_ok()

@@ -3,10 +3,10 @@
 use super::{
     Events, LineEvent, Listener, Token,
     http::is_request,
-    listener::Stream,
-    places::{Place, Places, Presence},
+    listener::SocketStream,
+    places::{ConnectionSlot, ConnectionSlots, Presence},
 };
-use protocol::capture::MAX_ORDER;
+use protocol::capture::MAX_OPERATOR_COMMAND;
 use std::{
     io::{BufRead, IsTerminal, Write},
     time::Duration,
@@ -61,7 +61,7 @@ impl From<String> for Reply {
 /// - `token`: what they must tell before their first order, if anything.
 pub async fn serve_operators(listener: Listener, token: Option<Token>, events: Events) {
     let full = format!("error {MAX_OPERATORS} operators are attached; come again when one has left\n");
-    let mut places = Places::new(MAX_OPERATORS, &full);
+    let mut places = ConnectionSlots::new(MAX_OPERATORS, &full);
     while !events.is_closed() {
         match listener.accept().await {
             Ok((stream, peer)) => {
@@ -77,9 +77,9 @@ pub async fn serve_operators(listener: Listener, token: Option<Token>, events: E
     }
 }
 
-async fn serve(stream: Box<dyn Stream>, peer: String, token: Option<Token>, place: Place, events: Events) {
+async fn serve(stream: Box<dyn SocketStream>, peer: String, token: Option<Token>, place: ConnectionSlot, events: Events) {
     tokio::select! {
-        () = place.presence.is_unwanted() => {
+        () = place.presence.is_evicted() => {
             tracing::warn!("operator {peer} was dropped: it gave no order, and its place was wanted");
         }
         () = obey(stream, &peer, token, &place.presence, events) => {}
@@ -87,13 +87,13 @@ async fn serve(stream: Box<dyn Stream>, peer: String, token: Option<Token>, plac
 }
 
 /// Takes one order after the other, until the operator leaves or the machine ends.
-async fn obey(stream: Box<dyn Stream>, peer: &str, mut token: Option<Token>, presence: &Presence, events: Events) {
+async fn obey(stream: Box<dyn SocketStream>, peer: &str, mut token: Option<Token>, presence: &Presence, events: Events) {
     let (read, mut write) = tokio::io::split(stream);
     let mut read = BufReader::new(read);
     let mut people = false;
     loop {
         let mut line = Vec::new();
-        let mut order = (&mut read).take(MAX_ORDER as u64);
+        let mut order = (&mut read).take(MAX_OPERATOR_COMMAND as u64);
         let reading = order.read_until(b'\n', &mut line);
         let read_bytes = match &token {
             Some(_) => timeout(TOKEN_TIME, reading).await.unwrap_or_else(|late| Err(late.into())),
@@ -101,7 +101,7 @@ async fn obey(stream: Box<dyn Stream>, peer: &str, mut token: Option<Token>, pre
         };
         match read_bytes {
             Ok(0) | Err(_) => return,
-            Ok(n) if n == MAX_ORDER && !line.ends_with(b"\n") => {
+            Ok(n) if n == MAX_OPERATOR_COMMAND && !line.ends_with(b"\n") => {
                 // The rest of the line is not another order.
                 if skip_line(&mut read).await.is_err() || write.write_all(TOO_LONG.as_bytes()).await.is_err() {
                     return;
@@ -119,14 +119,14 @@ async fn obey(stream: Box<dyn Stream>, peer: &str, mut token: Option<Token>, pre
             continue;
         }
         if let Some(token) = token.take() {
-            let known = token.is_told_by(&text);
+            let known = token.matches(&text);
             if write.write_all(if known { b"ok\n" } else { NO_TOKEN }).await.is_err() || !known {
                 return tracing::warn!("operator {peer} was dropped: it does not know the token");
             }
-            presence.note_speech();
+            presence.note_sent();
             continue;
         }
-        presence.note_speech();
+        presence.note_sent();
         if events.send(LineEvent::Operator(OperatorLine { text, reply, is_replayed: false })).await.is_err() {
             return;
         }
@@ -227,7 +227,7 @@ mod tests {
             let (near, far) = tokio::io::duplex(1024);
             let (events, orders) = tokio::sync::mpsc::channel(4);
             tokio::spawn(answer(orders));
-            tokio::spawn(serve(Box::new(far), "pipe".into(), None, place().await, events));
+            tokio::spawn(serve(Box::new(far), "pipe".into(), None, test_slot().await, events));
             let (mut read, mut write) = tokio::io::split(near);
             write.write_all(b"top\nlines on\ntop\nlines off\ntop\n").await.unwrap();
             let mut said = vec![0; 38];
@@ -237,18 +237,18 @@ mod tests {
         assert_eq!(said, "ok a\\nb\nok a\nb\nok a\nb\nok a\\nb\nok a\\nb\n");
     }
 
-    async fn place() -> Place {
+    async fn test_slot() -> ConnectionSlot {
         let (stream, _) = tokio::io::duplex(1);
-        Places::new(1, "").admit(Box::new(stream), "pipe").await.expect("there is room").1
+        ConnectionSlots::new(1, "").admit(Box::new(stream), "pipe").await.expect("there is room").1
     }
 
     /// What an operator line answers to a text before it closes; what reaches the machine.
-    fn told(text: &str, token: Option<Token>) -> (String, Vec<String>) {
+    fn replies_to(text: &str, token: Option<Token>) -> (String, Vec<String>) {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
         runtime.block_on(async {
             let (mut near, far) = tokio::io::duplex(1024);
             let (events, mut inbox) = tokio::sync::mpsc::channel(4);
-            tokio::spawn(serve(Box::new(far), "pipe".into(), token, place().await, events));
+            tokio::spawn(serve(Box::new(far), "pipe".into(), token, test_slot().await, events));
             near.write_all(text.as_bytes()).await.unwrap();
             near.shutdown().await.unwrap();
             let mut orders = Vec::new();
@@ -264,18 +264,18 @@ mod tests {
 
     #[test]
     fn a_request_of_http_ends_the_line_before_its_body() {
-        let (said, orders) = told("panel\r\nPOST / HTTP/1.1\r\n\r\npicture vector a.png\r\n", None);
+        let (said, orders) = replies_to("panel\r\nPOST / HTTP/1.1\r\n\r\npicture vector a.png\r\n", None);
         assert_eq!((said.as_str(), orders), ("ok\n", vec!["panel".to_string()]));
     }
 
     #[test]
     fn the_token_comes_before_the_first_order() {
         let token = Token::begin().unwrap();
-        let text = token.to_be_told().unwrap().to_string();
-        let (said, orders) = told(&format!("token {text}\npanel\n"), Some(token.clone()));
+        let text = token.unannounced().unwrap().to_string();
+        let (said, orders) = replies_to(&format!("token {text}\npanel\n"), Some(token.clone()));
         assert_eq!((said.as_str(), orders), ("ok\nok\n", vec!["panel".to_string()]));
         for wrong in ["panel\npanel\n", "token 1234\npanel\n"] {
-            let (said, orders) = told(wrong, Some(token.clone()));
+            let (said, orders) = replies_to(wrong, Some(token.clone()));
             assert!(said.starts_with("error the first line must be") && said.lines().count() == 1, "{said}");
             assert!(orders.is_empty());
         }

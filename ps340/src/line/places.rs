@@ -1,6 +1,6 @@
 //! Places at a listening socket: a visitor who has never said anything gives way to one who comes later.
 
-use super::listener::Stream;
+use super::listener::SocketStream;
 use std::{
     collections::VecDeque,
     sync::{
@@ -18,9 +18,9 @@ use tokio::{
 /// How long a newcomer waits until a silent visitor has left.
 const LEAVING_TIME: Duration = Duration::from_millis(700);
 /// How long one who is turned away may take to read why.
-const FAREWELL_TIME: Duration = Duration::from_secs(1);
+const REJECTION_TIME: Duration = Duration::from_secs(1);
 /// Those who are told why at the same time; of a crowd, not everybody is.
-const MAX_FAREWELLS: usize = 64;
+const MAX_REJECTIONS: usize = 64;
 
 /// What is known of a visitor who is there, shared by those who serve them and those who want the place.
 #[derive(Debug, Default)]
@@ -31,26 +31,26 @@ pub(super) struct Presence {
 
 impl Presence {
     /// The visitor has said something that counts: nobody takes the place.
-    pub(super) fn note_speech(&self) {
+    pub(super) fn note_sent(&self) {
         self.has_spoken.store(true, Ordering::Relaxed);
     }
 
     /// Waits until the place is wanted by somebody else.
-    pub(super) async fn is_unwanted(&self) {
+    pub(super) async fn is_evicted(&self) {
         self.leave.notified().await;
     }
 }
 
 /// A place that is taken until this is dropped.
 #[derive(Debug)]
-pub(super) struct Place {
+pub(super) struct ConnectionSlot {
     pub(super) presence: Arc<Presence>,
     _taken: OwnedSemaphorePermit,
 }
 
 /// The places of a socket.
 #[derive(Debug)]
-pub(super) struct Places {
+pub(super) struct ConnectionSlots {
     free: Arc<Semaphore>,
     farewells: Arc<Semaphore>,
     /// What one who is turned away reads.
@@ -59,28 +59,28 @@ pub(super) struct Places {
     visitors: VecDeque<Weak<Presence>>,
 }
 
-impl Places {
+impl ConnectionSlots {
     /// - `count`: visitors who may be there at once.
     /// - `full`: what one more reads.
-    pub(super) fn new(count: usize, full: &str) -> Places {
-        let farewells = Arc::new(Semaphore::new(MAX_FAREWELLS));
-        Places { free: Arc::new(Semaphore::new(count)), farewells, full: full.into(), visitors: VecDeque::new() }
+    pub(super) fn new(count: usize, full: &str) -> ConnectionSlots {
+        let farewells = Arc::new(Semaphore::new(MAX_REJECTIONS));
+        ConnectionSlots { free: Arc::new(Semaphore::new(count)), farewells, full: full.into(), visitors: VecDeque::new() }
     }
 
     /// Lets a newcomer in, if there is a place; else tells them why not, and closes the connection.
-    pub(super) async fn admit(&mut self, stream: Box<dyn Stream>, peer: &str) -> Option<(Box<dyn Stream>, Place)> {
+    pub(super) async fn admit(&mut self, stream: Box<dyn SocketStream>, peer: &str) -> Option<(Box<dyn SocketStream>, ConnectionSlot)> {
         if let Some(place) = self.take().await {
             return Some((stream, place));
         }
         tracing::warn!("{peer} was turned away: {}", self.full.trim_end());
         if let Ok(farewell) = self.farewells.clone().try_acquire_owned() {
-            tokio::spawn(turn_away(stream, self.full.clone(), farewell));
+            tokio::spawn(reject(stream, self.full.clone(), farewell));
         }
         None
     }
 
     /// A place for a newcomer, if need be that of the visitor who has been silent for longest. None if all have spoken.
-    async fn take(&mut self) -> Option<Place> {
+    async fn take(&mut self) -> Option<ConnectionSlot> {
         self.visitors.retain(|visitor| visitor.strong_count() > 0);
         let taken = match self.free.clone().try_acquire_owned() {
             Ok(taken) => taken,
@@ -93,12 +93,12 @@ impl Places {
         };
         let presence = Arc::<Presence>::default();
         self.visitors.push_back(Arc::downgrade(&presence));
-        Some(Place { presence, _taken: taken })
+        Some(ConnectionSlot { presence, _taken: taken })
     }
 }
 
 /// Tells one who came in vain why, and closes the connection.
-async fn turn_away(mut stream: Box<dyn Stream>, text: Arc<str>, _farewell: OwnedSemaphorePermit) {
+async fn reject(mut stream: Box<dyn SocketStream>, text: Arc<str>, _farewell: OwnedSemaphorePermit) {
     let said = async {
         stream.write_all(text.as_bytes()).await?;
         stream.shutdown().await?;
@@ -108,7 +108,7 @@ async fn turn_away(mut stream: Box<dyn Stream>, text: Arc<str>, _farewell: Owned
         std::io::Result::Ok(())
     };
     // The connection closes, whether it was read or not.
-    let _ = timeout(FAREWELL_TIME, said).await;
+    let _ = timeout(REJECTION_TIME, said).await;
 }
 
 #[cfg(test)]
@@ -123,9 +123,9 @@ mod tests {
     }
 
     /// Holds a place until it is unwanted.
-    fn sit(place: Place) -> tokio::task::JoinHandle<()> {
+    fn sit(place: ConnectionSlot) -> tokio::task::JoinHandle<()> {
         tokio::spawn(async move {
-            place.presence.is_unwanted().await;
+            place.presence.is_evicted().await;
             drop(place);
         })
     }
@@ -133,12 +133,12 @@ mod tests {
     #[test]
     fn the_oldest_silent_host_gives_way() {
         run(async {
-            let mut places = Places::new(MAX_HOSTS, FULL);
+            let mut places = ConnectionSlots::new(MAX_HOSTS, FULL);
             let mut hosts = Vec::new();
             for number in 0..MAX_HOSTS {
                 let place = places.take().await.expect("there is room");
                 if number == 0 {
-                    place.presence.note_speech();
+                    place.presence.note_sent();
                 }
                 hosts.push(sit(place));
             }
@@ -152,11 +152,11 @@ mod tests {
     #[test]
     fn hosts_that_have_spoken_keep_their_places() {
         run(async {
-            let mut places = Places::new(MAX_HOSTS, FULL);
+            let mut places = ConnectionSlots::new(MAX_HOSTS, FULL);
             let mut hosts = Vec::new();
             for _ in 0..MAX_HOSTS {
                 let place = places.take().await.expect("there is room");
-                place.presence.note_speech();
+                place.presence.note_sent();
                 hosts.push(place);
             }
             assert!(places.take().await.is_none());
@@ -168,7 +168,7 @@ mod tests {
     #[test]
     fn one_who_is_turned_away_reads_why_and_then_the_end() {
         run(async {
-            let mut places = Places::new(0, FULL);
+            let mut places = ConnectionSlots::new(0, FULL);
             let (near, mut far) = tokio::io::duplex(1024);
             assert!(places.admit(Box::new(near), "one").await.is_none());
             far.write_all(b"INITIALIZE;").await.unwrap();

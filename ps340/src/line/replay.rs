@@ -1,7 +1,7 @@
 //! Files as hosts: a plain file is sent as it is, a capture is played again.
 
 use super::{
-    Interface, LineEvent, LineId, OperatorLine, Surroundings,
+    Interface, LineEvent, LineId, OperatorLine, LineContext,
     hosts::{Host, MAX_HOSTS, serve, silent_writer},
 };
 use protocol::{
@@ -58,7 +58,7 @@ pub(super) fn pieces(mut from: impl Read + Send + 'static) -> mpsc::Receiver<io:
 }
 
 /// Sends a file as a host, or as the hosts that were captured in it, which then leave.
-pub(super) async fn replay(path: &Path, file: File, timed: bool, conditions: Conditions, around: Surroundings) {
+pub(super) async fn replay(path: &Path, file: File, timed: bool, conditions: Conditions, around: LineContext) {
     let peer = format!("file:{}", path.display());
     let mut pieces = pieces(file);
     let mut beginning = Vec::new();
@@ -115,7 +115,7 @@ async fn play(
     beginning: Vec<u8>,
     mut pieces: mpsc::Receiver<io::Result<Vec<u8>>>,
     timed: bool,
-    around: Surroundings,
+    around: LineContext,
 ) {
     let mut reader = CaptureReader::default();
     let begin = Instant::now();
@@ -140,7 +140,7 @@ async fn play(
             }
             let sent = match record.event {
                 Event::ToHost(_) => continue,
-                Event::Order(text) => {
+                Event::OperatorCommand(text) => {
                     // Nobody waits for the reply.
                     let (reply, _) = oneshot::channel();
                     around.send(LineEvent::Operator(OperatorLine { text, reply, is_replayed: true })).await

@@ -1,14 +1,14 @@
 //! Places where hosts come from: opens them, and serves whoever comes.
 
 use super::{
-    Address, Interface, LineAddress, LineEvent, Listener, PseudoTerminal, Surroundings, Visitors,
+    Address, Interface, LineAddress, LineEvent, Listener, PseudoTerminal, LineContext, AllowedPeers,
     hosts::{Host, MAX_HOSTS, serve},
     open_serial,
-    places::Places,
+    places::ConnectionSlots,
     replay::{PARALLEL, feed, pieces, replay},
-    terminal::Terminal,
+    terminal::TerminalStream,
 };
-use protocol::address::{Conditions, Place, Serial};
+use protocol::address::{Conditions, Endpoint, Serial};
 use std::{
     fs::File,
     io::{self, Write},
@@ -29,7 +29,7 @@ const STANDARD_BYTES: usize = 64 << 10;
 
 /// A place that is open for hosts.
 #[derive(Debug)]
-pub struct Source {
+pub struct HostEndpoint {
     kind: Kind,
     conditions: Conditions,
 }
@@ -43,28 +43,28 @@ enum Kind {
     File { path: PathBuf, file: File, timed: bool },
 }
 
-impl Source {
+impl HostEndpoint {
     /// Opens a place; needs a tokio runtime.
     ///
     /// # Errors
     /// Those of the system, e.g. the address is in use, or the file does not exist.
-    pub async fn open(address: &LineAddress) -> io::Result<Source> {
+    pub async fn open(address: &LineAddress) -> io::Result<HostEndpoint> {
         let kind = match &address.place {
-            Place::Socket(at) => Kind::Sockets(Listener::bind(at, Visitors::All).await?, Interface::Stream),
-            Place::Parallel(at) => {
-                let listener = Listener::bind(&Address::Tcp(at.clone()), Visitors::All).await?;
+            Endpoint::Socket(at) => Kind::Sockets(Listener::bind(at, AllowedPeers::All).await?, Interface::Stream),
+            Endpoint::Parallel(at) => {
+                let listener = Listener::bind(&Address::Tcp(at.clone()), AllowedPeers::All).await?;
                 Kind::Sockets(listener, Interface::Parallel)
             }
-            Place::Pty(None) => Kind::Pty(PseudoTerminal::open()?),
-            Place::Pty(Some(_)) => {
+            Endpoint::Pty(None) => Kind::Pty(PseudoTerminal::open()?),
+            Endpoint::Pty(Some(_)) => {
                 let text = "the system chooses the path; give pty: alone, or serial:PATH for a terminal that is there";
                 return Err(io::Error::new(io::ErrorKind::InvalidInput, text));
             }
-            Place::Serial(serial) => Kind::Serial(serial.clone(), open_serial(serial)?),
-            Place::Stdio => Kind::Stdio,
-            Place::File { path, timed } => Kind::File { path: path.clone(), file: File::open(path)?, timed: *timed },
+            Endpoint::Serial(serial) => Kind::Serial(serial.clone(), open_serial(serial)?),
+            Endpoint::Stdio => Kind::Stdio,
+            Endpoint::File { path, timed } => Kind::File { path: path.clone(), file: File::open(path)?, timed: *timed },
         };
-        Ok(Source { kind, conditions: address.conditions })
+        Ok(HostEndpoint { kind, conditions: address.conditions })
     }
 
     /// Where hosts find it: port 0 has become a real port, and a pseudo-terminal has a path.
@@ -74,13 +74,13 @@ impl Source {
     pub fn address(&self) -> io::Result<LineAddress> {
         let place = match &self.kind {
             Kind::Sockets(listener, interface) => match (listener.address()?, interface) {
-                (Address::Tcp(at), Interface::Parallel) => Place::Parallel(at),
-                (address, _) => Place::Socket(address),
+                (Address::Tcp(at), Interface::Parallel) => Endpoint::Parallel(at),
+                (address, _) => Endpoint::Socket(address),
             },
-            Kind::Pty(terminal) => Place::Pty(Some(terminal.path().into())),
-            Kind::Serial(serial, _) => Place::Serial(serial.clone()),
-            Kind::Stdio => Place::Stdio,
-            Kind::File { path, timed, .. } => Place::File { path: path.clone(), timed: *timed },
+            Kind::Pty(terminal) => Endpoint::Pty(Some(terminal.path().into())),
+            Kind::Serial(serial, _) => Endpoint::Serial(serial.clone()),
+            Kind::Stdio => Endpoint::Stdio,
+            Kind::File { path, timed, .. } => Endpoint::File { path: path.clone(), timed: *timed },
         };
         Ok(LineAddress { place, conditions: self.conditions })
     }
@@ -91,8 +91,8 @@ impl Source {
     }
 
     /// Serves hosts until no more can come, which it says, or until the machine's thread is gone.
-    pub async fn serve(self, around: Surroundings) {
-        let Source { kind, conditions } = self;
+    pub async fn serve(self, around: LineContext) {
+        let HostEndpoint { kind, conditions } = self;
         match kind {
             Kind::Sockets(listener, interface) => serve_sockets(listener, interface, conditions, around).await,
             Kind::Pty(terminal) => serve_terminal(terminal, conditions, around).await,
@@ -109,9 +109,9 @@ impl Source {
     }
 }
 
-async fn serve_sockets(listener: Listener, interface: Interface, conditions: Conditions, around: Surroundings) {
+async fn serve_sockets(listener: Listener, interface: Interface, conditions: Conditions, around: LineContext) {
     let full = format!("The PS 340 is full: {MAX_HOSTS} hosts are attached. Come again when one has left.\r\n");
-    let mut places = Places::new(MAX_HOSTS, &full);
+    let mut places = ConnectionSlots::new(MAX_HOSTS, &full);
     while !around.events.is_closed() {
         let (stream, peer) = match listener.accept().await {
             Ok(accepted) => accepted,
@@ -137,7 +137,7 @@ async fn serve_sockets(listener: Listener, interface: Interface, conditions: Con
 }
 
 /// A host attaches when it opens the pseudo-terminal, and leaves when it closes it; then the next one can come.
-async fn serve_terminal(terminal: PseudoTerminal, conditions: Conditions, around: Surroundings) {
+async fn serve_terminal(terminal: PseudoTerminal, conditions: Conditions, around: LineContext) {
     let peer = format!("pty:{}", terminal.path().display());
     while !around.events.is_closed() {
         match terminal.is_open().and_then(|open| if open { terminal.stream().map(Some) } else { Ok(None) }) {
@@ -156,11 +156,11 @@ async fn serve_terminal(terminal: PseudoTerminal, conditions: Conditions, around
 }
 
 /// A serial device is one host that is always there; a device that fails is opened again when it is back.
-async fn serve_device(serial: Serial, device: OwnedFd, conditions: Conditions, around: Surroundings) {
+async fn serve_device(serial: Serial, device: OwnedFd, conditions: Conditions, around: LineContext) {
     let peer = format!("serial:{}", serial.device.display());
     let mut opened = Ok(device);
     while !around.events.is_closed() {
-        match opened.and_then(Terminal::new) {
+        match opened.and_then(TerminalStream::new) {
             Ok(stream) => {
                 let host = Host { half_closes: false, ..Host::stream(peer.clone(), conditions) };
                 serve(stream, host, around.clone()).await;
@@ -172,7 +172,7 @@ async fn serve_device(serial: Serial, device: OwnedFd, conditions: Conditions, a
     }
 }
 
-async fn serve_standard_streams(conditions: Conditions, around: Surroundings) {
+async fn serve_standard_streams(conditions: Conditions, around: LineContext) {
     let peer = "stdio:".to_string();
     let (near, far) = tokio::io::duplex(STANDARD_BYTES);
     let (mut answers, questions) = tokio::io::split(near);

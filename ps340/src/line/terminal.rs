@@ -26,21 +26,21 @@ use tokio::{
 
 /// A terminal that is open, as a stream of bytes.
 #[derive(Debug)]
-pub(super) struct Terminal {
+pub(super) struct TerminalStream {
     // To the system a terminal that does not wait is read and written as a pipe is.
     read: pipe::Receiver,
     write: pipe::Sender,
 }
 
-impl Terminal {
+impl TerminalStream {
     /// Takes a terminal that was opened without waiting; needs a tokio runtime.
-    pub(super) fn new(terminal: OwnedFd) -> io::Result<Terminal> {
+    pub(super) fn new(terminal: OwnedFd) -> io::Result<TerminalStream> {
         let read = pipe::Receiver::from_owned_fd_unchecked(terminal.try_clone()?)?;
-        Ok(Terminal { read, write: pipe::Sender::from_owned_fd_unchecked(terminal)? })
+        Ok(TerminalStream { read, write: pipe::Sender::from_owned_fd_unchecked(terminal)? })
     }
 }
 
-impl AsyncRead for Terminal {
+impl AsyncRead for TerminalStream {
     fn poll_read(mut self: Pin<&mut Self>, cx: &mut Context<'_>, buffer: &mut ReadBuf<'_>) -> Poll<io::Result<()>> {
         match Pin::new(&mut self.read).poll_read(cx, buffer) {
             // The other side of a pseudo-terminal has been closed: the end.
@@ -50,7 +50,7 @@ impl AsyncRead for Terminal {
     }
 }
 
-impl AsyncWrite for Terminal {
+impl AsyncWrite for TerminalStream {
     fn poll_write(mut self: Pin<&mut Self>, cx: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
         Pin::new(&mut self.write).poll_write(cx, bytes)
     }
@@ -112,8 +112,8 @@ impl PseudoTerminal {
     }
 
     /// The machine's side as a stream, until the host closes its side.
-    pub(super) fn stream(&self) -> io::Result<Terminal> {
-        Terminal::new(self.master.try_clone()?)
+    pub(super) fn stream(&self) -> io::Result<TerminalStream> {
+        TerminalStream::new(self.master.try_clone()?)
     }
 }
 

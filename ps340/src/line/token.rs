@@ -43,12 +43,12 @@ impl Token {
     }
 
     /// The text of a token that nobody knows yet.
-    pub fn to_be_told(&self) -> Option<&str> {
+    pub fn unannounced(&self) -> Option<&str> {
         self.is_own.then_some(&self.text)
     }
 
     /// Whether a line tells the token. It takes as long for a wrong one as for a nearly right one.
-    pub(super) fn is_told_by(&self, line: &str) -> bool {
+    pub(super) fn matches(&self, line: &str) -> bool {
         let told = line.trim().strip_prefix(WORD).unwrap_or_default().trim().as_bytes();
         let differences = told.iter().zip(self.text.as_bytes()).fold(0, |all, (a, b)| all | (a ^ b));
         told.len() == self.text.len() && differences == 0
@@ -62,10 +62,10 @@ mod tests {
     #[test]
     fn only_the_token_itself_opens_the_line() {
         let token = Token { text: "a1b2".into(), is_own: true };
-        assert!(token.is_told_by("token a1b2") && token.is_told_by(" token  a1b2\r"));
+        assert!(token.matches("token a1b2") && token.matches(" token  a1b2\r"));
         for line in ["", "token", "token ", "token a1b", "token a1b2c", "token a1b3", "a1b2", "dial 1 0.1"] {
-            assert!(!token.is_told_by(line), "{line}");
+            assert!(!token.matches(line), "{line}");
         }
-        assert_eq!(token.to_be_told(), Some("a1b2"));
+        assert_eq!(token.unannounced(), Some("a1b2"));
     }
 }

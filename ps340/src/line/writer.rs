@@ -19,7 +19,7 @@ pub struct Writer {
 
 /// The other end of a [`Writer`].
 #[derive(Debug)]
-pub(super) struct Waiting {
+pub(super) struct OutputQueue {
     shared: Arc<Shared>,
     /// Memory of the block that was given out last: it counts until the next is asked for.
     given: usize,
@@ -48,9 +48,9 @@ impl Shared {
 
 impl Writer {
     /// A way to a host, and its other end.
-    pub(super) fn new() -> (Writer, Waiting) {
+    pub(super) fn new() -> (Writer, OutputQueue) {
         let shared = Arc::<Shared>::default();
-        (Writer { shared: shared.clone() }, Waiting { shared, given: 0 })
+        (Writer { shared: shared.clone() }, OutputQueue { shared, given: 0 })
     }
 
     /// Lets bytes wait for the host; returns false if they are dropped, because the host does not read.
@@ -94,7 +94,7 @@ impl Blocks {
     }
 }
 
-impl Waiting {
+impl OutputQueue {
     /// The bytes that have waited longest; none when nothing waits and nothing more will come.
     pub(super) async fn next(&mut self) -> Option<Vec<u8>> {
         loop {

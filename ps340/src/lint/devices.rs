@@ -34,8 +34,8 @@ const USES: &[&str] = &[
 
 /// The kinds of message that an output of an initial instance sends; none if the devices do not show it.
 pub(super) fn kinds(instance: &str, output: u16) -> Option<KindSet> {
-    static SEEN: LazyLock<HashMap<(String, u16), KindSet>> = LazyLock::new(use_all);
-    SEEN.get(&(instance.to_owned(), output)).copied()
+    static DEVICE_KINDS: LazyLock<HashMap<(String, u16), KindSet>> = LazyLock::new(use_all);
+    DEVICE_KINDS.get(&(instance.to_owned(), output)).copied()
 }
 
 /// Uses every device, with a variable connected to each output of the initial instances, and looks what is in it.

@@ -11,13 +11,13 @@ use super::{
 use crate::{
     functions::{self, Rule},
     machine::Machine,
-    port::{Cause, KindSet, Role},
+    port::{Cause, KindSet, QueueRole},
 };
 use protocol::{Kind, Name, Value, command::Input};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Values of an input that are kept as they were sent; of more, only the kinds matter.
-const KEPT_VALUES: usize = 8;
+const STORED_VALUES: usize = 8;
 /// Trials that are made; in a larger program, functions whose trials are left may send anything.
 const TRIALS: usize = 50_000;
 
@@ -97,7 +97,7 @@ impl<'p> Flow<'p> {
             match &sent.value {
                 None => input.unknown = true,
                 Some(value) if input.values.contains(value) => {}
-                Some(value) if input.values.len() < KEPT_VALUES => input.values.push(value.clone()),
+                Some(value) if input.values.len() < STORED_VALUES => input.values.push(value.clone()),
                 Some(value) => drop(input.kinds.insert(value.kind())),
             }
         }
@@ -158,7 +158,7 @@ impl<'p> Flow<'p> {
         let silent = match function.row.rule {
             Rule::All => inputs.clone().any(missing),
             _ => {
-                let spec = |n: &u16| function.row.input(function.shape, *n).is_some_and(|s| s.role == Role::Active);
+                let spec = |n: &u16| function.row.input(function.shape, *n).is_some_and(|s| s.role == QueueRole::Active);
                 inputs.clone().filter(spec).all(missing) && inputs.clone().any(|n| spec(&n))
             }
         };
@@ -262,7 +262,7 @@ impl<'p> Flow<'p> {
             let row = instance.function.row;
             let keeping = functions::find(&format!("{}C", row.name)).filter(|other| {
                 let spec = row.shape(None).ok().and_then(|_| other.inputs.get(usize::from(number) - 1));
-                spec.is_some_and(|spec| spec.role == Role::Constant)
+                spec.is_some_and(|spec| spec.role == QueueRole::Constant)
             });
             let hint = match keeping {
                 Some(other) => format!("F:{} keeps it", other.name),
@@ -350,7 +350,7 @@ fn active<'i>(instance: &'i Instance<'_>) -> impl Iterator<Item = (u16, &'i Arri
     let function = instance.function;
     let is_active = move |(number, input): &(u16, &Arriving)| {
         let spec = function.row.input(function.shape, *number);
-        !input.set_up && spec.is_some_and(|spec| spec.role == Role::Active)
+        !input.set_up && spec.is_some_and(|spec| spec.role == QueueRole::Active)
     };
     (1..).zip(&instance.inputs).filter(is_active)
 }

@@ -2,7 +2,7 @@
 
 use super::{
     Level, Note,
-    program::{Arc, Program, What},
+    program::{Arc, Program, DefinitionKind},
 };
 use crate::{functions::FunctionRow, machine::Machine, port::KindSet, structure::Node};
 use protocol::{Name, command::Input};
@@ -23,12 +23,12 @@ pub(super) fn check(program: &Program, machine: &Machine) -> Vec<Note> {
 fn source(arc: &Arc, program: &Program, machine: &Machine) -> Option<Note> {
     let name = program.target(&arc.source);
     let (row, outputs) = match program.definitions.get(name).map(|d| &d.what) {
-        Some(What::Function(function)) => (function.row, function.shape.outputs),
-        Some(What::Structure) => {
+        Some(DefinitionKind::Function(function)) => (function.row, function.shape.outputs),
+        Some(DefinitionKind::Structure) => {
             let text = format!("{name} is a structure; it sends no messages");
             return Some(Note { place: arc.place, level: Level::Error, text });
         }
-        Some(What::Node) => {
+        Some(DefinitionKind::Node) => {
             let node = node(name, machine).filter(|node| !node.has_output())?;
             let text = format!("{name} is a {}; it sends no messages", node.word());
             return Some(Note { place: arc.place, level: Level::Error, text });
@@ -64,9 +64,9 @@ fn destination(arc: &Arc, program: &Program, machine: &Machine) -> Option<Note> 
         ))
     };
     match program.definitions.get(name).map(|d| &d.what) {
-        Some(What::Function(function)) => no_input(function.row, function.shape.inputs),
-        Some(What::Structure) => error(format!("{name} takes no messages{}", inside(program, name))),
-        Some(What::Node) => match accepted(arc, program, machine)? {
+        Some(DefinitionKind::Function(function)) => no_input(function.row, function.shape.inputs),
+        Some(DefinitionKind::Structure) => error(format!("{name} takes no messages{}", inside(program, name))),
+        Some(DefinitionKind::Node) => match accepted(arc, program, machine)? {
             KindSet::NONE => {
                 let node = node(name, machine)?;
                 error(format!("{name} is a {} and has no input {}; it has {}", node.word(), arc.input, node.inputs()))
@@ -89,8 +89,8 @@ pub(super) fn accepted(arc: &Arc, program: &Program, machine: &Machine) -> Optio
         _ => None,
     };
     match program.definitions.get(name).map(|d| &d.what) {
-        Some(What::Function(function)) => function.row.input(function.shape, input?).map(|spec| spec.kinds),
-        Some(What::Node) => Some(node(name, machine)?.takes(arc.input).unwrap_or(KindSet::NONE)),
+        Some(DefinitionKind::Function(function)) => function.row.input(function.shape, input?).map(|spec| spec.kinds),
+        Some(DefinitionKind::Node) => Some(node(name, machine)?.takes(arc.input).unwrap_or(KindSet::NONE)),
         Some(_) => None,
         None => system(name, machine)?.inputs.get(usize::from(input?).checked_sub(1)?).map(|spec| spec.kinds),
     }
@@ -119,7 +119,7 @@ fn numbered(what: &str, count: u16) -> String {
 /// A hint which nodes of a structure may be meant.
 fn inside(program: &Program, name: &Name) -> String {
     let prefix = format!("{name}.");
-    let nodes = program.definitions.iter().filter(|(n, d)| n.as_str().starts_with(&prefix) && d.what == What::Node);
+    let nodes = program.definitions.iter().filter(|(n, d)| n.as_str().starts_with(&prefix) && d.what == DefinitionKind::Node);
     let nodes: Vec<String> = nodes.take(NAMED).map(|(n, _)| n.to_string()).collect();
     if nodes.is_empty() {
         "; name a node inside it".into()

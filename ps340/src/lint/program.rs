@@ -1,6 +1,6 @@
 //! One program: what its commands define, use, connect and send.
 
-use super::source::{Place, first_place, last_place};
+use super::source::{Location, first_offset, last_offset};
 use crate::{
     functions::{self, FunctionRow, Shape},
     structure::Operation,
@@ -20,27 +20,27 @@ pub(super) struct Program {
     pub(super) definitions: BTreeMap<Name, Definition>,
     pub(super) uses: Vec<Use>,
     pub(super) arcs: Vec<Arc>,
-    pub(super) sends: Vec<Sent>,
+    pub(super) sends: Vec<SentMessage>,
     /// Names that were defined again, and where.
-    pub(super) again: Vec<(Name, Place, Place)>,
+    pub(super) again: Vec<(Name, Location, Location)>,
     /// Inputs about which SETUP CNESS said something.
     pub(super) set_up: Vec<(Name, Input)>,
     /// Functions of a type that does not exist, and the place of the type.
-    pub(super) no_functions: Vec<(Name, Place)>,
+    pub(super) no_functions: Vec<(Name, Location)>,
     /// Structures that are open: full name and place of the BEGIN.
-    open: Vec<(Name, Place)>,
+    open: Vec<(Name, Location)>,
 }
 
 /// What a name stands for.
 #[derive(Clone, Debug)]
 pub(super) struct Definition {
-    pub(super) place: Place,
-    pub(super) what: What,
+    pub(super) place: Location,
+    pub(super) what: DefinitionKind,
 }
 
 /// Kinds of definition.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum What {
+pub(super) enum DefinitionKind {
     /// An instance of a function.
     Function(Function),
     /// Something that could not be made: a function that does not exist, a definition that cannot be read.
@@ -75,7 +75,7 @@ pub(super) struct Use {
     pub(super) scope: Option<Name>,
     /// By what: `INSTANCE OF`.
     pub(super) by: &'static str,
-    pub(super) place: Place,
+    pub(super) place: Location,
 }
 
 /// A connection.
@@ -85,14 +85,14 @@ pub(super) struct Arc {
     pub(super) output: u16,
     pub(super) to: Name,
     pub(super) input: Input,
-    pub(super) place: Place,
+    pub(super) place: Location,
     /// Of the destination.
-    pub(super) to_place: Place,
+    pub(super) to_place: Location,
 }
 
 /// A message that a command sends.
 #[derive(Clone, Debug)]
-pub(super) struct Sent {
+pub(super) struct SentMessage {
     pub(super) to: Name,
     pub(super) input: Input,
     /// The message; none if it is not known, as that of a variable.
@@ -103,10 +103,10 @@ impl Program {
     /// Takes a command in.
     ///
     /// - `text`: the command as it stands in the file, and where that begins.
-    pub(super) fn add(&mut self, command: &Command, text: &[u8], place: Place) {
-        let at = |offset: usize| Place { at: place.at + offset, ..place };
-        let first = |name: &Name| at(first_place(text, name.as_str()));
-        let last = |name: &Name| at(last_place(text, name.as_str()));
+    pub(super) fn add(&mut self, command: &Command, text: &[u8], place: Location) {
+        let at = |offset: usize| Location { at: place.at + offset, ..place };
+        let first = |name: &Name| at(first_offset(text, name.as_str()));
+        let last = |name: &Name| at(last_offset(text, name.as_str()));
         match command {
             Command::Define { name, object } => self.define(name.as_ref(), object, text, place),
             Command::EndStructure => {
@@ -115,7 +115,7 @@ impl Program {
             Command::Display(name) => self.used(name, "DISPLAY", last(name)),
             Command::Include { name, into } => {
                 self.used(name, "INCLUDE", first(name));
-                let what = What::Structure;
+                let what = DefinitionKind::Structure;
                 self.definitions.entry(into.clone()).or_insert(Definition { place: last(into), what });
             }
             Command::Prefix { name, operate } => {
@@ -154,7 +154,7 @@ impl Program {
             }
             Command::Variable(names) => {
                 for name in names {
-                    self.set(name.clone(), Definition { place: first(name), what: What::Node });
+                    self.set(name.clone(), Definition { place: first(name), what: DefinitionKind::Node });
                 }
             }
             _ => {}
@@ -162,17 +162,17 @@ impl Program {
     }
 
     /// Takes in a statement that cannot be read: what it would define is not held against those who use it.
-    pub(super) fn fail(&mut self, text: &[u8], place: Place) {
+    pub(super) fn fail(&mut self, text: &[u8], place: Location) {
         let mut lexer = Lexer::new(text, 0);
         let (first, second) = (lexer.token(), lexer.token());
         let name = (second.kind == TokenKind::Assign).then(|| Name::new(&text[first.span()]).ok()).flatten();
         if let Some(full) = name.and_then(|name| self.full(&name)) {
-            self.definitions.entry(full).or_insert(Definition { place, what: What::NoFunction });
+            self.definitions.entry(full).or_insert(Definition { place, what: DefinitionKind::NoFunction });
         }
     }
 
     /// The innermost structure that is open, and where it was begun.
-    pub(super) fn open(&self) -> Option<&(Name, Place)> {
+    pub(super) fn open(&self) -> Option<&(Name, Location)> {
         self.open.last()
     }
 
@@ -187,7 +187,7 @@ impl Program {
         // A circle of names has no end.
         for _ in 0..self.definitions.len() {
             match self.definitions.get(name).map(|d| &d.what) {
-                Some(What::Alias(next)) => name = next,
+                Some(DefinitionKind::Alias(next)) => name = next,
                 _ => break,
             }
         }
@@ -197,53 +197,53 @@ impl Program {
     /// The function of a name, if the files define one.
     pub(super) fn function(&self, name: &Name) -> Option<&Function> {
         match self.definitions.get(name).map(|d| &d.what) {
-            Some(What::Function(function)) => Some(function),
+            Some(DefinitionKind::Function(function)) => Some(function),
             _ => None,
         }
     }
 
     /// Whether a name is that of a function that could not be made.
-    pub(super) fn is_unmade(&self, name: &str) -> bool {
-        self.definitions.get(name).is_some_and(|definition| definition.what == What::NoFunction)
+    pub(super) fn is_undefined(&self, name: &str) -> bool {
+        self.definitions.get(name).is_some_and(|definition| definition.what == DefinitionKind::NoFunction)
     }
 
-    fn define(&mut self, name: Option<&Name>, object: &Object, text: &[u8], place: Place) {
-        let at = |offset: usize| Place { at: place.at + offset, ..place };
-        let last = |name: &Name| at(last_place(text, name.as_str()));
+    fn define(&mut self, name: Option<&Name>, object: &Object, text: &[u8], place: Location) {
+        let at = |offset: usize| Location { at: place.at + offset, ..place };
+        let last = |name: &Name| at(last_offset(text, name.as_str()));
         let what = match object {
             Object::BeginStructure => {
                 let outer = self.open.last().map(|(path, _)| path.clone());
                 let path = name.and_then(|n| self.full(n)).or(outer);
                 self.open.extend(path.map(|path| (path, place)));
                 if let (Some(_), Some((path, _))) = (name, self.open.last().cloned()) {
-                    self.set(path, Definition { place, what: What::Structure });
+                    self.set(path, Definition { place, what: DefinitionKind::Structure });
                 }
                 return;
             }
             Object::Instance(members) => {
                 members.iter().for_each(|member| self.used(member, "INSTANCE OF", last(member)));
-                What::Structure
+                DefinitionKind::Structure
             }
             Object::Operate { operate, applied_to } => {
                 self.operate(operate, text, place);
                 if let Some(below) = applied_to {
                     self.used(below, "APPLIED TO", last(below));
                 }
-                What::Node
+                DefinitionKind::Node
             }
             Object::Polygons(polygons) => {
                 for attributes in polygons.iter().filter_map(|polygon| polygon.attributes.as_ref()) {
-                    self.used(attributes, "WITH ATTRIBUTES", at(first_place(text, attributes.as_str())));
+                    self.used(attributes, "WITH ATTRIBUTES", at(first_offset(text, attributes.as_str())));
                 }
-                What::Node
+                DefinitionKind::Node
             }
             Object::Copy { source, .. } => {
                 self.used(source, "COPY", last(source));
-                What::Node
+                DefinitionKind::Node
             }
             Object::Alias(of) => {
                 self.used(of, ":=", last(of));
-                What::Alias(of.clone())
+                DefinitionKind::Alias(of.clone())
             }
             Object::Function { function, size } => {
                 let Some(name) = name else { return };
@@ -254,32 +254,32 @@ impl Program {
                 self.set_up.retain(|(to, _)| to != name);
                 return self.set(name.clone(), Definition { place, what });
             }
-            _ => What::Node,
+            _ => DefinitionKind::Node,
         };
         if let Some(full) = name.and_then(|n| self.full(n)) {
             self.set(full, Definition { place, what });
         }
     }
 
-    fn function_of(&mut self, function: &Name, size: Option<u16>, place: Place) -> What {
+    fn function_of(&mut self, function: &Name, size: Option<u16>, place: Location) -> DefinitionKind {
         let Some(row) = functions::find(function.as_str()) else {
             self.no_functions.push((function.clone(), place));
-            return What::NoFunction;
+            return DefinitionKind::NoFunction;
         };
         // A wrong size is what the machine says itself.
-        row.shape(size).map_or(What::NoFunction, |shape| What::Function(Function { row, size, shape }))
+        row.shape(size).map_or(DefinitionKind::NoFunction, |shape| DefinitionKind::Function(Function { row, size, shape }))
     }
 
-    fn operate(&mut self, operate: &Operate, text: &[u8], place: Place) {
+    fn operate(&mut self, operate: &Operate, text: &[u8], place: Location) {
         if let Some(name) = Operation::named_in(operate) {
-            self.used(name, operate.kind().name(), Place { at: place.at + last_place(text, name.as_str()), ..place });
+            self.used(name, operate.kind().name(), Location { at: place.at + last_offset(text, name.as_str()), ..place });
         }
     }
 
-    fn connect(&mut self, source: &Name, output: u16, destination: &Destination, text: &[u8], place: Place) {
-        let at = |offset: usize| Place { at: place.at + offset, ..place };
-        let to_place = at(last_place(text, destination.name.as_str()));
-        let from_place = at(first_place(text, source.as_str()));
+    fn connect(&mut self, source: &Name, output: u16, destination: &Destination, text: &[u8], place: Location) {
+        let at = |offset: usize| Location { at: place.at + offset, ..place };
+        let to_place = at(last_offset(text, destination.name.as_str()));
+        let from_place = at(first_offset(text, source.as_str()));
         self.used(source, "CONNECT", from_place);
         self.used(&destination.name, "CONNECT", to_place);
         self.arcs.push(Arc {
@@ -292,12 +292,12 @@ impl Program {
         });
     }
 
-    fn sent(&mut self, destination: &Destination, value: Option<Value>, place: Place) {
+    fn sent(&mut self, destination: &Destination, value: Option<Value>, place: Location) {
         self.used(&destination.name, "SEND", place);
-        self.sends.push(Sent { to: destination.name.clone(), input: destination.input, value });
+        self.sends.push(SentMessage { to: destination.name.clone(), input: destination.input, value });
     }
 
-    fn used(&mut self, name: &Name, by: &'static str, place: Place) {
+    fn used(&mut self, name: &Name, by: &'static str, place: Location) {
         // Commands about messages use full names also while a structure is open.
         let messages = matches!(by, "SEND" | "CONNECT" | "SEND VALUE" | "SEND VL" | "SETUP CNESS");
         let scope = self.open.last().filter(|_| !messages).map(|(path, _)| path.clone());

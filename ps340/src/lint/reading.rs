@@ -3,7 +3,7 @@
 use super::{
     Finding, Level, Note, flow, names, ports,
     program::Program,
-    source::{Place, Source},
+    source::{Location, SourceFile},
 };
 use crate::{
     line::LineId,
@@ -21,7 +21,7 @@ const LINE: LineId = LineId(1);
 /// - `files`: name and content of each. Lines that begin with `@` are directives for the player; those that write files or end the machine are found, the others passed over.
 /// - Returns the findings by file and place.
 pub fn lint(files: &[(String, Vec<u8>)]) -> Vec<Finding> {
-    let sources: Vec<Source> = files.iter().map(|(name, text)| Source::new(name, text)).collect();
+    let sources: Vec<SourceFile> = files.iter().map(|(name, text)| SourceFile::new(name, text)).collect();
     let mut reading = Reading {
         sources: &sources,
         machine: machine(),
@@ -53,22 +53,22 @@ fn machine() -> Machine {
 }
 
 struct Reading<'s> {
-    sources: &'s [Source],
+    sources: &'s [SourceFile],
     /// Carries every command out.
     machine: Machine,
     /// Messages that it has said.
     said: u64,
     program: Program,
     /// What the machine said to the commands of this program.
-    said_by: Vec<Said>,
+    said_by: Vec<MachineMessage>,
     /// The command that was read last.
-    latest: Option<Place>,
+    latest: Option<Location>,
     notes: Vec<Note>,
 }
 
 /// A message of the machine.
-struct Said {
-    place: Place,
+struct MachineMessage {
+    place: Location,
     text: String,
     /// Whether the command is a CONNECT or a definition, about which more is known at the end.
     known: bool,
@@ -81,7 +81,7 @@ impl Reading<'_> {
         let source = &self.sources[file];
         for (at, order) in &source.outgoing {
             let text = format!("'{order}' writes a file or ends the machine, which is done with --orders only");
-            self.note(Place { file, at: *at }, Level::Warning, text);
+            self.note(Location { file, at: *at }, Level::Warning, text);
         }
         let mut reader = CommandReader::default();
         reader.push(&source.text);
@@ -90,33 +90,33 @@ impl Reading<'_> {
             match item {
                 Ok(spanned) => {
                     for warning in &spanned.warnings {
-                        self.note(Place { file, at: begin + warning.span.start }, Level::Warning, warning.message());
+                        self.note(Location { file, at: begin + warning.span.start }, Level::Warning, warning.message());
                     }
-                    let place = Place { file, at: begin + spanned.span.start };
+                    let place = Location { file, at: begin + spanned.span.start };
                     let text = &source.text[place.at..(begin + spanned.span.end).min(source.text.len())];
                     self.command(&spanned.command, text, place);
                 }
                 Err(error) => {
-                    self.program.fail(reader.statement(), Place { file, at: begin });
-                    let place = Place { file, at: begin + error.span.start };
+                    self.program.fail(reader.statement(), Location { file, at: begin });
+                    let place = Location { file, at: begin + error.span.start };
                     self.note(place, Level::Error, error.message());
                 }
             }
         }
         if let Some((problem, at)) = reader.open() {
-            self.note(Place { file, at: at as usize }, Level::Error, problem.to_string());
+            self.note(Location { file, at: at as usize }, Level::Error, problem.to_string());
         } else if reader.is_unfinished() {
             let at = reader.unfinished_position() as usize;
-            self.note(Place { file, at }, Level::Error, "the last statement has no ;".into());
+            self.note(Location { file, at }, Level::Error, "the last statement has no ;".into());
         }
         while let Some((name, place)) = self.program.open().cloned() {
             self.note(place, Level::Error, format!("BEGIN_STRUCTURE of {name} has no END_STRUCTURE"));
             self.program.close();
-            self.tell(b"!RESET;".to_vec());
+            self.send_text(b"!RESET;".to_vec());
         }
     }
 
-    fn command(&mut self, command: &Command, text: &[u8], place: Place) {
+    fn command(&mut self, command: &Command, text: &[u8], place: Location) {
         if matches!(command, Command::Initialize(Initialize::All | Initialize::Names)) {
             self.end_of_program();
         }
@@ -136,21 +136,21 @@ impl Reading<'_> {
             | Command::SendMarks { destination, .. } => Some(format!("{}{}", destination.input, destination.name)),
             _ => None,
         };
-        for text in self.tell_command(command) {
-            self.said_by.push(Said { place, text, known, sent_to: sent_to.clone() });
+        for text in self.send_command(command) {
+            self.said_by.push(MachineMessage { place, text, known, sent_to: sent_to.clone() });
         }
     }
 
     /// Gives the machine a command and returns what it says.
-    fn tell_command(&mut self, command: &Command) -> Vec<String> {
+    fn send_command(&mut self, command: &Command) -> Vec<String> {
         let mut text = Vec::new();
         print(command, &mut text);
         text.push(b'\n');
-        self.tell(text)
+        self.send_text(text)
     }
 
     /// Gives the machine a text and returns what it says.
-    fn tell(&mut self, text: Vec<u8>) -> Vec<String> {
+    fn send_text(&mut self, text: Vec<u8>) -> Vec<String> {
         self.machine.step([Input::Bytes(LINE, text)], 0);
         let said = self.machine.counters().messages;
         let new = usize::try_from(said - self.said).unwrap_or(usize::MAX);
@@ -163,7 +163,7 @@ impl Reading<'_> {
     fn end_of_program(&mut self) {
         // What the picture shows only, such as a structure that contains itself.
         self.machine.renew_picture();
-        let shown = self.tell(Vec::new());
+        let shown = self.send_text(Vec::new());
         for text in shown.into_iter().filter(|text| text.starts_with('E')) {
             if let Some(place) = self.latest {
                 self.note(place, Level::Error, format!("up to here, when it is displayed: {text}"));
@@ -171,7 +171,7 @@ impl Reading<'_> {
         }
         let program = std::mem::take(&mut self.program);
         let sources = self.sources;
-        let line_of = |place: Place| {
+        let line_of = |place: Location| {
             let source = &sources[place.file];
             format!("at {}:{}", source.name, source.line_and_column(place.at).0)
         };
@@ -183,7 +183,7 @@ impl Reading<'_> {
             let undefined =
                 notes.iter().any(|note| note.text.contains("never defined") && text.ends_with(note_name(note)));
             // What is said to a function that could not be made follows from that.
-            let unmade = text.starts_with("E 2 ") && program.is_unmade(text.rsplit(' ').next().unwrap_or(""));
+            let unmade = text.starts_with("E 2 ") && program.is_undefined(text.rsplit(' ').next().unwrap_or(""));
             // What comes along an arc that clashes is told of the arc; what the command itself sends there is not.
             let follows = |input: &String| mentions(text, input) && said.sent_to.as_ref() != Some(input);
             let clashes = flow.clashes.iter().any(follows);
@@ -202,7 +202,7 @@ impl Reading<'_> {
         self.notes.extend(notes);
     }
 
-    fn note(&mut self, place: Place, level: Level, text: String) {
+    fn note(&mut self, place: Location, level: Level, text: String) {
         self.notes.push(Note { place, level, text });
     }
 }

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 /// A place in the files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(super) struct Place {
+pub(super) struct Location {
     /// Which file.
     pub(super) file: usize,
     /// Offset in it, in bytes.
@@ -16,7 +16,7 @@ pub(super) struct Place {
 
 /// A file.
 #[derive(Clone, Debug)]
-pub(super) struct Source {
+pub(super) struct SourceFile {
     pub(super) name: String,
     /// The text; lines of directives for the player, and all of a capture, are blank.
     pub(super) text: Vec<u8>,
@@ -26,9 +26,9 @@ pub(super) struct Source {
     pub(super) outgoing: Vec<(usize, String)>,
 }
 
-impl Source {
+impl SourceFile {
     /// A file as it was read.
-    pub(super) fn new(name: &str, text: &[u8]) -> Source {
+    pub(super) fn new(name: &str, text: &[u8]) -> SourceFile {
         let mut text = text.to_vec();
         let (mut lines, mut outgoing) = (vec![0], Vec::new());
         let is_capture = is_capture(&text);
@@ -44,7 +44,7 @@ impl Source {
             if is_capture {
                 records.push(line);
                 for record in records.by_ref() {
-                    if let Ok(Record { event: Event::Order(order), .. }) = record {
+                    if let Ok(Record { event: Event::OperatorCommand(order), .. }) = record {
                         note(&order);
                     }
                 }
@@ -56,7 +56,7 @@ impl Source {
                 line[..end].fill(b' ');
             }
         }
-        Source { name: name.into(), text, lines, outgoing }
+        SourceFile { name: name.into(), text, lines, outgoing }
     }
 
     /// Line and column of an offset, from 1.
@@ -67,16 +67,16 @@ impl Source {
 }
 
 /// The place of a name in a command, from its beginning; the beginning if it does not stand there.
-pub(super) fn first_place(command: &[u8], name: &str) -> usize {
-    places(command, name).next().map_or(0, |span| span.start)
+pub(super) fn first_offset(command: &[u8], name: &str) -> usize {
+    occurrences(command, name).next().map_or(0, |span| span.start)
 }
 
 /// The last place of a name in a command.
-pub(super) fn last_place(command: &[u8], name: &str) -> usize {
-    places(command, name).last().map_or(0, |span| span.start)
+pub(super) fn last_offset(command: &[u8], name: &str) -> usize {
+    occurrences(command, name).last().map_or(0, |span| span.start)
 }
 
-fn places<'t>(command: &'t [u8], name: &str) -> impl Iterator<Item = Range<usize>> + use<'t> {
+fn occurrences<'t>(command: &'t [u8], name: &str) -> impl Iterator<Item = Range<usize>> + use<'t> {
     let name = name.to_owned();
     let mut lexer = Lexer::new(command, 0);
     let tokens = std::iter::from_fn(move || Some(lexer.token()).filter(|token| token.kind != TokenKind::End));
@@ -90,7 +90,7 @@ mod tests {
 
     #[test]
     fn offsets_become_lines_and_columns_and_directives_are_blank() {
-        let source = Source::new("f", b"A;\n@ dial 1 1\n B;");
+        let source = SourceFile::new("f", b"A;\n@ dial 1 1\n B;");
         assert_eq!(source.text, b"A;\n          \n B;");
         assert_eq!(source.line_and_column(0), (1, 1));
         assert_eq!(source.line_and_column(2), (1, 3));
@@ -100,7 +100,7 @@ mod tests {
     #[test]
     fn names_are_found_outside_of_texts_and_comments() {
         let command = b"CONNECT { a } A<1>:<1>AB, <2>'a' a";
-        assert_eq!((first_place(command, "A"), last_place(command, "A")), (14, 33));
-        assert_eq!(first_place(command, "NONE"), 0);
+        assert_eq!((first_offset(command, "A"), last_offset(command, "A")), (14, 33));
+        assert_eq!(first_offset(command, "NONE"), 0);
     }
 }

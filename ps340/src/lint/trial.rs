@@ -7,7 +7,7 @@ use super::program::Function;
 use crate::{
     functions::FunctionRow,
     network::Network,
-    port::{Cause, Effect, Fault, KindSet, Literal, ObjectId, PickLiteral, Role},
+    port::{Cause, Effect, Fault, KindSet, Literal, ObjectId, PickLiteral, QueueRole},
 };
 use protocol::{Kind, Value, command::Input};
 
@@ -107,7 +107,7 @@ fn once(function: &Function, chosen: &[Option<&Value>]) -> Option<Vec<Effect>> {
         network.connect(FUNCTION, output, to, Input::Number(1)).ok()?;
     }
     let mut effects = Vec::new();
-    let active = |input: u16| function.row.input(function.shape, input).is_some_and(|spec| spec.role == Role::Active);
+    let active = |input: u16| function.row.input(function.shape, input).is_some_and(|spec| spec.role == QueueRole::Active);
     for round in [false, true, true] {
         for (input, sample) in (1..).zip(chosen) {
             if let Some(sample) = sample.filter(|_| active(input) == round) {
@@ -157,7 +157,7 @@ pub(super) fn samples(kind: Kind) -> Vec<Value> {
 
 /// Whether a function needs a message at an input before it fires.
 pub(super) fn is_required(row: &FunctionRow, function: &Function, input: u16) -> bool {
-    row.input(function.shape, input).is_some_and(|spec| matches!(spec.role, Role::Active | Role::Constant))
+    row.input(function.shape, input).is_some_and(|spec| matches!(spec.role, QueueRole::Active | QueueRole::Constant))
 }
 
 #[cfg(test)]

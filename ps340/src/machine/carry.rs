@@ -3,7 +3,7 @@
 use super::{
     Machine,
     renderings::Renderings,
-    waiting::{Pick, TransformRequest, Waiting},
+    waiting::{Pick, TransformRequest, PendingRequests},
 };
 use crate::{
     interpreter::Message,
@@ -37,7 +37,7 @@ impl Machine {
                 self.lose_without(room, function, "PICK");
             }
             Effect::ForgetRequests => {
-                self.drawn.waiting = Waiting::default();
+                self.drawn.waiting = PendingRequests::default();
                 self.renderings = Renderings::default();
                 // The identities of objects are given out again: trouble with a new object is no old trouble.
                 self.drawn.update.trouble = None;
@@ -62,7 +62,7 @@ impl Machine {
             }
             Effect::Host { object, bytes, binary } => self.send_to_host(object, &bytes, binary),
             Effect::HostCharacters { object, bytes } => {
-                let hearers = self.hearers(object);
+                let hearers = self.recipients(object);
                 hearers.into_iter().for_each(|(line, _)| self.outputs.push(line, bytes.to_vec()));
             }
             Effect::Terminal(text) => self.show_text(None, &text),

@@ -103,12 +103,12 @@ fn the_terminal_speaks_with_the_host_that_spoke_to_it_last() {
     machine.step([Input::Attach(LineId(2))], 0);
     assert_eq!(machine.terminal().text(), "login:");
     let asked = machine.step([Input::Bytes(LineId(2), b"\x1b[6n".to_vec())], 0);
-    assert_eq!(asked, [Output { line: LineId(2), bytes: b"\x1b[1;8R".to_vec(), messages: 1, lost: 0 }]);
+    assert_eq!(asked, [HostOutput { line: LineId(2), bytes: b"\x1b[1;8R".to_vec(), messages: 1, lost: 0 }]);
     let typed = machine.step([Input::Event(Event::Type(b"x".to_vec()))], 0);
-    assert_eq!(typed, [Output { line: LineId(2), bytes: b"x".to_vec(), messages: 1, lost: 0 }]);
+    assert_eq!(typed, [HostOutput { line: LineId(2), bytes: b"x".to_vec(), messages: 1, lost: 0 }]);
     machine.step([Input::Detach(LineId(2))], 0);
     let typed = machine.step([Input::Event(Event::Type(b"y".to_vec()))], 0);
-    assert_eq!(typed, [Output { line: LINE, bytes: b"y".to_vec(), messages: 1, lost: 0 }]);
+    assert_eq!(typed, [HostOutput { line: LINE, bytes: b"y".to_vec(), messages: 1, lost: 0 }]);
     machine.step([Input::Detach(LINE)], 0);
     assert_eq!(machine.step([Input::Event(Event::Type(b"z".to_vec()))], 0), [], "nobody is there");
 }

@@ -4,7 +4,7 @@
 
 use super::{
     dials::Dials,
-    emission::Emission,
+    emission::DeviceMessage,
     key::{Key, KeyboardMode},
     tablet::{Tablet, TabletEvent},
 };
@@ -45,11 +45,11 @@ pub(super) struct Devices {
 impl Devices {
     /// Whether nothing waits for a frame.
     pub(super) fn is_quiet(&self) -> bool {
-        self.dials.is_quiet()
+        self.dials.is_idle()
     }
 
     /// What an event makes the instances send at once.
-    pub(super) fn event(&mut self, event: &Event) -> Vec<Emission> {
+    pub(super) fn event(&mut self, event: &Event) -> Vec<DeviceMessage> {
         match event {
             Event::Dial { dial, turns } => {
                 self.dials.turn(*dial, *turns);
@@ -63,7 +63,7 @@ impl Devices {
     }
 
     /// What the dials send at a frame.
-    pub(super) fn frame(&mut self, frame: u64) -> Vec<Emission> {
+    pub(super) fn frame(&mut self, frame: u64) -> Vec<DeviceMessage> {
         self.dials.sample(frame)
     }
 
@@ -73,7 +73,7 @@ impl Devices {
     }
 
     /// A command to the tablet, and what it answers.
-    pub(super) fn command_tablet(&mut self, command: TabletCommand) -> Vec<Emission> {
+    pub(super) fn command_tablet(&mut self, command: TabletCommand) -> Vec<DeviceMessage> {
         self.tablet.command(command)
     }
 

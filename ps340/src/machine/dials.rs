@@ -4,7 +4,7 @@
 //! Modes, smallest change and samples a second are settings of DSET1 to DSET8, remembered; their numbers are ours. The
 //! real dials were sampled 10 to 20 times a second at the start; ours are sampled at every frame, for a smooth picture.
 
-use super::{FRAMES_PER_SECOND, emission::Emission};
+use super::{FRAMES_PER_SECOND, emission::DeviceMessage};
 use crate::port::DialSetting;
 use protocol::Value;
 
@@ -63,13 +63,13 @@ impl Dials {
     }
 
     /// What the dials send at a frame: one message a dial at most. Relative dials send the sum of their turns.
-    pub(super) fn sample(&mut self, frame: u64) -> Vec<Emission> {
+    pub(super) fn sample(&mut self, frame: u64) -> Vec<DeviceMessage> {
         let sampled = (1..).zip(&mut self.dials);
         sampled.filter_map(|(output, dial)| Some(("DIALS", output, Value::Real(dial.sample(frame)?)))).collect()
     }
 
     /// Whether no dial has something to send.
-    pub(super) fn is_quiet(&self) -> bool {
+    pub(super) fn is_idle(&self) -> bool {
         self.dials.iter().all(|dial| dial.due().is_none())
     }
 
@@ -144,9 +144,9 @@ mod tests {
         let mut dials = Dials::default();
         dials.set(1, DialSetting::MinimumChange(8));
         dials.turn(1, 1.0 / 256.0);
-        assert!(dials.is_quiet(), "a change that is too small makes no work");
+        assert!(dials.is_idle(), "a change that is too small makes no work");
         dials.turn(1, 1.0 / 256.0);
-        assert!(!dials.is_quiet());
+        assert!(!dials.is_idle());
     }
 
     #[test]
@@ -158,6 +158,6 @@ mod tests {
         }
         dials.turn(1, f64::NAN);
         dials.turn(1, f64::INFINITY);
-        assert!(dials.is_quiet() && dials.sample(1).is_empty());
+        assert!(dials.is_idle() && dials.sample(1).is_empty());
     }
 }

@@ -1,14 +1,14 @@
 //! The picture that was drawn last, and what functions want of the next.
 
-use super::waiting::Waiting;
+use super::waiting::PendingRequests;
 use crate::traversal::Update;
 
 /// The latest update, and the requests that wait for another.
 #[derive(Debug, Default)]
-pub(super) struct Drawn {
+pub(super) struct LatestUpdate {
     pub(super) update: Update,
     /// Version of the structure that `update` shows; none before the first.
     pub(super) version: Option<u64>,
     /// What functions want of the next update.
-    pub(super) waiting: Waiting,
+    pub(super) waiting: PendingRequests,
 }

@@ -3,4 +3,4 @@
 use protocol::Value;
 
 /// Instance, output and value of a message from a device.
-pub(super) type Emission = (&'static str, u16, Value);
+pub(super) type DeviceMessage = (&'static str, u16, Value);

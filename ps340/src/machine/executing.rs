@@ -50,7 +50,7 @@ impl Machine {
         let object = self.memory.objects.find(instance).map(|id| self.memory.resolve(id));
         self.memory.set_speaker(None);
         if let Some(object) = object {
-            self.memory.network.note_speech(object);
+            self.memory.network.note_emission(object);
             self.memory.network.emit(object, 1, value, &mut self.memory.effects);
         }
         self.network_idle = false;

@@ -6,12 +6,12 @@
 use super::{
     Machine,
     executing::raster_records,
-    streams::{Piece, Reader},
+    streams::{StreamChunk, StreamReader},
 };
 use crate::{
     interpreter::Message,
     memory::Refusal,
-    port::{Cause, Fault, ObjectId, Stream},
+    port::{Cause, Fault, ObjectId, StreamKind},
 };
 use protocol::Value;
 
@@ -27,9 +27,9 @@ const BYTES_PER_UNIT: usize = 8;
 
 impl Machine {
     /// Lets bytes wait for the interpreter of a function.
-    pub(super) fn queue_stream(&mut self, function: ObjectId, stream: Stream, bytes: Box<[u8]>, fresh: bool) {
+    pub(super) fn queue_stream(&mut self, function: ObjectId, stream: StreamKind, bytes: Box<[u8]>, fresh: bool) {
         // An empty message takes room too.
-        let size = bytes.len() + size_of::<Piece>();
+        let size = bytes.len() + size_of::<StreamChunk>();
         if self.streams.bytes + size > MAX_WAITING {
             self.streams.lost += 1;
             let lost = self.streams.lost;
@@ -39,7 +39,7 @@ impl Machine {
             return self.report(Message::Function { name, fault });
         }
         self.streams.bytes += size;
-        self.streams.waiting.push_back(Piece { function, stream, bytes, fresh });
+        self.streams.waiting.push_back(StreamChunk { function, stream, bytes, fresh });
     }
 
     /// Interprets the oldest message that waits, unless one is being interpreted. Returns whether there was one.
@@ -48,7 +48,7 @@ impl Machine {
             return false;
         }
         let Some(piece) = self.streams.waiting.pop_front() else { return false };
-        self.streams.bytes -= piece.bytes.len() + size_of::<Piece>();
+        self.streams.bytes -= piece.bytes.len() + size_of::<StreamChunk>();
         self.work_left = self.work_left.saturating_sub(UNITS_PER_PIECE + (piece.bytes.len() / BYTES_PER_UNIT) as u64);
         let is_reader = |machine: &Machine, id: ObjectId| {
             let row = machine.memory.network.function(id);
@@ -69,15 +69,15 @@ impl Machine {
             return true;
         }
         if piece.fresh {
-            reader = Reader::default();
+            reader = StreamReader::default();
         }
         // The commands that a function gives are nobody's, whoever caused them.
         let speaking = self.lines.speaking.take();
         self.streams.busy = true;
         let completed = match piece.stream {
-            Stream::Text => self.interpret_text(&mut reader, &piece.bytes),
-            Stream::Binary => self.interpret_records(&mut reader, &piece.bytes),
-            Stream::Raster => raster_records(&piece.bytes, self),
+            StreamKind::Text => self.interpret_text(&mut reader, &piece.bytes),
+            StreamKind::Binary => self.interpret_records(&mut reader, &piece.bytes),
+            StreamKind::Raster => raster_records(&piece.bytes, self),
         };
         self.streams.busy = false;
         self.lines.speaking = speaking;
@@ -86,7 +86,7 @@ impl Machine {
         true
     }
 
-    fn interpret_text(&mut self, reader: &mut Reader, text: &[u8]) -> usize {
+    fn interpret_text(&mut self, reader: &mut StreamReader, text: &[u8]) -> usize {
         let mut completed = 0;
         reader.text.push(text);
         for read in reader.text.by_ref() {
@@ -95,7 +95,7 @@ impl Machine {
         completed
     }
 
-    fn interpret_records(&mut self, reader: &mut Reader, records: &[u8]) -> usize {
+    fn interpret_records(&mut self, reader: &mut StreamReader, records: &[u8]) -> usize {
         let mut completed = 0;
         let commands: Vec<_> = reader.binary.push(records).collect();
         for read in commands {

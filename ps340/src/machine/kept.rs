@@ -3,21 +3,21 @@
 use std::collections::VecDeque;
 
 /// Messages to the host that wait for the operator.
-const KEPT_MESSAGES: usize = 1000;
+const MAX_HOST_MESSAGES: usize = 1000;
 /// Bytes of them; but the latest is always kept.
-const KEPT_BYTES: usize = 1 << 20;
+const MAX_HOST_MESSAGE_BYTES: usize = 1 << 20;
 
 /// The latest messages to the host, for the operator.
 #[derive(Debug, Default)]
-pub(super) struct Kept {
+pub(super) struct HostMessages {
     messages: VecDeque<Vec<u8>>,
     bytes: usize,
 }
 
-impl Kept {
+impl HostMessages {
     /// One more message; the oldest give way.
     pub(super) fn push(&mut self, message: &[u8]) {
-        while self.messages.len() >= KEPT_MESSAGES || self.bytes + message.len() > KEPT_BYTES {
+        while self.messages.len() >= MAX_HOST_MESSAGES || self.bytes + message.len() > MAX_HOST_MESSAGE_BYTES {
             if self.pop().is_none() {
                 break;
             }

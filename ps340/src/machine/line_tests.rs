@@ -38,7 +38,7 @@ impl Room {
         outputs.iter().for_each(|output| self.hear(output));
     }
 
-    fn hear(&mut self, output: &Output) {
+    fn hear(&mut self, output: &HostOutput) {
         self.readers.get_mut(&output.line).expect("it is attached").push(&output.bytes);
     }
 

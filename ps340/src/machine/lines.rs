@@ -42,7 +42,7 @@ impl Lines {
 
     /// What is reported from now on is about the commands of a line: if it asked for messages of its own, it alone is
     /// told.
-    pub(super) fn speak_for(&mut self, line: LineId) {
+    pub(super) fn report_to(&mut self, line: LineId) {
         let own = |writer: &MessageWriter| writer.form() == MessageForm::Own;
         self.speaking = self.writers.get(&line).is_some_and(own).then_some(line);
     }
@@ -50,7 +50,7 @@ impl Lines {
     /// The lines with a writer that hear what an instance of the host line sends.
     ///
     /// - `of`: the line to which the instance belongs, if it belongs to one.
-    pub(super) fn hearers(&self, of: Option<LineId>) -> Vec<(LineId, MessageWriter)> {
+    pub(super) fn recipients(&self, of: Option<LineId>) -> Vec<(LineId, MessageWriter)> {
         let hears = |line: &LineId, writer: &MessageWriter| match of {
             Some(owner) => *line == owner,
             None => writer.form() != MessageForm::Own,

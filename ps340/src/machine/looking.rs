@@ -6,10 +6,10 @@
 
 use super::{
     Machine,
-    sight::{PictureVersion, Sight},
+    sight::{PictureVersion, VectorDisplay},
 };
 use crate::{
-    calligraphic::{Controls, DISPLAY_SIZE, Display, Refresh, Scene, Screen},
+    calligraphic::{Controls, DISPLAY_SIZE, Display, Refresh, Scene, SharedDisplay},
     picture::Picture,
     traversal,
 };
@@ -19,13 +19,13 @@ impl Machine {
     /// Takes another screen to show the picture on.
     ///
     /// - `is_watched`: whether its other owner looks at it in every frame.
-    pub fn share_screen(&mut self, screen: Arc<Screen>, is_watched: bool) {
+    pub fn share_screen(&mut self, screen: Arc<SharedDisplay>, is_watched: bool) {
         self.sight.screen = screen;
         self.sight.is_watched = is_watched;
     }
 
     /// The screen that shows the picture.
-    pub fn screen(&self) -> &Screen {
+    pub fn screen(&self) -> &SharedDisplay {
         &self.sight.screen
     }
 
@@ -80,7 +80,7 @@ impl Machine {
             self.sight.scene.version += 1;
             self.sight.scene.strokes = strokes;
         }
-        let Sight { scene, settings, controls, .. } = &mut self.sight;
+        let VectorDisplay { scene, settings, controls, .. } = &mut self.sight;
         (scene.frame, scene.settings, scene.controls) = (self.frame, *settings, *controls);
         scene
     }
@@ -90,7 +90,7 @@ impl Machine {
     /// - `size`: width and height in pixels, at most [`crate::calligraphic::MAX_SIZE`].
     pub fn vector_frame(&mut self, size: [u32; 2]) -> Vec<u8> {
         self.renew_picture();
-        self.look(Some(size), |display| display.frame().to_vec())
+        self.with_display(Some(size), |display| display.frame().to_vec())
     }
 
     /// The vector screen now: what [`Machine::vector_frame`] shows, and the window, in linear floats.
@@ -99,7 +99,7 @@ impl Machine {
     ///   no afterglow.
     pub fn vector_picture(&mut self, size: Option<[u32; 2]>) -> Picture {
         if !self.is_followed() {
-            self.update_sight();
+            self.update_display();
             if self.drawn.update.is_counted_only {
                 return self.large_picture(size);
             }
@@ -112,12 +112,12 @@ impl Machine {
             display.show(&self.visible_strokes(), 0, self.frame);
             return display.picture();
         }
-        self.look(size, Display::picture)
+        self.with_display(size, Display::picture)
     }
 
     /// A picture of so many vectors that their strokes are written as they are made, and not kept.
     fn large_picture(&self, size: Option<[u32; 2]>) -> Picture {
-        let Sight { screen, controls, .. } = &self.sight;
+        let VectorDisplay { screen, controls, .. } = &self.sight;
         let size = size.or(screen.size()).unwrap_or(DISPLAY_SIZE);
         let mut display = Display::drawn_by(screen.drawer().clone(), *controls, size);
         display.show_parts(|take| {
@@ -137,9 +137,9 @@ impl Machine {
     }
 
     /// Lets nothing refer to strokes of before, and gives the room of them back.
-    pub(super) fn shrink_sight(&mut self) {
+    pub(super) fn shrink_display(&mut self) {
         match self.sight.screen.size() {
-            Some(_) => self.look(None, |_| ()),
+            Some(_) => self.with_display(None, |_| ()),
             None => drop(self.scene()),
         }
         self.sight.screen.shrink();
@@ -147,20 +147,20 @@ impl Machine {
 
     /// How many strokes the latest scene has.
     #[cfg(test)]
-    pub(super) fn sight_strokes(&self) -> usize {
+    pub(super) fn display_strokes(&self) -> usize {
         self.sight.scene.strokes.len()
     }
 
     /// Looks at the display with the scene of now.
-    fn look<T>(&mut self, size: Option<[u32; 2]>, see: impl FnOnce(&Display) -> T) -> T {
+    fn with_display<T>(&mut self, size: Option<[u32; 2]>, see: impl FnOnce(&Display) -> T) -> T {
         self.scene();
-        self.sight.screen.look(&self.sight.scene, size, |seen| see(seen.display))
+        self.sight.screen.with_display(&self.sight.scene, size, |seen| see(seen.display))
     }
 
     /// Lets a display that remembers go along with the frame.
     pub(super) fn follow_frame(&mut self) {
         if self.sight.controls.remembers() && !self.sight.is_watched {
-            self.look(None, |_| ());
+            self.with_display(None, |_| ());
         }
     }
 }

@@ -49,7 +49,7 @@ pub use devices::Event;
 pub use host_line::PlainText;
 pub use input::{Input, Settings};
 pub use key::{Key, KeyboardMode};
-pub use outgoing::Output;
+pub use outgoing::HostOutput;
 pub use panel::Panel;
 pub use reports::REPORTS_PER_FRAME;
 pub use tablet::TabletEvent;

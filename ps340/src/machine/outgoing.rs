@@ -8,7 +8,7 @@ pub(super) const MAX_STEP_BYTES: usize = 4 << 20;
 
 /// Bytes for a host.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Output {
+pub struct HostOutput {
     /// On which line.
     pub line: LineId,
     /// Whole messages, one behind the other.
@@ -22,13 +22,13 @@ pub struct Output {
 /// What goes to each host.
 #[derive(Debug, Default)]
 pub(super) struct Outgoing {
-    outputs: BTreeMap<LineId, Output>,
+    outputs: BTreeMap<LineId, HostOutput>,
 }
 
 impl Outgoing {
     /// One more message for a host. A single one always has room.
     pub(super) fn push(&mut self, line: LineId, message: Vec<u8>) {
-        let output = self.outputs.entry(line).or_insert_with(|| Output { line, ..Output::default() });
+        let output = self.outputs.entry(line).or_insert_with(|| HostOutput { line, ..HostOutput::default() });
         if output.bytes.is_empty() {
             output.bytes = message;
         } else if output.bytes.len() + message.len() <= MAX_STEP_BYTES {
@@ -41,7 +41,7 @@ impl Outgoing {
     }
 
     /// All of it, by line; nothing is left.
-    pub(super) fn take(&mut self) -> Vec<Output> {
+    pub(super) fn take(&mut self) -> Vec<HostOutput> {
         std::mem::take(&mut self.outputs).into_values().collect()
     }
 }

@@ -8,7 +8,7 @@
 
 use super::{
     KeyboardMode, Machine,
-    tube::{CursorKey, Tube, Words, WordsKey},
+    tube::{CursorKey, Tube, TextStrokes, TextKey},
 };
 use crate::{
     interpreter::Message,
@@ -76,7 +76,7 @@ impl Machine {
 
     fn update_words(&mut self) {
         let key = self.words_key();
-        let Words { strokes, blinking } = &mut self.tube.words;
+        let TextStrokes { strokes, blinking } = &mut self.tube.words;
         *strokes = text_line(MESSAGE_ROW, self.panel.message(), self.terminal.ink());
         *blinking = key.terminal.is_some() && self.terminal.blinks();
         if let Some((_, cursor)) = key.terminal {
@@ -109,10 +109,10 @@ impl Machine {
         self.tube.words_of == Some(self.words_key()) && self.tube.message == self.panel.message()
     }
 
-    fn words_key(&self) -> WordsKey {
+    fn words_key(&self) -> TextKey {
         // The cursor of the terminal is seen while the keyboard belongs to it.
         let mark = self.keyboard.mode() != KeyboardMode::Interactive;
-        WordsKey {
+        TextKey {
             terminal: self.tube.text.then(|| (self.terminal.version(), mark)),
             lit: !self.tube.words.blinking || (self.frame / BLINK_FRAMES).is_multiple_of(2),
             ink: *self.terminal.ink(),

@@ -5,13 +5,13 @@ use super::{
     addresses::Addresses,
     host_line::HostLine,
     mailbox::Mailbox,
-    parallel_line::{Attached, ParallelLine, State},
+    parallel_line::{Attached, ParallelLine, ParallelState},
 };
 use crate::{interpreter::Message, structure::PhysicalFault};
 use protocol::{
     Name,
     parallel::{
-        AddressList, Code, Command, DONE, ERROR, Frame, INFORMATION, MAX_BLOCK_BYTES, MAX_LOOKUP, Trouble, swap,
+        AddressList, Code, CommandWord, DONE, ERROR, ParallelFrame, INFORMATION, MAX_BLOCK_BYTES, MAX_LOOKUP, ParallelError, swap,
         write_block, write_word,
     },
 };
@@ -26,16 +26,16 @@ impl ParallelLine {
         while let Some(frame) = self.frames.next() {
             let before = std::mem::take(&mut self.noise);
             match frame {
-                Frame::Word(word) => self.word(word, machine, out),
-                Frame::Block(block) => self.block(block, machine, out),
-                Frame::Reset => self.reset(0, machine, out),
-                Frame::Noise(_) => {
+                ParallelFrame::Word(word) => self.word(word, machine, out),
+                ParallelFrame::Block(block) => self.block(block, machine, out),
+                ParallelFrame::Reset => self.reset(0, machine, out),
+                ParallelFrame::Noise(_) => {
                     self.noise = before + 1;
                     machine.counters.noise += 1;
                     if before == 0 {
                         let text = "bytes on the parallel interface begin no frame and are dropped";
                         machine.report(Message::Line(text.into()));
-                        fail(0, Trouble::Command, out);
+                        fail(0, ParallelError::Command, out);
                     }
                 }
             }
@@ -43,31 +43,31 @@ impl ParallelLine {
     }
 
     fn word(&mut self, word: u16, machine: &mut Machine, out: &mut Vec<u8>) {
-        match std::mem::replace(&mut self.state, State::Idle) {
-            State::Count(command) => match check_count(command.code, word) {
-                Ok(()) => self.state = State::Flag(command, word),
+        match std::mem::replace(&mut self.state, ParallelState::Idle) {
+            ParallelState::Count(command) => match check_count(command.code, word) {
+                Ok(()) => self.state = ParallelState::Flag(command, word),
                 Err(trouble) => fail(command.word(), trouble, out),
             },
-            State::Flag(command, count) if command.code == Code::ReadNet => {
+            ParallelState::Flag(command, count) if command.code == Code::ReadNet => {
                 self.read_net(command, count, word != 0, machine, out);
             }
-            State::Flag(command, count) => self.state = State::Block(command, count, word != 0),
-            State::Block(command, _, _) => fail(command.word(), Trouble::Command, out),
+            ParallelState::Flag(command, count) => self.state = ParallelState::Block(command, count, word != 0),
+            ParallelState::Block(command, _, _) => fail(command.word(), ParallelError::Command, out),
             // While it waits, a command may be aborted, and any other gives it up too.
-            State::Idle | State::Mail(_) | State::Refresh(_, _) => match Command::from_word(word) {
+            ParallelState::Idle | ParallelState::Mail(_) | ParallelState::Refresh(_, _) => match CommandWord::from_word(word) {
                 Some(command) => self.command(command, machine, out),
-                None => fail(word & 0xf00f, Trouble::Command, out),
+                None => fail(word & 0xf00f, ParallelError::Command, out),
             },
         }
     }
 
-    fn command(&mut self, command: Command, machine: &mut Machine, out: &mut Vec<u8>) {
+    fn command(&mut self, command: CommandWord, machine: &mut Machine, out: &mut Vec<u8>) {
         let allowed = match command.code {
             Code::ReadNet | Code::WriteNet => self.attached == Some(Attached::ForAll),
             code => !code.has_transfer() || self.attached.is_some(),
         };
         if !allowed {
-            return fail(command.word(), Trouble::Command, out);
+            return fail(command.word(), ParallelError::Command, out);
         }
         match command.code {
             Code::Reset => return self.reset(command.unit, machine, out),
@@ -78,7 +78,7 @@ impl ParallelLine {
             }
             Code::Detach => self.let_go(machine),
             Code::ReadNet => {
-                self.state = State::Mail(command);
+                self.state = ParallelState::Mail(command);
                 return self.serve_mail(machine, out);
             }
             _ => {}
@@ -86,14 +86,14 @@ impl ParallelLine {
         write_word(command.word(), out);
         if command.code.has_transfer() {
             self.deadline = machine.frame + TRANSFER_FRAMES;
-            self.state = State::Count(command);
+            self.state = ParallelState::Count(command);
         }
     }
 
     fn reset(&mut self, unit: u8, machine: &mut Machine, out: &mut Vec<u8>) {
         self.let_go(machine);
-        self.state = State::Idle;
-        write_word(Command { code: Code::Reset, unit }.word(), out);
+        self.state = ParallelState::Idle;
+        write_word(CommandWord { code: Code::Reset, unit }.word(), out);
     }
 
     /// The host is no longer attached; what it began is given up.
@@ -109,13 +109,13 @@ impl ParallelLine {
 
     /// Answers RDNET if a message is there.
     pub(super) fn serve_mail(&mut self, machine: &mut Machine, out: &mut Vec<u8>) {
-        let State::Mail(command) = self.state else { return };
+        let ParallelState::Mail(command) = self.state else { return };
         let mailbox = machine.lines.mailbox(self.line);
         let lost = std::mem::take(&mut mailbox.lost);
         if !mailbox.messages.is_empty() {
             write_word(command.word(), out);
             self.deadline = machine.frame + TRANSFER_FRAMES;
-            self.state = State::Count(command);
+            self.state = ParallelState::Count(command);
         }
         if lost > 0 {
             let text = format!("{lost} messages to a host on the parallel interface were lost: it does not read them");
@@ -123,7 +123,7 @@ impl ParallelLine {
         }
     }
 
-    fn read_net(&mut self, command: Command, count: u16, swapped: bool, machine: &mut Machine, out: &mut Vec<u8>) {
+    fn read_net(&mut self, command: CommandWord, count: u16, swapped: bool, machine: &mut Machine, out: &mut Vec<u8>) {
         let mut message = machine.lines.mailbox(self.line).pop().unwrap_or_default();
         // A buffer that is too small gets the beginning, as in the library of the time.
         message.truncate(usize::from(count));
@@ -131,18 +131,18 @@ impl ParallelLine {
     }
 
     fn block(&mut self, mut block: Vec<u8>, machine: &mut Machine, out: &mut Vec<u8>) {
-        let (command, count, swapped) = match std::mem::replace(&mut self.state, State::Idle) {
-            State::Block(command, count, swapped) => (command, usize::from(count), swapped),
+        let (command, count, swapped) = match std::mem::replace(&mut self.state, ParallelState::Idle) {
+            ParallelState::Block(command, count, swapped) => (command, usize::from(count), swapped),
             state => {
                 let word = match state {
-                    State::Count(command) | State::Flag(command, _) => command.word(),
+                    ParallelState::Count(command) | ParallelState::Flag(command, _) => command.word(),
                     _ => 0,
                 };
-                return fail(word, Trouble::Command, out);
+                return fail(word, ParallelError::Command, out);
             }
         };
         if block.len() != count.next_multiple_of(2) {
-            return fail(command.word(), Trouble::ByteCount, out);
+            return fail(command.word(), ParallelError::ByteCount, out);
         }
         if swapped {
             swap(&mut block);
@@ -163,10 +163,10 @@ impl ParallelLine {
             Code::ReadPhysical => self.read_memory(&block, machine).map(|bytes| give(command, bytes, swapped, out)),
             Code::WritePhysical => self.write_memory(&block, machine).map(|()| done(command, out)),
             Code::WritePhysicalSync => {
-                self.state = State::Refresh(command, block);
+                self.state = ParallelState::Refresh(command, block);
                 Ok(())
             }
-            _ => Err(Trouble::Command),
+            _ => Err(ParallelError::Command),
         };
         if let Err(trouble) = result {
             fail(command.word(), trouble, out);
@@ -176,58 +176,58 @@ impl ParallelLine {
     /// A refresh begins: what waited for it is written. A command that takes too long is given up.
     pub(super) fn frame(&mut self, machine: &mut Machine, out: &mut Vec<u8>) {
         match &self.state {
-            State::Refresh(command, block) => {
+            ParallelState::Refresh(command, block) => {
                 match self.write_memory(block, machine) {
                     Ok(()) => done(*command, out),
                     Err(trouble) => fail(command.word(), trouble, out),
                 }
-                self.state = State::Idle;
+                self.state = ParallelState::Idle;
             }
-            State::Count(command) | State::Flag(command, _) | State::Block(command, _, _)
+            ParallelState::Count(command) | ParallelState::Flag(command, _) | ParallelState::Block(command, _, _)
                 if machine.frame >= self.deadline =>
             {
-                fail(command.word(), Trouble::Timeout, out);
-                self.state = State::Idle;
+                fail(command.word(), ParallelError::Timeout, out);
+                self.state = ParallelState::Idle;
             }
             _ => {}
         }
     }
 
-    fn look_up(&mut self, name: &[u8], machine: &Machine) -> Result<u32, Trouble> {
-        let text = std::str::from_utf8(name).map_err(|_| Trouble::Name)?;
-        let name = Name::new(text.trim_end_matches(['\0', ' '])).map_err(|_| Trouble::Name)?;
+    fn look_up(&mut self, name: &[u8], machine: &Machine) -> Result<u32, ParallelError> {
+        let text = std::str::from_utf8(name).map_err(|_| ParallelError::Name)?;
+        let name = Name::new(text.trim_end_matches(['\0', ' '])).map_err(|_| ParallelError::Name)?;
         let id = machine.memory.objects.find(name.as_str()).filter(|id| machine.memory.is_defined(*id));
-        let words = machine.memory.physical_words(id.ok_or(Trouble::Name)?);
-        self.addresses.give(&name, u32::try_from(words).map_err(|_| Trouble::Address)?)
+        let words = machine.memory.physical_words(id.ok_or(ParallelError::Name)?);
+        self.addresses.give(&name, u32::try_from(words).map_err(|_| ParallelError::Address)?)
     }
 
-    fn read_memory(&self, block: &[u8], machine: &Machine) -> Result<Vec<u8>, Trouble> {
+    fn read_memory(&self, block: &[u8], machine: &Machine) -> Result<Vec<u8>, ParallelError> {
         let (list, _) = AddressList::read(block)?;
         if 2 * list.words() > MAX_BLOCK_BYTES {
-            return Err(Trouble::ByteCount);
+            return Err(ParallelError::ByteCount);
         }
         let mut bytes = Vec::with_capacity(2 * list.words());
         for piece in &list.0 {
             let (name, offset) = self.addresses.find(piece.address)?;
-            let id = machine.memory.objects.find(name.as_str()).ok_or(Trouble::Address)?;
-            let words = machine.memory.physical_read(id, offset, piece.words.into()).map_err(trouble)?;
+            let id = machine.memory.objects.find(name.as_str()).ok_or(ParallelError::Address)?;
+            let words = machine.memory.physical_read(id, offset, piece.words.into()).map_err(parallel_error)?;
             bytes.extend(words.into_iter().flat_map(u16::to_be_bytes));
         }
         Ok(bytes)
     }
 
-    fn write_memory(&self, block: &[u8], machine: &mut Machine) -> Result<(), Trouble> {
+    fn write_memory(&self, block: &[u8], machine: &mut Machine) -> Result<(), ParallelError> {
         let (list, data) = AddressList::read(block)?;
         if data.len() != 2 * list.words() {
-            return Err(Trouble::ByteCount);
+            return Err(ParallelError::ByteCount);
         }
         let words: Vec<u16> = data.chunks_exact(2).map(|pair| u16::from_be_bytes([pair[0], pair[1]])).collect();
         let mut rest = words.as_slice();
         for piece in &list.0 {
             let (now, later) = rest.split_at(piece.words.into());
             let (name, offset) = self.addresses.find(piece.address)?;
-            let id = machine.memory.objects.find(name.as_str()).ok_or(Trouble::Address)?;
-            machine.memory.physical_write(id, offset, now).map_err(trouble)?;
+            let id = machine.memory.objects.find(name.as_str()).ok_or(ParallelError::Address)?;
+            machine.memory.physical_write(id, offset, now).map_err(parallel_error)?;
             rest = later;
         }
         Ok(())
@@ -235,24 +235,24 @@ impl ParallelLine {
 }
 
 /// Whether a command may have a byte count.
-fn check_count(code: Code, count: u16) -> Result<(), Trouble> {
+fn check_count(code: Code, count: u16) -> Result<(), ParallelError> {
     let allowed = match code {
         Code::Lookup => (1..=MAX_LOOKUP).contains(&count.into()),
         Code::ReadNet | Code::WriteNet => (1..=MAX_BLOCK_BYTES).contains(&count.into()),
         _ => count > 0 && count.is_multiple_of(2),
     };
-    if allowed { Ok(()) } else { Err(Trouble::ByteCount) }
+    if allowed { Ok(()) } else { Err(ParallelError::ByteCount) }
 }
 
-fn trouble(fault: PhysicalFault) -> Trouble {
+fn parallel_error(fault: PhysicalFault) -> ParallelError {
     match fault {
-        PhysicalFault::Outside(..) => Trouble::Address,
-        PhysicalFault::NotFinite(_) | PhysicalFault::Mark(_) => Trouble::Data,
+        PhysicalFault::Outside(..) => ParallelError::Address,
+        PhysicalFault::NotFinite(_) | PhysicalFault::Mark(_) => ParallelError::Data,
     }
 }
 
 /// Gives the host a block, with its byte count before it.
-fn give(command: Command, mut bytes: Vec<u8>, swapped: bool, out: &mut Vec<u8>) {
+fn give(command: CommandWord, mut bytes: Vec<u8>, swapped: bool, out: &mut Vec<u8>) {
     write_word(command.word() | INFORMATION, out);
     write_word(bytes.len() as u16, out);
     if bytes.len() % 2 == 1 {
@@ -265,11 +265,11 @@ fn give(command: Command, mut bytes: Vec<u8>, swapped: bool, out: &mut Vec<u8>) 
     done(command, out);
 }
 
-fn done(command: Command, out: &mut Vec<u8>) {
+fn done(command: CommandWord, out: &mut Vec<u8>) {
     write_word(command.word() | DONE, out);
 }
 
-fn fail(word: u16, trouble: Trouble, out: &mut Vec<u8>) {
+fn fail(word: u16, trouble: ParallelError, out: &mut Vec<u8>) {
     write_word(word | ERROR, out);
     write_word(trouble as u16, out);
 }

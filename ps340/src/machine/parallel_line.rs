@@ -2,18 +2,18 @@
 
 use super::{PlainText, addresses::Addresses, host_line::HostLine};
 use crate::{line::LineId, memory::MassMemory};
-use protocol::parallel::{Code, Command, FrameReader, write_word};
+use protocol::parallel::{Code, CommandWord, ParallelFrameReader, write_word};
 
 /// What the machine keeps for a host on the parallel interface.
 #[derive(Debug)]
 pub(super) struct ParallelLine {
     pub(super) line: LineId,
     pub(super) plain_text: PlainText,
-    pub(super) frames: FrameReader,
+    pub(super) frames: ParallelFrameReader,
     /// Reads what WRNET writes.
     pub(super) host: HostLine,
     pub(super) attached: Option<Attached>,
-    pub(super) state: State,
+    pub(super) state: ParallelState,
     pub(super) addresses: Addresses,
     /// The frame of the machine at which the current command is given up.
     pub(super) deadline: u64,
@@ -32,19 +32,19 @@ pub(super) enum Attached {
 
 /// What the host is to say next.
 #[derive(Debug)]
-pub(super) enum State {
+pub(super) enum ParallelState {
     /// A command.
     Idle,
     /// Nothing: RDNET waits for a message.
-    Mail(Command),
+    Mail(CommandWord),
     /// The byte count.
-    Count(Command),
+    Count(CommandWord),
     /// The swap flag.
-    Flag(Command, u16),
+    Flag(CommandWord, u16),
     /// The block.
-    Block(Command, u16, bool),
+    Block(CommandWord, u16, bool),
     /// Nothing: WRPHY_SYNC waits for the refresh.
-    Refresh(Command, Vec<u8>),
+    Refresh(CommandWord, Vec<u8>),
 }
 
 impl ParallelLine {
@@ -54,10 +54,10 @@ impl ParallelLine {
         ParallelLine {
             line,
             plain_text,
-            frames: FrameReader::default(),
+            frames: ParallelFrameReader::default(),
             host: HostLine::new(line, plain_text),
             attached: None,
-            state: State::Idle,
+            state: ParallelState::Idle,
             addresses: Addresses::default(),
             deadline: 0,
             noise: 0,

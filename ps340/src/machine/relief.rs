@@ -4,24 +4,24 @@
 //! large. When much of what was there has gone, as after INITIALIZE, that room is given back.
 
 /// Bytes by which structures and strokes must have become fewer, since they were most.
-const RELIEF_BYTES: usize = 8 << 20;
+const RELEASE_BYTES: usize = 8 << 20;
 
 /// How much there was, and whether the process should give memory back.
 #[derive(Debug, Default)]
-pub(super) struct Relief {
+pub(super) struct MemoryRelease {
     /// Bytes of structures and strokes when they were most since the latest relief.
     most: usize,
     is_due: bool,
 }
 
-impl Relief {
+impl MemoryRelease {
     /// Whether much of what was there has gone, now that there are so many bytes of structures and strokes.
-    pub(super) fn comes(&mut self, burden: usize) -> bool {
-        if burden + RELIEF_BYTES > self.most {
+    pub(super) fn is_needed(&mut self, burden: usize) -> bool {
+        if burden + RELEASE_BYTES > self.most {
             self.most = self.most.max(burden);
             return false;
         }
-        *self = Relief { most: burden, is_due: true };
+        *self = MemoryRelease { most: burden, is_due: true };
         true
     }
 
@@ -44,7 +44,7 @@ mod tests {
             machine.renew_picture();
             machine.next_frame();
             let shown = machine.vector_frame([64, 64]).chunks_exact(4).any(|pixel| pixel[1] > 0);
-            (machine.was_relieved(), shown, machine.drawn.update.strokes.capacity(), machine.sight_strokes())
+            (machine.was_relieved(), shown, machine.drawn.update.strokes.capacity(), machine.display_strokes())
         };
         let vectors = "-1,0 1,0 ".repeat(200_000);
         let (relieved, shown, room, seen) = tell(&format!("A := VECTOR_LIST {vectors}; DISPLAY A;"));

@@ -9,13 +9,13 @@
 //! - What changes while a rendering is made does not matter to it.
 //! - While a shaded rendering is made the vector screen is dark, and it stays dark until TURNONDISPLAY.
 
-use super::{Machine, renderings::UnderWay};
+use super::{Machine, renderings::RunningRendering};
 use crate::{
     functions::devices::shading::ShadingEnvironment,
     interpreter::Message,
     memory::Refusal,
     port::{ObjectId, Rendering, RenderingRequest},
-    rendering::{Facets, Outcome, RenderingFault, Task, members},
+    rendering::{Facets, RenderingResult, RenderingFault, Task, members},
     structure::NodeFault,
     traversal,
 };
@@ -113,19 +113,19 @@ impl Machine {
         if kind.is_shaded() {
             self.tube.graphics = false;
         }
-        self.renderings.task = Some(UnderWay { node, task, color });
+        self.renderings.task = Some(RunningRendering { node, task, color });
         Ok(())
     }
 
-    fn finish_rendering(&mut self, under_way: UnderWay, outcome: Outcome) {
-        let UnderWay { node, color, .. } = under_way;
+    fn finish_rendering(&mut self, under_way: RunningRendering, outcome: RenderingResult) {
+        let RunningRendering { node, color, .. } = under_way;
         let done = match outcome {
-            Outcome::Image(image) => {
+            RenderingResult::Image(image) => {
                 self.frame_buffer.paint(image.left, image.bottom, image.width, &image.pixels);
                 Ok(())
             }
-            Outcome::Lines(_) if self.memory.rendering_node(node).is_none() => return,
-            Outcome::Lines(segments) => {
+            RenderingResult::Lines(_) if self.memory.rendering_node(node).is_none() => return,
+            RenderingResult::Lines(segments) => {
                 self.memory.set_rendered(node, members(segments, color)).map_err(Failure::Refused)
             }
         };

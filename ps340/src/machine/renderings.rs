@@ -10,14 +10,14 @@ use std::collections::VecDeque;
 #[derive(Debug, Default)]
 pub(super) struct Renderings {
     pub(super) waiting: VecDeque<(ObjectId, RenderingRequest)>,
-    pub(super) task: Option<UnderWay>,
+    pub(super) task: Option<RunningRendering>,
     /// Whether a rendering was begun, or tried, since the latest frame.
     pub(super) begun: bool,
 }
 
 /// A rendering that is being made.
 #[derive(Debug)]
-pub(super) struct UnderWay {
+pub(super) struct RunningRendering {
     pub(super) node: ObjectId,
     pub(super) task: Task,
     /// Hue and saturation in force at the node.

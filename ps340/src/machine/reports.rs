@@ -43,7 +43,7 @@ impl Reports {
     }
 
     /// Keeps one more that is told. Returns whether the terminal may show it.
-    pub(super) fn keep(&mut self, text: &str) -> bool {
+    pub(super) fn log_text(&mut self, text: &str) -> bool {
         if self.log.len() >= LOG_LINES {
             self.log.pop_front();
         }
@@ -53,7 +53,7 @@ impl Reports {
     }
 
     /// Whether one more reaches ERROR, WARNING or INFORMATION, which it counts.
-    pub(super) fn is_heard(&mut self) -> bool {
+    pub(super) fn admits_one(&mut self) -> bool {
         let heard = self.emitted < REPORTS_PER_FRAME;
         *if heard { &mut self.emitted } else { &mut self.unheard } += 1;
         heard

@@ -1,12 +1,12 @@
 //! The display, and what it is to show.
 
-use crate::calligraphic::{Controls, Refresh, Scene, Screen};
+use crate::calligraphic::{Controls, Refresh, Scene, SharedDisplay};
 use std::{cell::Cell, sync::Arc};
 
 /// The display, and what it is to show.
 #[derive(Debug, Default)]
-pub(super) struct Sight {
-    pub(super) screen: Arc<Screen>,
+pub(super) struct VectorDisplay {
+    pub(super) screen: Arc<SharedDisplay>,
     /// Whether somebody else lets the screen go along with the frames.
     pub(super) is_watched: bool,
     pub(super) controls: Controls,

@@ -19,7 +19,7 @@ impl Machine {
         if self.memory.line_of(object).is_none() {
             self.lines.mailboxes.values_mut().for_each(|mailbox| mailbox.push(message));
         }
-        for (line, writer) in self.hearers(object) {
+        for (line, writer) in self.recipients(object) {
             let mut bytes = Vec::new();
             let written = if binary && writer.form() == MessageForm::Text {
                 bytes.extend_from_slice(message);
@@ -34,8 +34,8 @@ impl Machine {
     }
 
     /// The lines with a writer to which an instance of the host line sends.
-    pub(super) fn hearers(&self, object: ObjectId) -> Vec<(LineId, MessageWriter)> {
-        self.lines.hearers(self.memory.line_of(object).map(|(line, _)| line))
+    pub(super) fn recipients(&self, object: ObjectId) -> Vec<(LineId, MessageWriter)> {
+        self.lines.recipients(self.memory.line_of(object).map(|(line, _)| line))
     }
 
     /// Obeys the body of a packet on the route of messages from a host.
@@ -55,7 +55,7 @@ impl Machine {
             self.memory.close_line(line);
         }
         self.lines.writers.entry(line).or_default().set_form(form);
-        self.lines.speak_for(line);
+        self.lines.report_to(line);
         Ok(())
     }
 
@@ -77,7 +77,7 @@ impl Machine {
         if self.reports.are_few() {
             tracing::info!("{text}");
         }
-        if self.reports.keep(&text) {
+        if self.reports.log_text(&text) {
             self.show_message(&text);
         }
         if let Some(line) = self.lines.speaking {
@@ -86,7 +86,7 @@ impl Machine {
             if written.is_some_and(|written| written.is_ok()) {
                 self.outputs.push(line, bytes);
             }
-        } else if self.reports.is_heard() {
+        } else if self.reports.admits_one() {
             self.emit(vec![(instance, 1, Value::string(&text))]);
         }
     }

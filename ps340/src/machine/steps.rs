@@ -1,10 +1,10 @@
 //! How the machine moves: inputs, events and frames; the network runs until it rests.
 
 use super::{
-    Event, Input, Machine, Micros, Output, Panel, WORK_PER_STEP,
+    Event, Input, Machine, Micros, HostOutput, Panel, WORK_PER_STEP,
     devices::Devices,
-    drawn::Drawn,
-    emission::Emission,
+    drawn::LatestUpdate,
+    emission::DeviceMessage,
     host_line::HostLine,
     initial::initial_memory,
     keyboard::Keyboard,
@@ -12,14 +12,14 @@ use super::{
     renderings::Renderings,
     streams::Streams,
     time::{centiseconds, time_of_frame},
-    watch::Watch,
+    watch::Monitor,
 };
 use crate::{interpreter::Message, line::LineId, port::Effect, raster::FrameBuffer, terminal::Terminal};
 
 impl Machine {
     /// Takes the inputs, in order, at the time of the machine; then lets time run to `until` (a time in the
     /// past changes nothing). Returns what goes to the hosts.
-    pub fn step(&mut self, inputs: impl IntoIterator<Item = Input>, until: Micros) -> Vec<Output> {
+    pub fn step(&mut self, inputs: impl IntoIterator<Item = Input>, until: Micros) -> Vec<HostOutput> {
         self.work_left = WORK_PER_STEP;
         for input in inputs {
             match input {
@@ -64,14 +64,14 @@ impl Machine {
         self.account_for_reports();
         let emissions = self.devices.frame(self.frame);
         self.emit(emissions);
-        self.watch();
+        self.monitor();
         self.memory.structures.set_frame(self.frame);
         self.memory.network.advance(self.frame, centiseconds(self.frame), &mut self.memory.effects);
         self.settle();
         self.with_parallels(|parallel, machine, out| parallel.frame(machine, out));
         self.advance_renderings();
         self.settle();
-        self.update_sight();
+        self.update_display();
         self.follow_frame();
         self.relieve();
     }
@@ -91,7 +91,7 @@ impl Machine {
 
     /// Whether no function is ready to fire.
     pub fn network_rests(&self) -> bool {
-        self.network_idle && self.drawn.waiting.is_empty() && self.renderings.are_done() && self.streams.are_quiet()
+        self.network_idle && self.drawn.waiting.is_empty() && self.renderings.are_done() && self.streams.are_empty()
     }
 
     /// Makes the picture of now, with all its strokes.
@@ -102,16 +102,16 @@ impl Machine {
     }
 
     /// Brings the picture, and what is drawn over it, up to date as a frame does.
-    pub(super) fn update_sight(&mut self) {
+    pub(super) fn update_display(&mut self) {
         self.update_picture();
         self.settle();
         self.update_overlay();
     }
 
-    pub(super) fn emit(&mut self, emissions: Vec<Emission>) {
+    pub(super) fn emit(&mut self, emissions: Vec<DeviceMessage>) {
         for (instance, output, value) in emissions {
             if let Some(id) = self.memory.objects.find(instance) {
-                self.memory.network.note_speech(id);
+                self.memory.network.note_emission(id);
                 self.memory.network.emit(id, output, value, &mut self.memory.effects);
             }
         }
@@ -121,7 +121,7 @@ impl Machine {
     fn receive(&mut self, line: LineId, bytes: &[u8]) {
         self.activity();
         self.counters.bytes_in += bytes.len() as u64;
-        self.lines.speak_for(line);
+        self.lines.report_to(line);
         if let Some(mut host) = self.lines.hosts.remove(&line) {
             host.receive(bytes, self);
             self.lines.hosts.insert(line, host);
@@ -151,7 +151,7 @@ impl Machine {
     }
 
     fn detach(&mut self, line: LineId) {
-        self.lines.speak_for(line);
+        self.lines.report_to(line);
         self.keyboard.detach(line);
         self.lines.mailboxes.remove(&line);
         let host = self.lines.hosts.remove(&line).and_then(|mut host| host.abandon(&mut self.memory));
@@ -212,23 +212,23 @@ impl Machine {
         self.devices = Devices::default();
         self.panel = Panel::default();
         self.frame_buffer = FrameBuffer::default();
-        self.drawn = Drawn::default();
+        self.drawn = LatestUpdate::default();
         self.renderings = Renderings::default();
         self.streams = Streams::default();
         self.keyboard = Keyboard::default();
         self.terminal = Terminal::default();
         self.tube = self.tube.restarted();
-        self.watch = Watch::default();
+        self.watch = Monitor::default();
         self.switch_keyboard(self.settings.keyboard);
         self.reports.push(Message::Information("the machine was started again".into()));
     }
 
     /// Gives back the room of what has gone, if that is much.
     fn relieve(&mut self) {
-        if self.relief.comes(self.memory.bytes() + size_of_val(self.drawn.update.strokes.as_slice())) {
+        if self.relief.is_needed(self.memory.bytes() + size_of_val(self.drawn.update.strokes.as_slice())) {
             self.memory.shrink();
             self.drawn.update.strokes.shrink_to_fit();
-            self.shrink_sight();
+            self.shrink_display();
         }
     }
 

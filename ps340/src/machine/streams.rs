@@ -2,7 +2,7 @@
 
 use crate::{
     interpreter::Interpreter,
-    port::{ObjectId, Stream},
+    port::{ObjectId, StreamKind},
 };
 use protocol::command::{BinaryDecoder, CommandReader};
 use std::collections::{BTreeMap, VecDeque};
@@ -10,8 +10,8 @@ use std::collections::{BTreeMap, VecDeque};
 /// The interpreters of functions, and what waits for them.
 #[derive(Debug, Default)]
 pub(super) struct Streams {
-    pub(super) interpreters: BTreeMap<ObjectId, Reader>,
-    pub(super) waiting: VecDeque<Piece>,
+    pub(super) interpreters: BTreeMap<ObjectId, StreamReader>,
+    pub(super) waiting: VecDeque<StreamChunk>,
     pub(super) bytes: usize,
     pub(super) lost: u64,
     /// Whether a piece is being interpreted.
@@ -20,16 +20,16 @@ pub(super) struct Streams {
 
 /// A message that waits.
 #[derive(Debug)]
-pub(super) struct Piece {
+pub(super) struct StreamChunk {
     pub(super) function: ObjectId,
-    pub(super) stream: Stream,
+    pub(super) stream: StreamKind,
     pub(super) bytes: Box<[u8]>,
     pub(super) fresh: bool,
 }
 
 /// The readers of a function, and its interpreter.
 #[derive(Debug, Default)]
-pub(super) struct Reader {
+pub(super) struct StreamReader {
     pub(super) text: CommandReader,
     pub(super) binary: BinaryDecoder,
     pub(super) interpreter: Interpreter,
@@ -37,7 +37,7 @@ pub(super) struct Reader {
 
 impl Streams {
     /// Whether nothing waits.
-    pub(super) fn are_quiet(&self) -> bool {
+    pub(super) fn are_empty(&self) -> bool {
         self.waiting.is_empty()
     }
 }

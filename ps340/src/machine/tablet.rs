@@ -13,7 +13,7 @@
 //! rolls, chords and changes of the network come between; that a held code is not repeated, since a program that
 //! connects meanwhile would take it for a press without a position.
 
-use super::emission::Emission;
+use super::emission::DeviceMessage;
 use crate::port::TabletCommand;
 use glam::DVec2;
 use protocol::Value;
@@ -56,7 +56,7 @@ impl Tablet {
     }
 
     /// A command, and what it makes the tablet send.
-    pub(super) fn command(&mut self, command: TabletCommand) -> Vec<Emission> {
+    pub(super) fn command(&mut self, command: TabletCommand) -> Vec<DeviceMessage> {
         match command {
             TabletCommand::Trigger if self.in_range => vec![self.here(STREAM)],
             TabletCommand::Trigger => Vec::new(),
@@ -68,7 +68,7 @@ impl Tablet {
     }
 
     /// What an event makes TABLETIN send.
-    pub(super) fn event(&mut self, event: TabletEvent) -> Vec<Emission> {
+    pub(super) fn event(&mut self, event: TabletEvent) -> Vec<DeviceMessage> {
         let mut out = Vec::new();
         match event {
             TabletEvent::Move(at) if at.iter().all(|c| c.is_finite()) => {
@@ -101,14 +101,14 @@ impl Tablet {
     }
 
     /// Comes into range, if it was not.
-    fn enter(&mut self, out: &mut Vec<Emission>) {
+    fn enter(&mut self, out: &mut Vec<DeviceMessage>) {
         if !std::mem::replace(&mut self.in_range, true) {
             out.push((NAME, PROXIMITY, Value::Boolean(true)));
         }
     }
 
     /// A press somewhere off the tablet is one at the last place. Ours.
-    fn press(&mut self, buttons: u8, out: &mut Vec<Emission>) {
+    fn press(&mut self, buttons: u8, out: &mut Vec<DeviceMessage>) {
         if !self.in_range {
             out.extend(self.event(TabletEvent::Move(self.position)));
         }
@@ -135,19 +135,19 @@ impl Tablet {
         }
     }
 
-    fn release(&mut self, out: &mut Vec<Emission>) {
+    fn release(&mut self, out: &mut Vec<DeviceMessage>) {
         if std::mem::take(&mut self.buttons) != 0 {
             out.push(code(0));
             out.push((NAME, SWITCH, Value::Boolean(false)));
         }
     }
 
-    fn here(&self, output: u16) -> Emission {
+    fn here(&self, output: u16) -> DeviceMessage {
         (NAME, output, Value::Vector2(DVec2::from_array(self.position)))
     }
 }
 
-fn code(buttons: u8) -> Emission {
+fn code(buttons: u8) -> DeviceMessage {
     (NAME, BUTTONS, Value::Integer(buttons.into()))
 }
 

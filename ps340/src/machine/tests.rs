@@ -21,7 +21,7 @@ fn tell(machine: &mut Machine, text: &str) -> Vec<String> {
 }
 
 /// The messages of an output, with their line ends.
-fn messages(output: &Output) -> Vec<String> {
+fn messages(output: &HostOutput) -> Vec<String> {
     String::from_utf8_lossy(&output.bytes).split_inclusive('\n').map(str::to_owned).collect()
 }
 

@@ -14,8 +14,8 @@ pub(super) struct Tube {
     pub(super) text: bool,
     /// Whether nothing is seen, since nobody is there.
     pub(super) blanked: bool,
-    pub(super) words: Words,
-    pub(super) words_of: Option<WordsKey>,
+    pub(super) words: TextStrokes,
+    pub(super) words_of: Option<TextKey>,
     pub(super) message: Vec<u8>,
     pub(super) cursor: Update,
     pub(super) cursor_of: Option<CursorKey>,
@@ -27,14 +27,14 @@ pub(super) struct Tube {
 
 /// Strokes of terminal and message line.
 #[derive(Debug, Default)]
-pub(super) struct Words {
+pub(super) struct TextStrokes {
     pub(super) strokes: Vec<Stroke>,
     pub(super) blinking: bool,
 }
 
 /// Of what the strokes of terminal and message line were made, but for the message.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct WordsKey {
+pub(super) struct TextKey {
     /// Version of the terminal, and whether its cursor is drawn; none if it is not seen.
     pub(super) terminal: Option<(u64, bool)>,
     /// Whether blinking characters are seen.
@@ -55,7 +55,7 @@ impl Default for Tube {
             graphics: true,
             text: true,
             blanked: false,
-            words: Words::default(),
+            words: TextStrokes::default(),
             words_of: None,
             message: Vec::new(),
             cursor: Update::default(),

@@ -10,7 +10,7 @@ use crate::{
     port::ObjectId,
     structure::{Node, Operation},
     traversal::{
-        self, MAX_KEPT, PickHit, PickRequest, Requests, Stroke, Transformed, Trouble, Update,
+        self, MAX_STORED_VECTORS, PickHit, PickRequest, Requests, Stroke, Transformed, UpdateFault, Update,
         write_back::{self, RECORD, RECORDS_PER_MESSAGE},
     },
 };
@@ -32,13 +32,13 @@ impl Machine {
     /// A picture that stands still costs nothing. One of many vectors is drawn when somebody looks; till then its vectors
     /// are counted, so that frames pass and orders are answered in time.
     pub(super) fn update_picture(&mut self) {
-        let is_looked_at = self.is_followed() || self.drawn.waiting.want_strokes();
-        self.update_picture_of(if is_looked_at { MAX_KEPT } else { ALWAYS_DRAWN });
+        let is_looked_at = self.is_followed() || self.drawn.waiting.need_strokes();
+        self.update_picture_of(if is_looked_at { MAX_STORED_VECTORS } else { ALWAYS_DRAWN });
     }
 
     /// Draws the picture with all its strokes, for somebody who looks.
     pub(super) fn draw_picture(&mut self) {
-        self.update_picture_of(MAX_KEPT);
+        self.update_picture_of(MAX_STORED_VECTORS);
     }
 
     /// Brings the picture up to date.
@@ -54,7 +54,7 @@ impl Machine {
         }
         let version = self.memory.structures.version();
         let stays = self.drawn.update.next_change.is_none_or(|change| self.frame < change);
-        let is_there = !self.drawn.update.is_counted_only || most < MAX_KEPT;
+        let is_there = !self.drawn.update.is_counted_only || most < MAX_STORED_VECTORS;
         if self.drawn.version == Some(version) && self.drawn.waiting.is_empty() && stays && is_there {
             return;
         }
@@ -73,7 +73,7 @@ impl Machine {
         if !update.is_counted_only {
             self.counters.strokes = update.strokes.len() as u64;
         }
-        self.say_trouble(&update);
+        self.report_fault(&update);
         for request in waiting.transforms {
             self.answer_transform(request, &update);
         }
@@ -95,9 +95,9 @@ impl Machine {
     }
 
     /// Reports what an update left out, unless it was said of the update before.
-    fn say_trouble(&mut self, update: &Update) {
+    fn report_fault(&mut self, update: &Update) {
         match update.trouble.filter(|trouble| self.drawn.update.trouble != Some(*trouble)) {
-            Some(Trouble::ContainsItself(id)) => {
+            Some(UpdateFault::ContainsItself(id)) => {
                 let name = self.memory.title(id);
                 self.report(Message::Structure(format!("{name} contains itself; it is drawn once")));
             }
@@ -107,12 +107,12 @@ impl Machine {
     }
 
     /// Whether a function is still there: its object may have become another since it asked.
-    fn still_asks(&self, function: ObjectId, name: &str) -> bool {
+    fn is_pending(&self, function: ObjectId, name: &str) -> bool {
         self.memory.network.function(function).is_some_and(|row| row.name == name)
     }
 
     fn answer_transform(&mut self, request: TransformRequest, update: &Update) {
-        if !self.still_asks(request.function, "XFORMDATA") {
+        if !self.is_pending(request.function, "XFORMDATA") {
             return;
         }
         let node = self.memory.target(&request.node);
@@ -157,7 +157,7 @@ impl Machine {
     }
 
     fn answer_pick(&mut self, pick: Pick, hit: Option<&PickHit>) {
-        if !self.still_asks(pick.function, "PICK") {
+        if !self.is_pending(pick.function, "PICK") {
             return;
         }
         let Some(hit) = hit else {

@@ -9,7 +9,7 @@ const MAX_WAITING: usize = 1_000;
 
 /// Requests that wait for the next update.
 #[derive(Debug, Default)]
-pub(super) struct Waiting {
+pub(super) struct PendingRequests {
     pub(super) transforms: Vec<TransformRequest>,
     pub(super) picks: Vec<Pick>,
     /// Nodes whose picture is to be written back; none for all that is displayed.
@@ -44,14 +44,14 @@ pub(super) struct Pick {
     pub(super) frames: u32,
 }
 
-impl Waiting {
+impl PendingRequests {
     /// Whether nothing waits.
     pub(super) fn is_empty(&self) -> bool {
         self.transforms.is_empty() && self.picks.is_empty() && self.write_backs.is_empty()
     }
 
     /// Whether the strokes of the picture themselves are wanted.
-    pub(super) fn want_strokes(&self) -> bool {
+    pub(super) fn need_strokes(&self) -> bool {
         !self.write_backs.is_empty()
     }
 

@@ -3,25 +3,25 @@
 use super::FRAMES_PER_SECOND;
 
 /// Percent by which the use of memory must fall before an alarm speaks again. Ours.
-const RELIEF: f64 = 5.0;
+const HYSTERESIS: f64 = 5.0;
 
 /// What was seen last.
 #[derive(Debug, Default)]
-pub(super) struct Watch {
+pub(super) struct Monitor {
     /// The limit at which each alarm spoke, while that lasts.
     alerted: [Option<f64>; 2],
     /// The frame at which somebody last did something.
     active: u64,
 }
 
-impl Watch {
+impl Monitor {
     /// Whether an alarm speaks: when the use of memory reaches its limit, once until it falls or the limit changes.
     ///
     /// - `place`: which of the alarms.
     /// - `percent`: of the memory that is in use.
     pub(super) fn alarms(&mut self, place: usize, percent: f64, limit: f64) -> bool {
         let alerted = &mut self.alerted[place];
-        if percent < limit - RELIEF || alerted.is_some_and(|before| before != limit) {
+        if percent < limit - HYSTERESIS || alerted.is_some_and(|before| before != limit) {
             *alerted = None;
         }
         let speaks = percent >= limit && alerted.is_none();

@@ -22,7 +22,7 @@ impl Machine {
     }
 
     /// Looks after memory and screen, once a frame.
-    pub(super) fn watch(&mut self) {
+    pub(super) fn monitor(&mut self) {
         let percent = self.memory.bytes() as f64 / MASS_MEMORY as f64 * 100.0;
         for (place, name) in ALERTS.into_iter().enumerate() {
             let Some(limit) = self.constant(name, 1) else { continue };

@@ -15,7 +15,7 @@ use crate::port::ObjectId;
 use std::collections::HashSet;
 
 /// Deleted objects that are kept in any case before the references to them are cleared.
-const KEPT: usize = 1024;
+const RETAINED_CAPACITY: usize = 1024;
 
 impl MassMemory {
     /// Takes definitions and names away, those of the nodes that were named inside them too, and the arcs to and from
@@ -30,7 +30,7 @@ impl MassMemory {
             }
         }
         self.network.retain_arcs(|_, _, to| !gone.contains(&to.object));
-        if self.objects.deleted() > KEPT.max(self.objects.len() / 2) {
+        if self.objects.deleted() > RETAINED_CAPACITY.max(self.objects.len() / 2) {
             self.reuse_deleted();
         }
     }
@@ -59,7 +59,7 @@ mod tests {
             largest = (members.len().max(largest.0), segment.index().max(largest.1));
             memory.structures.audit().unwrap_or_else(|text| panic!("{cycle}: {text}"));
         }
-        assert!(largest.0 <= KEPT + 1 && largest.1 <= 2 * KEPT, "{largest:?}");
+        assert!(largest.0 <= RETAINED_CAPACITY + 1 && largest.1 <= 2 * RETAINED_CAPACITY, "{largest:?}");
     }
 
     #[test]

@@ -6,14 +6,14 @@ use std::collections::BTreeMap;
 /// The instances of all lines that have some.
 #[derive(Debug, Default)]
 pub(super) struct LineInstances {
-    pub(super) lines: BTreeMap<LineId, Vec<Instance>>,
+    pub(super) lines: BTreeMap<LineId, Vec<LineInstance>>,
     /// The line whose command is carried out.
     pub(super) speaker: Option<LineId>,
 }
 
 /// One instance of a line.
 #[derive(Debug)]
-pub(super) struct Instance {
+pub(super) struct LineInstance {
     /// The initial instance with the name.
     pub(super) shared: ObjectId,
     /// The one of the line.

@@ -7,7 +7,7 @@ use super::{
     line_instances::LineInstances,
 };
 use crate::{
-    functions::{self, devices::Initial},
+    functions::{self, devices::InitialInstance},
     network::Network,
     objects::Objects,
     port::{Effect, ObjectId},
@@ -156,7 +156,7 @@ impl MassMemory {
     ///
     /// # Errors
     /// [`Refusal`], if the table of initial instances is wrong.
-    pub fn define_initial(&mut self, initial: &Initial) -> Result<ObjectId, Refusal> {
+    pub fn define_initial(&mut self, initial: &InitialInstance) -> Result<ObjectId, Refusal> {
         let row = initial.function;
         let type_name = || Name::new(row.name).map_err(|_| Refusal::Full);
         let name = Name::new(&initial.name).map_err(|_| Refusal::Full)?;

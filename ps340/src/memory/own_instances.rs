@@ -4,9 +4,9 @@
 //! of its own has each of them once more, without a name: in its commands the names denote these. So a program need not
 //! be written in another way, and what its networks send reaches nobody else. Ours.
 
-use super::{MassMemory, Refusal, line_instances::Instance};
+use super::{MassMemory, Refusal, line_instances::LineInstance};
 use crate::{
-    functions::devices::{Initial, of_line},
+    functions::devices::{InitialInstance, of_line},
     port::{LineId, ObjectId},
 };
 use std::collections::HashSet;
@@ -28,10 +28,10 @@ impl MassMemory {
         made
     }
 
-    fn instance_of_line(&mut self, line: LineId, initial: &Initial) -> Result<(), Refusal> {
+    fn instance_of_line(&mut self, line: LineId, initial: &InitialInstance) -> Result<(), Refusal> {
         let Some(shared) = self.objects.find(&initial.name) else { return Ok(()) };
         let own = self.objects.anonymous().map_err(|_| Refusal::Full)?;
-        self.line_instances.lines.entry(line).or_default().push(Instance { shared, own });
+        self.line_instances.lines.entry(line).or_default().push(LineInstance { shared, own });
         // The rows and sizes are those of the initial instances, which were made in the same way.
         self.network.define(own, initial.function, initial.device).map_err(|_| Refusal::Full)
     }

@@ -17,12 +17,12 @@ pub struct Destination {
 
 /// The arcs that leave one output. The first lies here, since most outputs have one only.
 #[derive(Debug, Default)]
-pub(super) struct Output {
+pub(super) struct OutputArcs {
     first: Option<Destination>,
     more: Vec<Destination>,
 }
 
-impl Output {
+impl OutputArcs {
     /// How many arcs leave the output.
     #[inline]
     pub(super) fn len(&self) -> usize {
@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn arcs_keep_their_order_and_come_once() {
-        let mut output = Output::default();
+        let mut output = OutputArcs::default();
         for object in [3, 1, 2, 1, 3] {
             assert!(output.connect(to(object)));
         }
@@ -102,7 +102,7 @@ mod tests {
 
     #[test]
     fn fan_out_has_a_limit() {
-        let mut output = Output::default();
+        let mut output = OutputArcs::default();
         assert!((0..MAX_ARCS as u32).all(|object| output.connect(to(object))));
         assert!(!output.connect(to(u32::MAX)));
         assert!(output.connect(to(5)), "an arc that exists is no new one");

@@ -38,7 +38,7 @@ impl Network {
         }
         let kept = self.string_bytes;
         agree(kept == string_bytes, || format!("{string_bytes} bytes of strings wait, not {kept}"))?;
-        let lent = self.backlog.lent();
+        let lent = self.backlog.capacity_in_use();
         agree((queues..=filled).contains(&lent), || format!("{lent} queues are lent, for {queues} to {filled} inputs"))
     }
 }

@@ -3,7 +3,7 @@
 use super::*;
 use crate::{
     functions::{FunctionRow, Rule, Shape, all, devices},
-    port::{Cause, Effect, Fault, Literal, ObjectId, Role},
+    port::{Cause, Effect, Fault, Literal, ObjectId, QueueRole},
 };
 use protocol::Value;
 use protocol::command::Input;
@@ -86,7 +86,7 @@ fn names_are_unique_and_rows_are_described() {
         assert!(is_initial || row.clock.is_some() || !row.examples.is_empty(), "{} has no example", row.name);
         for port in row.inputs {
             assert!(!port.summary.is_empty(), "{} has an input without a summary", row.name);
-            if let Role::Default(value) = port.role {
+            if let QueueRole::Default(value) = port.role {
                 assert!(port.kinds.contains(value.value().kind()), "a default of {} is no such kind", row.name);
             }
         }

@@ -91,7 +91,7 @@ fn of_a_million_messages_to_one_input_the_first_ten_thousand_wait() {
     assert_eq!((port.len(), port.lost(), bench.network.counters().lost), (MAX_QUEUE, lost, lost));
     assert!(port.messages().zip(0..).all(|(message, i)| *message == Value::Integer(i)), "in their order");
     bench.define("A:=F:ADD");
-    assert_eq!((bench.network.port(a, 1).unwrap().lost(), bench.network.backlog.lent()), (0, 0));
+    assert_eq!((bench.network.port(a, 1).unwrap().lost(), bench.network.backlog.capacity_in_use()), (0, 0));
     let mut drained = Bench::default();
     drained.define("A:=F:NOP").connect("A<1>:<1>X");
     let a = drained.id("A");
@@ -134,7 +134,7 @@ fn a_hundred_thousand_functions_fire_in_the_order_in_which_they_became_ready() {
 fn redefinition_and_deletion_in_the_middle_of_a_run() {
     let (mut network, mut effects) = chain(100);
     network.send(ObjectId(0), Input::Number(1), Value::Integer(0), &mut effects);
-    assert_eq!(network.run(50, &mut effects), Ran { firings: 50, work: 50, idle: false, stopped: None });
+    assert_eq!(network.run(50, &mut effects), RunReport { firings: 50, work: 50, idle: false, stopped: None });
     // 50 is ready: it loses its message, and does not fire.
     network.define(ObjectId(50), find("NOP").unwrap(), None).unwrap();
     assert!(network.run(50, &mut effects).idle);

@@ -2,7 +2,7 @@
 
 use super::{
     Destination,
-    arcs::Output,
+    arcs::OutputArcs,
     instance::Instance,
     instruments::Instruments,
     pool::{Pool, Run},
@@ -26,9 +26,9 @@ pub struct Network {
     pub(super) ports: Pool<Port>,
     /// Messages behind the first at each port.
     pub(super) backlog: Backlog,
-    pub(super) outputs: Pool<Output>,
+    pub(super) outputs: Pool<OutputArcs>,
     /// Arcs that leave objects that are no functions (yet), by object and output.
-    pub(super) outside: BTreeMap<(ObjectId, u16), Output>,
+    pub(super) outside: BTreeMap<(ObjectId, u16), OutputArcs>,
     /// Those that can fire, in the order in which they became ready. An instance stands here once at most; if it
     /// is made anew, it keeps its place.
     pub(super) ready: Ready,
@@ -40,7 +40,7 @@ pub struct Network {
     pub(super) string_bytes: usize,
     /// Messages lost at each input that ever lost one.
     pub(super) lost: BTreeMap<(ObjectId, u16), u64>,
-    pub(super) counters: Counters,
+    pub(super) counters: NetworkCounters,
     pub(super) instruments: Option<Box<Instruments>>,
     pub(super) frame: u64,
     pub(super) centiseconds: u64,
@@ -48,7 +48,7 @@ pub struct Network {
 
 /// What a network did since it was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub struct Counters {
+pub struct NetworkCounters {
     /// Firings.
     pub firings: u64,
     /// Messages that arrived at an input or left as an effect.
@@ -77,7 +77,7 @@ impl Network {
             outbox: None,
             string_bytes: 0,
             lost: BTreeMap::new(),
-            counters: Counters { firings: 0, deliveries: 0, lost: 0 },
+            counters: NetworkCounters { firings: 0, deliveries: 0, lost: 0 },
             instruments: None,
             frame: 0,
             centiseconds: 0,
@@ -141,7 +141,7 @@ impl Network {
             port.abandon(&mut self.backlog);
         }
         self.ports.release(ports, || Port::UNUSED);
-        self.outputs.release(outputs, Output::default);
+        self.outputs.release(outputs, OutputArcs::default);
         if row.clock.is_some() {
             self.clocks.retain(|&clock| clock != id);
         }
@@ -197,7 +197,7 @@ impl Network {
     }
 
     /// Forgets the outputs of an object that is no function for which `goes` is true.
-    fn drop_outside(&mut self, source: ObjectId, goes: impl Fn(&Output) -> bool) {
+    fn drop_outside(&mut self, source: ObjectId, goes: impl Fn(&OutputArcs) -> bool) {
         let range = self.outside.range((source, 0)..=(source, u16::MAX));
         let gone: Vec<(ObjectId, u16)> = range.filter(|(_, arcs)| goes(arcs)).map(|(key, _)| *key).collect();
         for key in gone {
@@ -239,7 +239,7 @@ impl Network {
     }
 
     /// What the network did since it was made.
-    pub const fn counters(&self) -> Counters {
+    pub const fn counters(&self) -> NetworkCounters {
         self.counters
     }
 
@@ -258,11 +258,11 @@ impl Network {
     /// Notes in a function where the only arc from output 1 ends, after its arcs have changed.
     pub(super) fn note_sole_arc(&mut self, id: ObjectId) {
         if let Some(instance) = self.instances.get_mut(id.index()) {
-            instance.sole = self.outputs.get(instance.outputs).first().and_then(Output::sole);
+            instance.sole = self.outputs.get(instance.outputs).first().and_then(OutputArcs::sole);
         }
     }
 
-    pub(super) fn output_mut(&mut self, source: ObjectId, output: u16) -> Option<&mut Output> {
+    pub(super) fn output_mut(&mut self, source: ObjectId, output: u16) -> Option<&mut OutputArcs> {
         match self.instance(source).map(|instance| instance.outputs) {
             Some(run) => self.outputs.get_mut(run).get_mut(usize::from(output).wrapping_sub(1)),
             None => Some(self.outside.entry((source, output)).or_default()),

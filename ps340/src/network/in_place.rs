@@ -2,7 +2,7 @@
 
 use super::Network;
 use crate::{
-    functions::Order,
+    functions::QueuePosition,
     port::{Arrival, Effect, ObjectId},
 };
 
@@ -47,13 +47,13 @@ impl Network {
             let (Some(in_place), true) = (row.in_place, source.is_ready()) else { break };
             let inputs = source.ports.range().start;
             let (message, constant) = match order {
-                Order::MessageFirst => (inputs, inputs + 1),
-                Order::ConstantFirst => (inputs + 1, inputs),
+                QueuePosition::MessageFirst => (inputs, inputs + 1),
+                QueuePosition::ConstantFirst => (inputs + 1, inputs),
             };
             // An arc from an instance to itself is of another sort.
             let pair = instances.get_disjoint_mut([object.index(), arc.object.index()]);
             let Ok([source, target]) = pair else { break };
-            let mut arrival = Arrival::Kept;
+            let mut arrival = Arrival::Queued;
             let queue = if let Some(place) = target.input(arc.input) {
                 let places = [message, constant, target.ports.range().start + place];
                 let Ok([queue, constant, port]) = ports.get_disjoint_mut(places) else { break };
@@ -68,7 +68,7 @@ impl Network {
                 match arrival {
                     Arrival::Awaited => target.note_arrival(port.is_active()),
                     Arrival::Lost => end = End::Lost(arc.object, place),
-                    Arrival::Kept => {}
+                    Arrival::Queued => {}
                 }
                 queue
             } else if target.row.is_none() {
@@ -106,7 +106,7 @@ mod tests {
     use super::*;
     use crate::{
         functions::{all, find},
-        network::Counters,
+        network::NetworkCounters,
         port::{
             Literal::{self, I, M4, R},
             MAX_QUEUE,
@@ -131,7 +131,7 @@ mod tests {
     }
 
     /// What comes of messages for F, by the short way or, since somebody looks on, by the long one.
-    fn outcome(mut network: Network, sends: &[(u32, Literal)], watched: bool) -> (Vec<Effect>, Counters) {
+    fn outcome(mut network: Network, sends: &[(u32, Literal)], watched: bool) -> (Vec<Effect>, NetworkCounters) {
         let mut effects = Vec::new();
         network.count_activity(watched);
         for &(input, value) in sends {

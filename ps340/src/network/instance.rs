@@ -2,7 +2,7 @@
 
 use super::{Destination, pool::Run};
 use crate::{
-    functions::{FunctionRow, Order, Rule},
+    functions::{FunctionRow, QueuePosition, Rule},
     port::KindSet,
     port::Port,
 };
@@ -30,7 +30,7 @@ pub(super) struct Instance {
     /// Number of inputs up to the last active one.
     pub(super) active: u8,
     /// The inputs, if it has two, one queue and one constant, and a row that can work in place.
-    pub(super) in_place: Option<Order>,
+    pub(super) in_place: Option<QueuePosition>,
     /// The n of a family.
     pub(super) size: u16,
     /// What it waits for: one for each active input without a message, much more for constants.
@@ -90,8 +90,8 @@ impl Instance {
         self.active = inputs.iter().rposition(Port::is_active).map_or(0, |place| place as u8 + 1);
         self.in_place = match inputs {
             _ if self.row.is_none_or(|row| row.in_place.is_none()) => None,
-            [first, second] if first.is_active() && !second.is_active() => Some(Order::MessageFirst),
-            [first, second] if second.is_active() && !first.is_active() => Some(Order::ConstantFirst),
+            [first, second] if first.is_active() && !second.is_active() => Some(QueuePosition::MessageFirst),
+            [first, second] if second.is_active() && !first.is_active() => Some(QueuePosition::ConstantFirst),
             _ => None,
         };
         let queues = active.clone().count() as u16;

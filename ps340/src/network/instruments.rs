@@ -2,7 +2,7 @@
 
 use super::{
     Destination,
-    observe::{Observer, Outcome, Source},
+    observe::{Observer, Delivery, ArcSource},
 };
 use crate::port::ObjectId;
 use protocol::Value;
@@ -39,13 +39,13 @@ pub struct Trace {
     /// How many firings the network had begun when it passed.
     pub firing: u64,
     /// Where it came from; none for what a command sends.
-    pub from: Option<Source>,
+    pub from: Option<ArcSource>,
     /// Where it went.
     pub to: Destination,
     /// The message; of a string the first [`TRACED_BYTES`] bytes.
     pub value: Value,
     /// What became of it.
-    pub outcome: Outcome,
+    pub outcome: Delivery,
 }
 
 /// Which messages are traced.
@@ -105,7 +105,7 @@ impl Instruments {
 }
 
 impl Observer for Instruments {
-    const LOOKS: bool = true;
+    const IS_ACTIVE: bool = true;
 
     fn stops_before(&mut self, object: ObjectId) -> bool {
         let passes = std::mem::take(&mut self.pass) && !self.held;
@@ -120,7 +120,7 @@ impl Observer for Instruments {
         }
     }
 
-    fn speaks(&mut self, object: ObjectId) {
+    fn emits(&mut self, object: ObjectId) {
         if let Some(activity) = self.of(object) {
             activity.firings += 1;
         }
@@ -132,7 +132,7 @@ impl Observer for Instruments {
         }
     }
 
-    fn copy(&self, from: Option<Source>, to: Destination, message: &Value) -> Option<Value> {
+    fn copy(&self, from: Option<ArcSource>, to: Destination, message: &Value) -> Option<Value> {
         let wanted = match &self.traced {
             Traced::Nothing => false,
             Traced::Everything => true,
@@ -144,21 +144,21 @@ impl Observer for Instruments {
         })
     }
 
-    fn passes(&mut self, from: Option<Source>, to: Destination, message: Option<Value>, outcome: Outcome) {
+    fn delivered(&mut self, from: Option<ArcSource>, to: Destination, message: Option<Value>, outcome: Delivery) {
         if let Some(activity) = from.and_then(|from| self.of(from.object)) {
             activity.sent += 1;
         }
-        if outcome != Outcome::Left
+        if outcome != Delivery::Left
             && let Some(activity) = self.of(to.object)
         {
             match outcome {
-                Outcome::Arrived { waiting } => {
+                Delivery::Arrived { waiting } => {
                     activity.received += 1;
                     activity.longest_queue = activity.longest_queue.max(waiting);
                 }
-                Outcome::Lost => activity.lost += 1,
-                Outcome::Refused => activity.refused += 1,
-                Outcome::Left => {}
+                Delivery::Lost => activity.lost += 1,
+                Delivery::Refused => activity.refused += 1,
+                Delivery::Left => {}
             }
         }
         if let Some(value) = message {

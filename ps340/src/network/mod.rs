@@ -43,8 +43,8 @@ mod tests;
 mod watch_tests;
 
 pub use arcs::{Destination, MAX_ARCS};
-pub use graph::{Counters, MAX_STRING_BYTES, Network};
+pub use graph::{NetworkCounters, MAX_STRING_BYTES, Network};
 pub use instruments::{Activity, TRACE_LINES, TRACED_BYTES, Trace, Traced};
-pub use observe::{Outcome, Source};
-pub use run::Ran;
+pub use observe::{Delivery, ArcSource};
+pub use run::RunReport;
 pub use snapshot::{FunctionView, InputView};

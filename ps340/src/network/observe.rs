@@ -6,7 +6,7 @@ use protocol::Value;
 
 /// Where an arc begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Source {
+pub struct ArcSource {
     /// Which object.
     pub object: ObjectId,
     /// Which of its outputs.
@@ -15,7 +15,7 @@ pub struct Source {
 
 /// What became of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
+pub enum Delivery {
     /// It arrived at an input of a function, where so many wait now.
     Arrived {
         /// Messages that wait, itself included; 1 for a constant.
@@ -32,7 +32,7 @@ pub enum Outcome {
 /// Who looks on. The methods of [`Nobody`] are empty, so that the compiler leaves them out.
 pub(super) trait Observer {
     /// Whether it wants to know at all.
-    const LOOKS: bool;
+    const IS_ACTIVE: bool;
 
     /// Whether the network stands still before this function fires.
     fn stops_before(&mut self, object: ObjectId) -> bool;
@@ -41,23 +41,23 @@ pub(super) trait Observer {
     fn fires(&mut self, object: ObjectId);
 
     /// A clock or a device sends, which no message made fire.
-    fn speaks(&mut self, object: ObjectId);
+    fn emits(&mut self, object: ObjectId);
 
     /// A function has a fault.
     fn fails(&mut self, object: ObjectId);
 
     /// A copy of a message that is going to be delivered, if it is wanted.
-    fn copy(&self, from: Option<Source>, to: Destination, message: &Value) -> Option<Value>;
+    fn copy(&self, from: Option<ArcSource>, to: Destination, message: &Value) -> Option<Value>;
 
     /// A message was delivered.
-    fn passes(&mut self, from: Option<Source>, to: Destination, message: Option<Value>, outcome: Outcome);
+    fn delivered(&mut self, from: Option<ArcSource>, to: Destination, message: Option<Value>, outcome: Delivery);
 }
 
 /// Nobody looks on.
-pub(super) struct Nobody;
+pub(super) struct NoObserver;
 
-impl Observer for Nobody {
-    const LOOKS: bool = false;
+impl Observer for NoObserver {
+    const IS_ACTIVE: bool = false;
 
     fn stops_before(&mut self, _: ObjectId) -> bool {
         false
@@ -65,13 +65,13 @@ impl Observer for Nobody {
 
     fn fires(&mut self, _: ObjectId) {}
 
-    fn speaks(&mut self, _: ObjectId) {}
+    fn emits(&mut self, _: ObjectId) {}
 
     fn fails(&mut self, _: ObjectId) {}
 
-    fn copy(&self, _: Option<Source>, _: Destination, _: &Value) -> Option<Value> {
+    fn copy(&self, _: Option<ArcSource>, _: Destination, _: &Value) -> Option<Value> {
         None
     }
 
-    fn passes(&mut self, _: Option<Source>, _: Destination, _: Option<Value>, _: Outcome) {}
+    fn delivered(&mut self, _: Option<ArcSource>, _: Destination, _: Option<Value>, _: Delivery) {}
 }

@@ -2,7 +2,7 @@
 
 use super::{
     Destination, MAX_STRING_BYTES, Network,
-    observe::{Nobody, Observer, Outcome, Source},
+    observe::{NoObserver, Observer, Delivery, ArcSource},
 };
 use crate::port::{Arrival, Backlog, Cause, Effect, Elapsed, Fault, Firing, KindSet, ObjectId, Outbox, Port, Problem};
 use protocol::{Kind, Value, command::Input};
@@ -15,7 +15,7 @@ const BYTES_PER_UNIT: usize = 64;
 
 /// What a run did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub struct Ran {
+pub struct RunReport {
     /// Firings.
     pub firings: u64,
     /// What of the budget was used; a single firing may exceed what was left.
@@ -30,7 +30,7 @@ pub struct Ran {
 macro_rules! observed {
     ($network:ident.$method:ident($($argument:expr),*)) => {
         match $network.instruments.take() {
-            None => $network.$method($($argument,)* &mut Nobody),
+            None => $network.$method($($argument,)* &mut NoObserver),
             Some(mut instruments) => {
                 let result = $network.$method($($argument,)* &mut *instruments);
                 $network.instruments = Some(instruments);
@@ -56,7 +56,7 @@ impl Network {
         if !value.is_finite() {
             return effects.push(self.fault(from, Cause::Overflow));
         }
-        let source = Source { object: from, output };
+        let source = ArcSource { object: from, output };
         if self.instance(from).is_some() {
             observed!(self.distribute(source, &mut value, effects));
         } else {
@@ -71,7 +71,7 @@ impl Network {
     ///
     /// - `budget`: units of work. A firing costs one for each message that it delivers, at least one, and one more
     ///   for every 64 bytes of their strings; so the budget bounds time and memory. The last firing may exceed it.
-    pub fn run(&mut self, budget: u64, effects: &mut Vec<Effect>) -> Ran {
+    pub fn run(&mut self, budget: u64, effects: &mut Vec<Effect>) -> RunReport {
         observed!(self.run_observed(budget, effects))
     }
 
@@ -107,12 +107,12 @@ impl Network {
         }
     }
 
-    fn run_observed<O: Observer>(&mut self, budget: u64, effects: &mut Vec<Effect>, observer: &mut O) -> Ran {
+    fn run_observed<O: Observer>(&mut self, budget: u64, effects: &mut Vec<Effect>, observer: &mut O) -> RunReport {
         let before = self.counters.firings;
         let mut outbox = self.outbox.take().unwrap_or_default();
         let (mut work, mut stopped) = (0, None);
         while work < budget {
-            if !O::LOOKS {
+            if !O::IS_ACTIVE {
                 work += self.run_in_place(budget - work, effects);
                 if work == budget {
                     break;
@@ -128,7 +128,7 @@ impl Network {
             work += self.fire(object, &mut outbox, effects, observer);
         }
         self.outbox = Some(outbox);
-        Ran { firings: self.counters.firings - before, work, idle: self.ready.is_empty(), stopped }
+        RunReport { firings: self.counters.firings - before, work, idle: self.ready.is_empty(), stopped }
     }
 
     /// Takes the first instance that is ready from the list.
@@ -167,7 +167,7 @@ impl Network {
                 }
             }
             if outbox.first().is_some() {
-                observer.speaks(object);
+                observer.emits(object);
             }
             self.deliver_results(object, &mut outbox, effects, observer);
         }
@@ -256,7 +256,7 @@ impl Network {
     ) -> u64 {
         let has_more = outbox.has_more();
         let Some((output, message)) = outbox.first() else { return 1 };
-        let from = Source { object, output: *output };
+        let from = ArcSource { object, output: *output };
         // The common case first: one result, along one arc.
         if let (1, Some(arc), false, false) =
             (*output, self.instances[object.index()].sole, has_more, matches!(message, Value::String(_)))
@@ -267,7 +267,7 @@ impl Network {
         }
         let mut work = self.distribute(from, message, effects, observer);
         for (output, message) in outbox.more() {
-            work += self.distribute(Source { object, output: *output }, message, effects, observer);
+            work += self.distribute(ArcSource { object, output: *output }, message, effects, observer);
         }
         outbox.clear();
         work.max(1)
@@ -277,7 +277,7 @@ impl Network {
     #[inline(never)]
     fn distribute<O: Observer>(
         &mut self,
-        from: Source,
+        from: ArcSource,
         message: &mut Value,
         effects: &mut Vec<Effect>,
         observer: &mut O,
@@ -302,7 +302,7 @@ impl Network {
     #[inline(always)]
     fn deliver<O: Observer>(
         &mut self,
-        from: Option<Source>,
+        from: Option<ArcSource>,
         to: Destination,
         message: &mut Value,
         effects: &mut Vec<Effect>,
@@ -311,18 +311,18 @@ impl Network {
         self.counters.deliveries += 1;
         let copy = observer.copy(from, to, message);
         let outcome = self.arrive(to, message, effects);
-        if O::LOOKS {
+        if O::IS_ACTIVE {
             let outcome = match outcome {
-                Outcome::Arrived { .. } => Outcome::Arrived { waiting: self.waiting(to) },
+                Delivery::Arrived { .. } => Delivery::Arrived { waiting: self.waiting(to) },
                 other => other,
             };
-            observer.passes(from, to, copy, outcome);
+            observer.delivered(from, to, copy, outcome);
         }
     }
 
     /// Lets a message arrive at an input. How many wait there is not counted.
     #[inline(always)]
-    fn arrive(&mut self, to: Destination, message: &mut Value, effects: &mut Vec<Effect>) -> Outcome {
+    fn arrive(&mut self, to: Destination, message: &mut Value, effects: &mut Vec<Effect>) -> Delivery {
         let Some(instance) = self.instances.get_mut(to.object.index()) else {
             return self.stray(to, message, effects);
         };
@@ -340,7 +340,7 @@ impl Network {
             port.arrive(message, &mut self.backlog)
         };
         match arrival {
-            Arrival::Kept => {}
+            Arrival::Queued => {}
             Arrival::Awaited => {
                 instance.note_arrival(port.is_active());
                 if !instance.queued && instance.is_ready() {
@@ -350,7 +350,7 @@ impl Network {
             }
             Arrival::Lost => return self.lose(to.object, place as u16 + 1, effects),
         }
-        Outcome::Arrived { waiting: 0 }
+        Delivery::Arrived { waiting: 0 }
     }
 
     /// Puts an instance at the end of the list if it is ready and not there yet.
@@ -364,18 +364,18 @@ impl Network {
 
     /// A message for an object that is no function, or for an input that the function does not have.
     #[inline(never)]
-    fn stray(&mut self, to: Destination, message: &mut Value, effects: &mut Vec<Effect>) -> Outcome {
+    fn stray(&mut self, to: Destination, message: &mut Value, effects: &mut Vec<Effect>) -> Delivery {
         if self.instance(to.object).is_some() {
             return self.refuse(to.object, Cause::NoSuchInput(to.input), effects);
         }
         let value = std::mem::replace(message, Value::Boolean(false));
         effects.push(Effect::Deliver { object: to.object, input: to.input, value });
-        Outcome::Left
+        Delivery::Left
     }
 
     /// Counts a lost message; reports the first, tenth, hundredth and so on, so that reports are no flood.
     #[cold]
-    pub(super) fn lose(&mut self, object: ObjectId, input: u16, effects: &mut Vec<Effect>) -> Outcome {
+    pub(super) fn lose(&mut self, object: ObjectId, input: u16, effects: &mut Vec<Effect>) -> Delivery {
         self.counters.lost += 1;
         let lost = self.lost.entry((object, input)).or_default();
         *lost += 1;
@@ -383,13 +383,13 @@ impl Network {
         if 10_u64.checked_pow(lost.ilog10()) == Some(lost) {
             effects.push(self.fault(object, Cause::Flood { input, lost }));
         }
-        Outcome::Lost
+        Delivery::Lost
     }
 
     #[cold]
-    fn refuse(&self, object: ObjectId, cause: Cause, effects: &mut Vec<Effect>) -> Outcome {
+    fn refuse(&self, object: ObjectId, cause: Cause, effects: &mut Vec<Effect>) -> Delivery {
         effects.push(self.fault(object, cause));
-        Outcome::Refused
+        Delivery::Refused
     }
 
     #[cold]

@@ -3,7 +3,7 @@
 use super::Network;
 use crate::{
     functions::Rule,
-    port::{Cause, Fault, ObjectId, Role},
+    port::{Cause, Fault, ObjectId, QueueRole},
 };
 use protocol::command::Input;
 
@@ -37,8 +37,8 @@ impl Network {
         if constant {
             let role = row.input_of_size(instance.size, place as u16 + 1).map(|spec| spec.role);
             let required = match role {
-                Some(Role::Active) => row.rule == Rule::All,
-                Some(Role::Constant) => true,
+                Some(QueueRole::Active) => row.rule == Rule::All,
+                Some(QueueRole::Constant) => true,
                 _ => false,
             };
             self.string_bytes -= port.string_bytes(&self.backlog);

@@ -22,9 +22,9 @@ impl Network {
     }
 
     /// Counts that a device speaks, if functions are counted.
-    pub fn note_speech(&mut self, id: ObjectId) {
+    pub fn note_emission(&mut self, id: ObjectId) {
         if let Some(instruments) = &mut self.instruments {
-            instruments.speaks(id);
+            instruments.emits(id);
         }
     }
 

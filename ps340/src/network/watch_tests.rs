@@ -45,10 +45,10 @@ fn a_trace_tells_each_message_with_its_arc_and_the_queue() {
     bench.network.trace(Traced::Objects(BTreeSet::from([b])));
     bench.send(I(10), 1, "A").send(I(20), 1, "A").send(I(0), 1, "B").run();
     let to = |object, input| Destination { object, input: Input::Number(input) };
-    let from = |object| Some(Source { object, output: 1 });
+    let from = |object| Some(ArcSource { object, output: 1 });
     let line = |firing, from, to, value: i32, waiting| {
         let value = Value::Integer(value);
-        Trace { firing, from, to, value, outcome: Outcome::Arrived { waiting } }
+        Trace { firing, from, to, value, outcome: Delivery::Arrived { waiting } }
     };
     let expected = [
         line(0, None, to(b, 1), 0, 1),
@@ -77,7 +77,7 @@ fn a_trace_tells_what_was_refused_lost_and_handed_over() {
     bench.network.trace(Traced::Everything);
     bench.send(S("text"), 1, "C").send(I(1), 1, "C").run();
     let outcomes: Vec<_> = bench.network.take_trace().0.into_iter().map(|line| line.outcome).collect();
-    assert_eq!(outcomes, [Outcome::Refused, Outcome::Arrived { waiting: 1 }, Outcome::Left]);
+    assert_eq!(outcomes, [Delivery::Refused, Delivery::Arrived { waiting: 1 }, Delivery::Left]);
 }
 
 #[test]

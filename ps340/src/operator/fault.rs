@@ -2,7 +2,7 @@
 
 /// Why a line is no order.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum OrderError {
+pub enum OperatorCommandError {
     /// The first word is unknown.
     #[error("unknown order '{word}'; {hint}'help' lists them")]
     Unknown {

@@ -140,7 +140,7 @@ fn input_word(to: Destination) -> String {
 }
 
 /// A node of the structure with what it refers to.
-struct Place {
+struct GraphNode {
     id: ObjectId,
     name: String,
     text: String,
@@ -150,17 +150,17 @@ struct Place {
 }
 
 /// The nodes that have a definition, by number; those of the system if something refers to them or they are shown.
-fn places(machine: &Machine) -> Vec<Place> {
+fn graph_nodes(machine: &Machine) -> Vec<GraphNode> {
     let memory = machine.memory();
     let ids = (0..memory.structures.extent()).map(ObjectId::new);
-    let mut places: Vec<Place> = ids
+    let mut places: Vec<GraphNode> = ids
         .filter_map(|id| {
             let node = memory.structures.node(id)?;
             let (mut descendants, mut references) = (Vec::new(), Vec::new());
             refer(node, &mut descendants, &mut references);
             let name = title(memory, id);
             let text = machine.describe(&name).map_or_else(|| name.clone(), |text| cut(&text));
-            Some(Place { id, name, text, descendants, references })
+            Some(GraphNode { id, name, text, descendants, references })
         })
         .collect();
     let reached: BTreeSet<ObjectId> = places.iter().flat_map(|p| p.descendants.iter().copied()).collect();
@@ -195,7 +195,7 @@ fn refer(node: &Node, descendants: &mut Vec<ObjectId>, references: &mut Vec<Obje
 fn structure_dot(machine: &Machine) -> String {
     let memory = machine.memory();
     let mut text = "digraph structure {\n  node [shape=box];\n".to_string();
-    for place in places(machine) {
+    for place in graph_nodes(machine) {
         let _ = writeln!(text, "  {} [label={}];", quoted(&place.name), quoted(&place.text));
         for (style, ends) in [("", &place.descendants), (" [style=dashed]", &place.references)] {
             for end in ends {
@@ -212,7 +212,7 @@ fn structure_dot(machine: &Machine) -> String {
 fn structure_json(machine: &Machine) -> Json {
     let memory = machine.memory();
     let names = |ids: &[ObjectId]| ids.iter().map(|id| title(memory, *id)).collect::<Vec<_>>();
-    let nodes: Vec<Json> = places(machine)
+    let nodes: Vec<Json> = graph_nodes(machine)
         .iter()
         .map(|place| {
             json!({

@@ -1,18 +1,18 @@
 //! Orders that look into the machine: traces, breaks, single firings, counters of functions, graphs.
 
 use super::{
-    Inspection, Language, Order, OrderError, OrderRow, Subject,
+    Inspection, Language, OperatorCommand, OperatorCommandError, OperatorCommandRow, Subject,
     fault::REFUSED,
     graph::{graph, title},
-    words::Words,
+    words::WordReader,
 };
 use crate::{
     functions::printing::print,
     machine::Machine,
-    network::{Activity, Outcome, Trace, Traced},
+    network::{Activity, Delivery, Trace, Traced},
     port::ObjectId,
 };
-use files::Beneath;
+use files::Sandbox;
 use protocol::{Kind, Value};
 use std::collections::BTreeSet;
 use std::io::Write;
@@ -23,44 +23,44 @@ const TOP: usize = 10;
 const SHOWN: usize = 60;
 
 /// The rows of these orders.
-pub(super) const INSPECTION_ROWS: &[OrderRow] = &[
-    OrderRow {
+pub(super) const INSPECTION_ROWS: &[OperatorCommandRow] = &[
+    OperatorCommandRow {
         word: "trace",
         arguments: "[NAME|all [on|off]]",
         summary: "watch messages to and from a function or node; alone: what has passed since",
         read: trace,
     },
-    OrderRow {
+    OperatorCommandRow {
         word: "break",
         arguments: "[NAME [on|off]]",
         summary: "stop the network before a function fires; alone: list the breaks",
         read: break_at,
     },
-    OrderRow {
+    OperatorCommandRow {
         word: "step",
         arguments: "",
         summary: "let one function fire, then stop the network",
-        read: |_| Ok(Order::Inspect(Inspection::Step)),
+        read: |_| Ok(OperatorCommand::Inspect(Inspection::Step)),
     },
-    OrderRow {
+    OperatorCommandRow {
         word: "continue",
         arguments: "",
         summary: "let a stopped network go on",
-        read: |_| Ok(Order::Inspect(Inspection::Continue)),
+        read: |_| Ok(OperatorCommand::Inspect(Inspection::Continue)),
     },
-    OrderRow {
+    OperatorCommandRow {
         word: "count",
         arguments: "[on|off]",
         summary: "count what each function does, from 0; see counters NAME, top",
-        read: |words| Ok(Order::Inspect(Inspection::Count(words.on_or_off()?))),
+        read: |words| Ok(OperatorCommand::Inspect(Inspection::Count(words.on_or_off()?))),
     },
-    OrderRow {
+    OperatorCommandRow {
         word: "top",
         arguments: "[N]",
         summary: "the functions that fired most since 'count on'",
-        read: |words| Ok(Order::Inspect(Inspection::Top(words.optional("a number of functions")?.unwrap_or(TOP)))),
+        read: |words| Ok(OperatorCommand::Inspect(Inspection::Top(words.optional("a number of functions")?.unwrap_or(TOP)))),
     },
-    OrderRow {
+    OperatorCommandRow {
         word: "graph",
         arguments: "network|structure [dot|json] [FILE]",
         summary: "functions and arcs, or nodes, as a graph",
@@ -68,24 +68,24 @@ pub(super) const INSPECTION_ROWS: &[OrderRow] = &[
     },
 ];
 
-fn trace(words: &mut Words<'_>) -> Result<Order, OrderError> {
-    let Some(name) = words.next() else { return Ok(Order::Inspect(Inspection::Trace)) };
+fn trace(words: &mut WordReader<'_>) -> Result<OperatorCommand, OperatorCommandError> {
+    let Some(name) = words.next() else { return Ok(OperatorCommand::Inspect(Inspection::Trace)) };
     let name = Some(name).filter(|name| !name.eq_ignore_ascii_case("all")).map(str::to_ascii_uppercase);
-    Ok(Order::Inspect(Inspection::TraceOf(name, words.on_or_off()?)))
+    Ok(OperatorCommand::Inspect(Inspection::TraceOf(name, words.on_or_off()?)))
 }
 
-fn break_at(words: &mut Words<'_>) -> Result<Order, OrderError> {
+fn break_at(words: &mut WordReader<'_>) -> Result<OperatorCommand, OperatorCommandError> {
     let Some(name) = words.next().map(str::to_ascii_uppercase) else {
-        return Ok(Order::Inspect(Inspection::Breaks));
+        return Ok(OperatorCommand::Inspect(Inspection::Breaks));
     };
-    Ok(Order::Inspect(Inspection::Break(name, words.on_or_off()?)))
+    Ok(OperatorCommand::Inspect(Inspection::Break(name, words.on_or_off()?)))
 }
 
-fn read_graph(words: &mut Words<'_>) -> Result<Order, OrderError> {
+fn read_graph(words: &mut WordReader<'_>) -> Result<OperatorCommand, OperatorCommandError> {
     let subject = match words.required("'network' or 'structure'")? {
         "network" => Subject::Network,
         "structure" => Subject::Structure,
-        other => return Err(OrderError::Bad { found: other.into(), expected: "'network' or 'structure'" }),
+        other => return Err(OperatorCommandError::Bad { found: other.into(), expected: "'network' or 'structure'" }),
     };
     let expected = "'dot', 'json' or the name of a file, with a point in it";
     let rest = std::mem::take(&mut words.rest);
@@ -95,19 +95,19 @@ fn read_graph(words: &mut Words<'_>) -> Result<Order, OrderError> {
         _ if rest.ends_with(".json") => (Language::Json, rest),
         // A word that is nearly a language must not become a file.
         _ if !rest.is_empty() && !rest.contains(['.', '/']) => {
-            return Err(OrderError::Bad { found: rest.into(), expected });
+            return Err(OperatorCommandError::Bad { found: rest.into(), expected });
         }
         _ => (Language::Dot, rest),
     };
     let file = Some(file.trim()).filter(|file| !file.is_empty()).map(str::to_owned);
-    Ok(Order::Inspect(Inspection::Graph { subject, language, file }))
+    Ok(OperatorCommand::Inspect(Inspection::Graph { subject, language, file }))
 }
 
 /// Carries out one of these orders.
 ///
 /// # Errors
 /// A sentence for the person.
-pub(super) fn inspect(what: &Inspection, machine: &mut Machine, files: Option<&Beneath>) -> Result<String, String> {
+pub(super) fn inspect(what: &Inspection, machine: &mut Machine, files: Option<&Sandbox>) -> Result<String, String> {
     match what {
         Inspection::Trace => Ok(take_trace(machine)),
         Inspection::TraceOf(name, on) => trace_of(name.as_deref(), *on, machine),
@@ -117,21 +117,21 @@ pub(super) fn inspect(what: &Inspection, machine: &mut Machine, files: Option<&B
             Ok(format!(
                 "breaks: {}; {}",
                 if names.is_empty() { "none".into() } else { names.join(" ") },
-                standing(machine)
+                break_state(machine)
             ))
         }
         Inspection::Break(name, on) => {
             let id = function(name, machine)?;
             machine.instruments().set_break(id, *on);
-            Ok(standing(machine))
+            Ok(break_state(machine))
         }
         Inspection::Step => Ok(match machine.fire_one() {
-            Some(id) => format!("{} fired; {}", title(machine.memory(), id), standing(machine)),
+            Some(id) => format!("{} fired; {}", title(machine.memory(), id), break_state(machine)),
             None => "nothing is ready to fire; the network stands still until 'continue'".into(),
         }),
         Inspection::Continue => {
             machine.resume();
-            Ok(standing(machine))
+            Ok(break_state(machine))
         }
         Inspection::Count(on) => {
             machine.instruments().count_activity(*on);
@@ -162,7 +162,7 @@ fn counters_off() -> String {
 }
 
 /// Whether the network runs or stands, and before which function.
-fn standing(machine: &Machine) -> String {
+fn break_state(machine: &Machine) -> String {
     let memory = machine.memory();
     match (memory.network.is_held(), memory.network.next()) {
         (false, _) => "the network runs".into(),
@@ -232,11 +232,11 @@ fn trace_line(machine: &Machine, line: &Trace) -> String {
         line.from.map_or_else(|| "SEND".into(), |from| format!("{}<{}>", title(memory, from.object), from.output));
     let value = brief(&line.value);
     let outcome = match line.outcome {
-        Outcome::Arrived { waiting: 1 } => String::new(),
-        Outcome::Arrived { waiting } => format!(", {waiting} waiting"),
-        Outcome::Lost => ", lost: the queue is full".into(),
-        Outcome::Refused => ", refused".into(),
-        Outcome::Left => String::new(),
+        Delivery::Arrived { waiting: 1 } => String::new(),
+        Delivery::Arrived { waiting } => format!(", {waiting} waiting"),
+        Delivery::Lost => ", lost: the queue is full".into(),
+        Delivery::Refused => ", refused".into(),
+        Delivery::Left => String::new(),
     };
     format!("{from} to {}{}: {value}{outcome}", line.to.input, title(memory, line.to.object))
 }

@@ -13,11 +13,11 @@ mod table;
 mod perform;
 mod reply;
 
-pub use fault::OrderError;
+pub use fault::OperatorCommandError;
 pub use graph::{Language, Subject, title};
 pub use inspect::brief;
-pub use order::{Inspection, Order, OrderRow, Screen, SightOrder};
-pub use perform::{Outcome, Wait, perform};
+pub use order::{Inspection, OperatorCommand, OperatorCommandRow, Screen, DisplayCommand};
+pub use perform::{CommandOutcome, Wait, perform};
 pub use reading::unescape;
 pub use reply::reply;
 pub use table::{parse, rows};

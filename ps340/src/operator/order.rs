@@ -1,26 +1,26 @@
 //! The orders of the operator as data, and what a row of their table is.
 
-use super::{Language, OrderError, Subject, words::Words};
+use super::{Language, OperatorCommandError, Subject, words::WordReader};
 use crate::{
     calligraphic::{Knob, Phosphor},
-    example::Example,
+    example::ExampleProgram,
     machine::{Key, KeyboardMode},
 };
 
 /// One row of the table of orders, from which `help` is made. Rows are the same if their words are.
 #[derive(Clone, Copy, Debug)]
-pub struct OrderRow {
+pub struct OperatorCommandRow {
     /// The first word.
     pub word: &'static str,
     /// What follows it.
     pub arguments: &'static str,
     /// What it does.
     pub summary: &'static str,
-    pub(super) read: fn(&mut Words<'_>) -> Result<Order, OrderError>,
+    pub(super) read: fn(&mut WordReader<'_>) -> Result<OperatorCommand, OperatorCommandError>,
 }
 
-impl PartialEq for OrderRow {
-    fn eq(&self, other: &OrderRow) -> bool {
+impl PartialEq for OperatorCommandRow {
+    fn eq(&self, other: &OperatorCommandRow) -> bool {
         self.word == other.word
     }
 }
@@ -36,7 +36,7 @@ pub enum Screen {
 
 /// Something that a person sets at the display, or wants of it.
 #[derive(Clone, Debug, PartialEq)]
-pub enum SightOrder {
+pub enum DisplayCommand {
     /// Turns a knob, or says how all stand.
     Knob(Option<(&'static Knob, f32)>),
     /// Takes another phosphor, or lists them.
@@ -99,7 +99,7 @@ pub enum Inspection {
 
 /// Something that a person does at the machine, or looks at.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Order {
+pub enum OperatorCommand {
     /// Turns a dial (1..=8) by a number of turns, clockwise positive.
     Dial {
         /// 1..=8.
@@ -143,7 +143,7 @@ pub enum Order {
     /// How replies look on this operator line: with line ends as they are, or as `\n`.
     Lines(bool),
     /// Sets something at the display, or writes a picture of it.
-    Sight(SightOrder),
+    Display(DisplayCommand),
     /// Describes an object.
     Show(String),
     /// The strokes of the latest update, the first so many.
@@ -161,19 +161,19 @@ pub enum Order {
     /// The latest numbered messages of the machine.
     Log,
     /// Lists the orders, or says all about one.
-    Help(Option<&'static OrderRow>),
+    Help(Option<&'static OperatorCommandRow>),
     /// Runs a program that ships with the machine, or lists them.
-    Example(Option<&'static Example>),
+    Example(Option<&'static ExampleProgram>),
     /// Ends the machine.
     Quit,
 }
 
-impl Order {
+impl OperatorCommand {
     /// Whether it writes a file or ends the machine, which nobody expects of a file that is played.
     pub fn reaches_out(&self) -> bool {
         match self {
-            Order::Quit | Order::Sight(SightOrder::Picture { .. }) => true,
-            Order::Inspect(Inspection::Graph { file, .. }) => file.is_some(),
+            OperatorCommand::Quit | OperatorCommand::Display(DisplayCommand::Picture { .. }) => true,
+            OperatorCommand::Inspect(Inspection::Graph { file, .. }) => file.is_some(),
             _ => false,
         }
     }
@@ -181,36 +181,36 @@ impl Order {
     /// Whether somebody does something at the machine, rather than looks at it or waits for it.
     pub fn is_action(&self) -> bool {
         match self {
-            Order::Dial { .. }
-            | Order::Key(_)
-            | Order::Press(_)
-            | Order::Mode(Some(_))
-            | Order::Button(_)
-            | Order::PuckMove(_)
-            | Order::PuckPress(_)
-            | Order::PuckRelease
-            | Order::PuckAway
-            | Order::Example(Some(_))
-            | Order::Type(_) => true,
-            Order::Keys
-            | Order::Mode(None)
-            | Order::Frames(_)
-            | Order::Idle(_)
-            | Order::Message { .. }
-            | Order::Messages
-            | Order::Lines(_)
-            | Order::Sight(_)
-            | Order::Show(_)
-            | Order::Strokes(_)
-            | Order::Overlay(_)
-            | Order::Counters
-            | Order::Panel
-            | Order::Terminal
-            | Order::Inspect(_)
-            | Order::Log
-            | Order::Help(_)
-            | Order::Example(None)
-            | Order::Quit => false,
+            OperatorCommand::Dial { .. }
+            | OperatorCommand::Key(_)
+            | OperatorCommand::Press(_)
+            | OperatorCommand::Mode(Some(_))
+            | OperatorCommand::Button(_)
+            | OperatorCommand::PuckMove(_)
+            | OperatorCommand::PuckPress(_)
+            | OperatorCommand::PuckRelease
+            | OperatorCommand::PuckAway
+            | OperatorCommand::Example(Some(_))
+            | OperatorCommand::Type(_) => true,
+            OperatorCommand::Keys
+            | OperatorCommand::Mode(None)
+            | OperatorCommand::Frames(_)
+            | OperatorCommand::Idle(_)
+            | OperatorCommand::Message { .. }
+            | OperatorCommand::Messages
+            | OperatorCommand::Lines(_)
+            | OperatorCommand::Display(_)
+            | OperatorCommand::Show(_)
+            | OperatorCommand::Strokes(_)
+            | OperatorCommand::Overlay(_)
+            | OperatorCommand::Counters
+            | OperatorCommand::Panel
+            | OperatorCommand::Terminal
+            | OperatorCommand::Inspect(_)
+            | OperatorCommand::Log
+            | OperatorCommand::Help(_)
+            | OperatorCommand::Example(None)
+            | OperatorCommand::Quit => false,
         }
     }
 }

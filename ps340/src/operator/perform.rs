@@ -1,16 +1,16 @@
 //! Carrying out an order on a machine.
 
-use super::{Order, OrderRow, fault::REFUSED, inspect::inspect, rows, sight};
+use super::{OperatorCommand, OperatorCommandRow, fault::REFUSED, inspect::inspect, rows, sight};
 use crate::{
     calligraphic,
     example::EXAMPLES,
     machine::{Event, Key, Machine, TabletEvent},
 };
-use files::Beneath;
+use files::Sandbox;
 
 /// What came of an order.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Outcome {
+pub enum CommandOutcome {
     /// Done, with a text, or failed, with the reason.
     Done(Result<String, String>),
     /// The reply comes later: ask the wait after each step.
@@ -49,69 +49,69 @@ impl Wait {
 /// Carries out an order.
 ///
 /// - `files`: the folder below which it writes. Without one, orders that reach out ([`Order::reaches_out`]) are refused.
-pub fn perform(order: &Order, machine: &mut Machine, files: Option<&Beneath>) -> Outcome {
+pub fn perform(order: &OperatorCommand, machine: &mut Machine, files: Option<&Sandbox>) -> CommandOutcome {
     if order.reaches_out() && files.is_none() {
-        return Outcome::Done(Err(REFUSED.into()));
+        return CommandOutcome::Done(Err(REFUSED.into()));
     }
     let frame = machine.frame();
     let event = match order {
-        Order::Dial { dial, turns } => Event::Dial { dial: *dial, turns: *turns },
-        Order::Key(key) => Event::Key(*key),
-        Order::Press(key) => Event::Press(*key),
-        Order::Mode(Some(mode)) => Event::Mode(*mode),
-        Order::Mode(None) => return Outcome::Done(Ok(machine.keyboard_mode().word().into())),
-        Order::Keys => return Outcome::Done(Ok(Key::names().collect::<Vec<_>>().join(" "))),
-        Order::Button(button) => Event::Button(*button),
-        Order::PuckMove(at) => Event::Tablet(TabletEvent::Move(*at)),
-        Order::PuckPress(code) => Event::Tablet(TabletEvent::Press(*code)),
-        Order::PuckRelease => Event::Tablet(TabletEvent::Release),
-        Order::PuckAway => Event::Tablet(TabletEvent::Away),
-        Order::Type(text) => Event::Type(text.clone()),
-        Order::Frames(n) => return Outcome::Waiting(Wait::Frame(frame.saturating_add(*n))),
-        Order::Idle(n) => return Outcome::Waiting(Wait::Idle(frame.saturating_add(*n))),
-        Order::Message { fresh, frames } => {
+        OperatorCommand::Dial { dial, turns } => Event::Dial { dial: *dial, turns: *turns },
+        OperatorCommand::Key(key) => Event::Key(*key),
+        OperatorCommand::Press(key) => Event::Press(*key),
+        OperatorCommand::Mode(Some(mode)) => Event::Mode(*mode),
+        OperatorCommand::Mode(None) => return CommandOutcome::Done(Ok(machine.keyboard_mode().word().into())),
+        OperatorCommand::Keys => return CommandOutcome::Done(Ok(Key::names().collect::<Vec<_>>().join(" "))),
+        OperatorCommand::Button(button) => Event::Button(*button),
+        OperatorCommand::PuckMove(at) => Event::Tablet(TabletEvent::Move(*at)),
+        OperatorCommand::PuckPress(code) => Event::Tablet(TabletEvent::Press(*code)),
+        OperatorCommand::PuckRelease => Event::Tablet(TabletEvent::Release),
+        OperatorCommand::PuckAway => Event::Tablet(TabletEvent::Away),
+        OperatorCommand::Type(text) => Event::Type(text.clone()),
+        OperatorCommand::Frames(n) => return CommandOutcome::Waiting(Wait::Frame(frame.saturating_add(*n))),
+        OperatorCommand::Idle(n) => return CommandOutcome::Waiting(Wait::Idle(frame.saturating_add(*n))),
+        OperatorCommand::Message { fresh, frames } => {
             if *fresh {
                 while machine.take_message().is_some() {}
             }
-            return Outcome::Waiting(Wait::Message(frame.saturating_add(*frames)));
+            return CommandOutcome::Waiting(Wait::Message(frame.saturating_add(*frames)));
         }
-        Order::Messages => return Outcome::Done(Ok(messages(machine))),
-        Order::Lines(_) => return Outcome::Done(Ok(String::new())),
-        Order::Sight(order) => return Outcome::Done(sight::perform(order, machine, files)),
-        Order::Show(name) => return Outcome::Done(machine.describe(name).ok_or(format!("there is no {name}"))),
-        Order::Strokes(most) => {
+        OperatorCommand::Messages => return CommandOutcome::Done(Ok(messages(machine))),
+        OperatorCommand::Lines(_) => return CommandOutcome::Done(Ok(String::new())),
+        OperatorCommand::Display(order) => return CommandOutcome::Done(sight::perform(order, machine, files)),
+        OperatorCommand::Show(name) => return CommandOutcome::Done(machine.describe(name).ok_or(format!("there is no {name}"))),
+        OperatorCommand::Strokes(most) => {
             machine.renew_picture();
-            return Outcome::Done(Ok(calligraphic::text(&machine.latest_update().strokes, *most)));
+            return CommandOutcome::Done(Ok(calligraphic::text(&machine.latest_update().strokes, *most)));
         }
-        Order::Overlay(most) => return Outcome::Done(Ok(calligraphic::text(machine.overlay(), *most))),
-        Order::Counters => return Outcome::Done(Ok(machine.counters().to_string())),
-        Order::Inspect(what) => return Outcome::Done(inspect(what, machine, files)),
-        Order::Panel => {
-            return Outcome::Done(Ok(format!("{}\n{}", machine.panel(), machine.switches())));
+        OperatorCommand::Overlay(most) => return CommandOutcome::Done(Ok(calligraphic::text(machine.overlay(), *most))),
+        OperatorCommand::Counters => return CommandOutcome::Done(Ok(machine.counters().to_string())),
+        OperatorCommand::Inspect(what) => return CommandOutcome::Done(inspect(what, machine, files)),
+        OperatorCommand::Panel => {
+            return CommandOutcome::Done(Ok(format!("{}\n{}", machine.panel(), machine.switches())));
         }
-        Order::Terminal => return Outcome::Done(Ok(machine.terminal().text())),
-        Order::Log => return Outcome::Done(Ok(machine.log().collect::<Vec<_>>().join("\n"))),
-        Order::Example(None) => {
+        OperatorCommand::Terminal => return CommandOutcome::Done(Ok(machine.terminal().text())),
+        OperatorCommand::Log => return CommandOutcome::Done(Ok(machine.log().collect::<Vec<_>>().join("\n"))),
+        OperatorCommand::Example(None) => {
             let lines = EXAMPLES.iter().map(|example| format!("{:<8} {}", example.name, example.summary()));
-            return Outcome::Done(Ok(lines.collect::<Vec<_>>().join("\n")));
+            return CommandOutcome::Done(Ok(lines.collect::<Vec<_>>().join("\n")));
         }
-        Order::Example(Some(example)) => {
+        OperatorCommand::Example(Some(example)) => {
             machine.run_program(example.text.as_bytes());
-            return Outcome::Done(Ok(example.summary().into()));
+            return CommandOutcome::Done(Ok(example.summary().into()));
         }
-        Order::Help(None) => return Outcome::Done(Ok(help())),
-        Order::Help(Some(row)) => return Outcome::Done(Ok(help_on(row))),
-        Order::Quit => return Outcome::Quit,
+        OperatorCommand::Help(None) => return CommandOutcome::Done(Ok(help())),
+        OperatorCommand::Help(Some(row)) => return CommandOutcome::Done(Ok(help_on(row))),
+        OperatorCommand::Quit => return CommandOutcome::Quit,
     };
     machine.event(event);
-    Outcome::Done(Ok(String::new()))
+    CommandOutcome::Done(Ok(String::new()))
 }
 
 fn help() -> String {
     rows().map(help_on).collect::<Vec<_>>().join("\n")
 }
 
-fn help_on(row: &OrderRow) -> String {
+fn help_on(row: &OperatorCommandRow) -> String {
     format!("{:<50} {}", format!("{} {}", row.word, row.arguments), row.summary)
 }
 

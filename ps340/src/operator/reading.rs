@@ -1,90 +1,90 @@
 //! How the orders of a person at the machine are read.
 
-use super::{Order, OrderError, words::Words};
+use super::{OperatorCommand, OperatorCommandError, words::WordReader};
 use crate::machine::{Key, KeyboardMode};
 use clap::ValueEnum;
 
 /// Frames that `idle` and `message` wait for if the order does not say: ten seconds.
-pub(super) const PATIENCE: u64 = 600;
+pub(super) const DEFAULT_WAIT_FRAMES: u64 = 600;
 
-pub(super) fn message(words: &mut Words<'_>) -> Result<Order, OrderError> {
+pub(super) fn message(words: &mut WordReader<'_>) -> Result<OperatorCommand, OperatorCommandError> {
     let fresh = words.rest.split_whitespace().next() == Some("new");
     if fresh {
         words.next();
     }
-    Ok(Order::Message { fresh, frames: words.optional("'new' or a number of frames")?.unwrap_or(PATIENCE) })
+    Ok(OperatorCommand::Message { fresh, frames: words.optional("'new' or a number of frames")?.unwrap_or(DEFAULT_WAIT_FRAMES) })
 }
 
-pub(super) fn dial(words: &mut Words<'_>) -> Result<Order, OrderError> {
+pub(super) fn dial(words: &mut WordReader<'_>) -> Result<OperatorCommand, OperatorCommandError> {
     let dial = words.integer(1, 8, "a dial, 1 to 8")?;
-    Ok(Order::Dial { dial, turns: words.real(-1e6, 1e6, "a number of turns")? })
+    Ok(OperatorCommand::Dial { dial, turns: words.real(-1e6, 1e6, "a number of turns")? })
 }
 
-pub(super) fn key(words: &mut Words<'_>) -> Result<Order, OrderError> {
+pub(super) fn key(words: &mut WordReader<'_>) -> Result<OperatorCommand, OperatorCommandError> {
     if let Some(named) = words.rest.split_whitespace().next().and_then(Key::named) {
         words.next();
-        return Ok(Order::Press(named));
+        return Ok(OperatorCommand::Press(named));
     }
     let key = words.integer(1, 12, "a function key, 1 to 12, or a key of the list 'keys'")?;
     match words.next() {
-        None => Ok(Order::Key(key)),
-        Some("shift") => Ok(Order::Key(key + 12)),
-        Some("control") => Ok(Order::Key(key + 24)),
-        Some(other) => Err(OrderError::Bad { found: other.into(), expected: "'shift' or 'control'" }),
+        None => Ok(OperatorCommand::Key(key)),
+        Some("shift") => Ok(OperatorCommand::Key(key + 12)),
+        Some("control") => Ok(OperatorCommand::Key(key + 24)),
+        Some(other) => Err(OperatorCommandError::Bad { found: other.into(), expected: "'shift' or 'control'" }),
     }
 }
 
-pub(super) fn button(words: &mut Words<'_>) -> Result<Order, OrderError> {
-    Ok(Order::Button(words.integer(1, 32, "a button, 1 to 32")?))
+pub(super) fn button(words: &mut WordReader<'_>) -> Result<OperatorCommand, OperatorCommandError> {
+    Ok(OperatorCommand::Button(words.integer(1, 32, "a button, 1 to 32")?))
 }
 
-pub(super) fn puck(words: &mut Words<'_>) -> Result<Order, OrderError> {
+pub(super) fn puck(words: &mut WordReader<'_>) -> Result<OperatorCommand, OperatorCommandError> {
     let expected = "'move', 'press', 'release' or 'away'";
     match words.required(expected)? {
-        "move" => place(words),
+        "move" => puck_move(words),
         "press" => {
             let code = words.optional("a sum of the button codes 1, 2, 4 and 8")?.unwrap_or(1);
             if (1..=15).contains(&code) {
-                Ok(Order::PuckPress(code))
+                Ok(OperatorCommand::PuckPress(code))
             } else {
-                Err(OrderError::Bad { found: code.to_string(), expected: "a sum of the button codes 1, 2, 4 and 8" })
+                Err(OperatorCommandError::Bad { found: code.to_string(), expected: "a sum of the button codes 1, 2, 4 and 8" })
             }
         }
-        "release" => Ok(Order::PuckRelease),
-        "away" => Ok(Order::PuckAway),
-        other => Err(OrderError::Bad { found: other.into(), expected }),
+        "release" => Ok(OperatorCommand::PuckRelease),
+        "away" => Ok(OperatorCommand::PuckAway),
+        other => Err(OperatorCommandError::Bad { found: other.into(), expected }),
     }
 }
 
-pub(super) fn stylus(words: &mut Words<'_>) -> Result<Order, OrderError> {
+pub(super) fn stylus(words: &mut WordReader<'_>) -> Result<OperatorCommand, OperatorCommandError> {
     let expected = "'move', 'down', 'up' or 'away'";
     match words.required(expected)? {
-        "move" => place(words),
-        "down" => Ok(Order::PuckPress(1)),
-        "up" => Ok(Order::PuckRelease),
-        "away" => Ok(Order::PuckAway),
-        other => Err(OrderError::Bad { found: other.into(), expected }),
+        "move" => puck_move(words),
+        "down" => Ok(OperatorCommand::PuckPress(1)),
+        "up" => Ok(OperatorCommand::PuckRelease),
+        "away" => Ok(OperatorCommand::PuckAway),
+        other => Err(OperatorCommandError::Bad { found: other.into(), expected }),
     }
 }
 
-fn place(words: &mut Words<'_>) -> Result<Order, OrderError> {
+fn puck_move(words: &mut WordReader<'_>) -> Result<OperatorCommand, OperatorCommandError> {
     let mut coordinate = || words.real(-1.0, 1.0, "a coordinate, -1 to 1");
-    Ok(Order::PuckMove([coordinate()?, coordinate()?]))
+    Ok(OperatorCommand::PuckMove([coordinate()?, coordinate()?]))
 }
 
-pub(super) fn mode(words: &mut Words<'_>) -> Result<Order, OrderError> {
-    let Some(word) = words.next() else { return Ok(Order::Mode(None)) };
+pub(super) fn mode(words: &mut WordReader<'_>) -> Result<OperatorCommand, OperatorCommandError> {
+    let Some(word) = words.next() else { return Ok(OperatorCommand::Mode(None)) };
     let expected = "'terminal', 'command' or 'interactive'";
     let read = KeyboardMode::from_str(word, true);
-    Ok(Order::Mode(Some(read.map_err(|_| OrderError::Bad { found: word.into(), expected })?)))
+    Ok(OperatorCommand::Mode(Some(read.map_err(|_| OperatorCommandError::Bad { found: word.into(), expected })?)))
 }
 
-pub(super) fn type_text(words: &mut Words<'_>) -> Result<Order, OrderError> {
+pub(super) fn type_text(words: &mut WordReader<'_>) -> Result<OperatorCommand, OperatorCommandError> {
     let text = std::mem::take(&mut words.rest);
     if text.is_empty() {
-        return Err(OrderError::Missing("the text"));
+        return Err(OperatorCommandError::Missing("the text"));
     }
-    Ok(Order::Type(unescape(text)))
+    Ok(OperatorCommand::Type(unescape(text)))
 }
 
 /// The characters that a text with backslashes stands for, as in `type`; a backslash before anything else stands for
@@ -112,6 +112,6 @@ pub fn unescape(text: &str) -> Vec<u8> {
     typed
 }
 
-pub(super) fn frames(words: &mut Words<'_>) -> Result<Order, OrderError> {
-    Ok(Order::Frames(words.optional("a number of frames")?.ok_or(OrderError::Missing("a number of frames"))?))
+pub(super) fn frames(words: &mut WordReader<'_>) -> Result<OperatorCommand, OperatorCommandError> {
+    Ok(OperatorCommand::Frames(words.optional("a number of frames")?.ok_or(OperatorCommandError::Missing("a number of frames"))?))
 }

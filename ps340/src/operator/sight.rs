@@ -1,55 +1,55 @@
 //! Orders for the display: knobs, phosphor, steadiness, which screen, and pictures in files.
 
-use super::{Order, OrderError, OrderRow, Screen, SightOrder, fault::REFUSED, words::Words};
+use super::{OperatorCommand, OperatorCommandError, OperatorCommandRow, Screen, DisplayCommand, fault::REFUSED, words::WordReader};
 use crate::{
     calligraphic::{self, Controls, KNOBS, MAX_SIZE, PHOSPHORS, Phosphor, SCREENS},
     machine::Machine,
     picture::Picture,
 };
-use files::Beneath;
+use files::Sandbox;
 use protocol::raster::{RASTER_HEIGHT, RASTER_WIDTH};
 use std::io::Write;
 use std::path::Path;
 
 /// The rows of these orders.
-pub(super) const SIGHT_ROWS: &[OrderRow] = &[
-    OrderRow {
+pub(super) const DISPLAY_ROWS: &[OperatorCommandRow] = &[
+    OperatorCommandRow {
         word: "picture",
         arguments: "vector|raster FILE [SIZE|WIDTHxHEIGHT]",
         summary: "write a screen as .png or .exr, the strokes of the vector screen as .svg or .txt",
         read: picture,
     },
-    OrderRow {
+    OperatorCommandRow {
         word: "knob",
         arguments: "[brightness|contrast|focus 0..1]",
         summary: "turn a knob of the display; alone: how they stand",
         read: knob,
     },
-    OrderRow {
+    OperatorCommandRow {
         word: "phosphor",
         arguments: "[NAME]",
         summary: "give the screen another phosphor; alone: list them",
         read: read_phosphor,
     },
-    OrderRow {
+    OperatorCommandRow {
         word: "steady",
         arguments: "[on|off]",
         summary: "whether a picture that takes long to draw stands still (on) or flickers as it did (off)",
         read: steady,
     },
-    OrderRow {
+    OperatorCommandRow {
         word: "screen",
         arguments: "[0..3]",
         summary: "look at another of the screens that SET DISPLAYS tells apart",
         read: screen,
     },
-    OrderRow {
+    OperatorCommandRow {
         word: "refresh",
         arguments: "",
         summary: "how long the beam needs for the picture, how often it draws it, and which processor makes its light",
-        read: |_| Ok(Order::Sight(SightOrder::Refresh)),
+        read: |_| Ok(OperatorCommand::Display(DisplayCommand::Refresh)),
     },
-    OrderRow {
+    OperatorCommandRow {
         word: "pixel",
         arguments: "X Y",
         summary: "red, green and blue, 0 to 255, of a pixel of the raster screen: columns from the left, lines from the bottom",
@@ -57,46 +57,46 @@ pub(super) const SIGHT_ROWS: &[OrderRow] = &[
     },
 ];
 
-fn bad<T>(found: &str, expected: &'static str) -> Result<T, OrderError> {
-    Err(OrderError::Bad { found: found.into(), expected })
+fn bad<T>(found: &str, expected: &'static str) -> Result<T, OperatorCommandError> {
+    Err(OperatorCommandError::Bad { found: found.into(), expected })
 }
 
-fn knob(words: &mut Words<'_>) -> Result<Order, OrderError> {
-    let Some(word) = words.next() else { return Ok(Order::Sight(SightOrder::Knob(None))) };
+fn knob(words: &mut WordReader<'_>) -> Result<OperatorCommand, OperatorCommandError> {
+    let Some(word) = words.next() else { return Ok(OperatorCommand::Display(DisplayCommand::Knob(None))) };
     let Some(knob) = KNOBS.iter().find(|knob| knob.name.eq_ignore_ascii_case(word)) else {
         return bad(word, "'brightness', 'contrast' or 'focus'");
     };
     let to = words.real(0.0, 1.0, "a number, 0 to 1")?;
-    Ok(Order::Sight(SightOrder::Knob(Some((knob, to as f32)))))
+    Ok(OperatorCommand::Display(DisplayCommand::Knob(Some((knob, to as f32)))))
 }
 
-fn read_phosphor(words: &mut Words<'_>) -> Result<Order, OrderError> {
-    let Some(word) = words.next() else { return Ok(Order::Sight(SightOrder::Phosphor(None))) };
+fn read_phosphor(words: &mut WordReader<'_>) -> Result<OperatorCommand, OperatorCommandError> {
+    let Some(word) = words.next() else { return Ok(OperatorCommand::Display(DisplayCommand::Phosphor(None))) };
     match calligraphic::phosphor(word) {
-        Some(row) => Ok(Order::Sight(SightOrder::Phosphor(Some(row)))),
+        Some(row) => Ok(OperatorCommand::Display(DisplayCommand::Phosphor(Some(row)))),
         None => bad(word, "a phosphor of the list 'phosphor'"),
     }
 }
 
-fn steady(words: &mut Words<'_>) -> Result<Order, OrderError> {
+fn steady(words: &mut WordReader<'_>) -> Result<OperatorCommand, OperatorCommandError> {
     let on = match words.next() {
         None => None,
         Some("on") => Some(true),
         Some("off") => Some(false),
         Some(other) => return bad(other, "'on' or 'off'"),
     };
-    Ok(Order::Sight(SightOrder::Steady(on)))
+    Ok(OperatorCommand::Display(DisplayCommand::Steady(on)))
 }
 
-fn screen(words: &mut Words<'_>) -> Result<Order, OrderError> {
+fn screen(words: &mut WordReader<'_>) -> Result<OperatorCommand, OperatorCommandError> {
     if words.rest.is_empty() {
-        return Ok(Order::Sight(SightOrder::Screen(None)));
+        return Ok(OperatorCommand::Display(DisplayCommand::Screen(None)));
     }
     let screen = words.integer(0, SCREENS - 1, "a screen, 0 to 3")?;
-    Ok(Order::Sight(SightOrder::Screen(Some(screen))))
+    Ok(OperatorCommand::Display(DisplayCommand::Screen(Some(screen))))
 }
 
-fn picture(words: &mut Words<'_>) -> Result<Order, OrderError> {
+fn picture(words: &mut WordReader<'_>) -> Result<OperatorCommand, OperatorCommandError> {
     let screen = match words.required("'vector' or 'raster'")? {
         "vector" => Screen::Vector,
         "raster" => Screen::Raster,
@@ -112,15 +112,15 @@ fn picture(words: &mut Words<'_>) -> Result<Order, OrderError> {
         _ => (rest, None),
     };
     if file.is_empty() {
-        return Err(OrderError::Missing("a file name"));
+        return Err(OperatorCommandError::Missing("a file name"));
     }
-    Ok(Order::Sight(SightOrder::Picture { screen, file: file.into(), size }))
+    Ok(OperatorCommand::Display(DisplayCommand::Picture { screen, file: file.into(), size }))
 }
 
-fn pixel(words: &mut Words<'_>) -> Result<Order, OrderError> {
+fn pixel(words: &mut WordReader<'_>) -> Result<OperatorCommand, OperatorCommandError> {
     let x = words.integer(0, RASTER_WIDTH - 1, "a column, 0 to 639")?;
     let y = words.integer(0, RASTER_HEIGHT - 1, "a line, 0 to 479")?;
-    Ok(Order::Sight(SightOrder::Pixel { x, y }))
+    Ok(OperatorCommand::Display(DisplayCommand::Pixel { x, y }))
 }
 
 /// Whether a word is a number, or two with an x between them.
@@ -139,32 +139,32 @@ fn size(word: &str) -> Option<[u32; 2]> {
 ///
 /// # Errors
 /// Why a file was not written.
-pub(super) fn perform(order: &SightOrder, machine: &mut Machine, files: Option<&Beneath>) -> Result<String, String> {
+pub(super) fn perform(order: &DisplayCommand, machine: &mut Machine, files: Option<&Sandbox>) -> Result<String, String> {
     let mut controls = *machine.controls();
     match order {
-        SightOrder::Knob(None) => {}
-        SightOrder::Knob(Some((knob, to))) => knob.set(&mut controls, *to),
-        SightOrder::Phosphor(None) => return Ok(phosphors(&controls)),
-        SightOrder::Phosphor(Some(row)) => controls.phosphor = row,
-        SightOrder::Steady(on) => controls.steady = on.unwrap_or(controls.steady),
-        SightOrder::Screen(screen) => controls.screen = screen.unwrap_or(controls.screen),
-        SightOrder::Refresh => return Ok(refresh(machine)),
-        SightOrder::Pixel { x, y } => {
+        DisplayCommand::Knob(None) => {}
+        DisplayCommand::Knob(Some((knob, to))) => knob.set(&mut controls, *to),
+        DisplayCommand::Phosphor(None) => return Ok(phosphors(&controls)),
+        DisplayCommand::Phosphor(Some(row)) => controls.phosphor = row,
+        DisplayCommand::Steady(on) => controls.steady = on.unwrap_or(controls.steady),
+        DisplayCommand::Screen(screen) => controls.screen = screen.unwrap_or(controls.screen),
+        DisplayCommand::Refresh => return Ok(refresh(machine)),
+        DisplayCommand::Pixel { x, y } => {
             let [red, green, blue] = machine.frame_buffer().shown(*x, *y).unwrap_or_default();
             return Ok(format!("{red} {green} {blue}"));
         }
-        SightOrder::Picture { screen, file, size } => {
+        DisplayCommand::Picture { screen, file, size } => {
             return write(machine, *screen, file, *size, files.ok_or(REFUSED)?);
         }
     }
     machine.set_controls(controls);
     Ok(match order {
-        SightOrder::Knob(_) => {
+        DisplayCommand::Knob(_) => {
             let stand = KNOBS.iter().map(|knob| format!("{} {}", knob.name, knob.get(&controls)));
             stand.collect::<Vec<_>>().join(", ")
         }
-        SightOrder::Steady(_) => format!("steady {}", if controls.steady { "on" } else { "off" }),
-        SightOrder::Screen(_) => format!("screen {}", controls.screen),
+        DisplayCommand::Steady(_) => format!("steady {}", if controls.steady { "on" } else { "off" }),
+        DisplayCommand::Screen(_) => format!("screen {}", controls.screen),
         _ => controls.phosphor.name.into(),
     })
 }
@@ -190,7 +190,7 @@ fn write(
     screen: Screen,
     file: &str,
     size: Option<[u32; 2]>,
-    files: &Beneath,
+    files: &Sandbox,
 ) -> Result<String, String> {
     let path = Path::new(file);
     let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);

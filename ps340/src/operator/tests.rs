@@ -5,7 +5,7 @@ use crate::{
     line::LineId,
     machine::{Input, Key, KeyboardMode, Machine, Settings},
 };
-use files::Beneath;
+use files::Sandbox;
 
 #[test]
 fn every_row_has_its_own_word() {
@@ -16,61 +16,61 @@ fn every_row_has_its_own_word() {
 
 #[test]
 fn orders_read_back() {
-    assert_eq!(parse("dial 3 -0.25"), Ok(Order::Dial { dial: 3, turns: -0.25 }));
-    assert_eq!(parse("key 2 shift"), Ok(Order::Key(14)));
-    assert_eq!(parse("puck move 0.5 -1"), Ok(Order::PuckMove([0.5, -1.0])));
-    assert_eq!(parse("type a b\\r"), Ok(Order::Type("a b\r".into())));
-    assert_eq!(parse(r"type \e[A\x41\\x41\q\x4"), Ok(Order::Type(b"\x1b[AA\\x41\\q\\x4".to_vec())));
-    assert_eq!(parse("key Up"), Ok(Order::Press(Key::named("up").unwrap())));
-    assert_eq!(parse("key setup"), Ok(Order::Press(Key::Setup)));
-    assert_eq!(parse("mode command"), Ok(Order::Mode(Some(KeyboardMode::Command))));
-    assert_eq!(parse("mode"), Ok(Order::Mode(None)));
-    assert_eq!(parse("message"), Ok(Order::Message { fresh: false, frames: 600 }));
-    assert_eq!(parse("message new 3"), Ok(Order::Message { fresh: true, frames: 3 }));
-    assert_eq!(parse("lines"), Ok(Order::Lines(true)));
-    assert_eq!(parse("stylus down"), Ok(Order::PuckPress(1)));
-    assert_eq!(parse("stylus move 1 0.5"), Ok(Order::PuckMove([1.0, 0.5])));
+    assert_eq!(parse("dial 3 -0.25"), Ok(OperatorCommand::Dial { dial: 3, turns: -0.25 }));
+    assert_eq!(parse("key 2 shift"), Ok(OperatorCommand::Key(14)));
+    assert_eq!(parse("puck move 0.5 -1"), Ok(OperatorCommand::PuckMove([0.5, -1.0])));
+    assert_eq!(parse("type a b\\r"), Ok(OperatorCommand::Type("a b\r".into())));
+    assert_eq!(parse(r"type \e[A\x41\\x41\q\x4"), Ok(OperatorCommand::Type(b"\x1b[AA\\x41\\q\\x4".to_vec())));
+    assert_eq!(parse("key Up"), Ok(OperatorCommand::Press(Key::named("up").unwrap())));
+    assert_eq!(parse("key setup"), Ok(OperatorCommand::Press(Key::Setup)));
+    assert_eq!(parse("mode command"), Ok(OperatorCommand::Mode(Some(KeyboardMode::Command))));
+    assert_eq!(parse("mode"), Ok(OperatorCommand::Mode(None)));
+    assert_eq!(parse("message"), Ok(OperatorCommand::Message { fresh: false, frames: 600 }));
+    assert_eq!(parse("message new 3"), Ok(OperatorCommand::Message { fresh: true, frames: 3 }));
+    assert_eq!(parse("lines"), Ok(OperatorCommand::Lines(true)));
+    assert_eq!(parse("stylus down"), Ok(OperatorCommand::PuckPress(1)));
+    assert_eq!(parse("stylus move 1 0.5"), Ok(OperatorCommand::PuckMove([1.0, 0.5])));
     let file = "my picture.png".to_string();
     assert_eq!(
         parse("picture vector my picture.png 512"),
-        Ok(Order::Sight(SightOrder::Picture { screen: Screen::Vector, file, size: Some([512; 2]) }))
+        Ok(OperatorCommand::Display(DisplayCommand::Picture { screen: Screen::Vector, file, size: Some([512; 2]) }))
     );
     let file = "a.svg".to_string();
     assert_eq!(
         parse("picture vector a.svg 640x480"),
-        Ok(Order::Sight(SightOrder::Picture { screen: Screen::Vector, file, size: Some([640, 480]) }))
+        Ok(OperatorCommand::Display(DisplayCommand::Picture { screen: Screen::Vector, file, size: Some([640, 480]) }))
     );
-    assert_eq!(parse("knob"), Ok(Order::Sight(SightOrder::Knob(None))));
-    assert_eq!(parse("steady off"), Ok(Order::Sight(SightOrder::Steady(Some(false)))));
-    assert_eq!(parse("screen 3"), Ok(Order::Sight(SightOrder::Screen(Some(3)))));
+    assert_eq!(parse("knob"), Ok(OperatorCommand::Display(DisplayCommand::Knob(None))));
+    assert_eq!(parse("steady off"), Ok(OperatorCommand::Display(DisplayCommand::Steady(Some(false)))));
+    assert_eq!(parse("screen 3"), Ok(OperatorCommand::Display(DisplayCommand::Screen(Some(3)))));
 }
 
 #[test]
 fn bad_orders_name_the_word_that_is_wrong() {
-    assert_eq!(parse(""), Err(OrderError::Missing("an order")));
-    assert!(matches!(parse("dance"), Err(OrderError::Unknown { word, .. }) if word == "dance"));
-    assert_eq!(parse("dial 9 1"), Err(OrderError::Bad { found: "9".into(), expected: "a dial, 1 to 8" }));
-    assert_eq!(parse("dial 1 NaN"), Err(OrderError::Bad { found: "NaN".into(), expected: "a number of turns" }));
+    assert_eq!(parse(""), Err(OperatorCommandError::Missing("an order")));
+    assert!(matches!(parse("dance"), Err(OperatorCommandError::Unknown { word, .. }) if word == "dance"));
+    assert_eq!(parse("dial 9 1"), Err(OperatorCommandError::Bad { found: "9".into(), expected: "a dial, 1 to 8" }));
+    assert_eq!(parse("dial 1 NaN"), Err(OperatorCommandError::Bad { found: "NaN".into(), expected: "a number of turns" }));
     let expected = "a function key, 1 to 12, or a key of the list 'keys'";
-    assert_eq!(parse("key hyper"), Err(OrderError::Bad { found: "hyper".into(), expected }));
-    assert_eq!(parse("key up shift"), Err(OrderError::TooMuch("shift".into())));
+    assert_eq!(parse("key hyper"), Err(OperatorCommandError::Bad { found: "hyper".into(), expected }));
+    assert_eq!(parse("key up shift"), Err(OperatorCommandError::TooMuch("shift".into())));
     let expected = "'terminal', 'command' or 'interactive'";
-    assert_eq!(parse("mode chat"), Err(OrderError::Bad { found: "chat".into(), expected }));
+    assert_eq!(parse("mode chat"), Err(OperatorCommandError::Bad { found: "chat".into(), expected }));
     assert_eq!(
         parse("stylus press"),
-        Err(OrderError::Bad { found: "press".into(), expected: "'move', 'down', 'up' or 'away'" })
+        Err(OperatorCommandError::Bad { found: "press".into(), expected: "'move', 'down', 'up' or 'away'" })
     );
     let expected = "'dot', 'json' or the name of a file, with a point in it";
-    assert_eq!(parse("graph network jsno"), Err(OrderError::Bad { found: "jsno".into(), expected }));
+    assert_eq!(parse("graph network jsno"), Err(OperatorCommandError::Bad { found: "jsno".into(), expected }));
     assert!(parse("graph network a.dot").is_ok() && parse("graph network json").is_ok());
     assert!(
-        matches!(parse("help dail"), Err(OrderError::Unknown { word, hint }) if word == "dail" && hint.contains("dial"))
+        matches!(parse("help dail"), Err(OperatorCommandError::Unknown { word, hint }) if word == "dail" && hint.contains("dial"))
     );
     let expected = "a size, 1 to 8192, or WIDTHxHEIGHT";
-    assert_eq!(parse("picture vector a.png 9000"), Err(OrderError::Bad { found: "9000".into(), expected }));
+    assert_eq!(parse("picture vector a.png 9000"), Err(OperatorCommandError::Bad { found: "9000".into(), expected }));
     assert!(parse("picture vector a.png 0x5").is_err() && parse("knob focus 1.5").is_err());
     assert!(parse("knob volume 1").is_err() && parse("phosphor P0").is_err() && parse("screen 4").is_err());
-    assert_eq!(parse("button 3 4"), Err(OrderError::TooMuch("4".into())));
+    assert_eq!(parse("button 3 4"), Err(OperatorCommandError::TooMuch("4".into())));
 }
 
 #[test]
@@ -81,8 +81,8 @@ fn a_reply_is_one_line() {
 }
 
 /// Files may be anywhere.
-fn everywhere() -> Beneath {
-    Beneath::open("/").unwrap()
+fn everywhere() -> Sandbox {
+    Sandbox::open("/").unwrap()
 }
 
 #[test]
@@ -90,20 +90,20 @@ fn orders_that_reach_out_need_a_folder_for_it() {
     let mut machine = Machine::new(Settings::default());
     for order in ["picture vector a.png", "picture vector a.svg", "graph network a.dot", "quit"] {
         let order = parse(order).unwrap();
-        let Outcome::Done(Err(text)) = perform(&order, &mut machine, None) else { panic!("{order:?}") };
+        let CommandOutcome::Done(Err(text)) = perform(&order, &mut machine, None) else { panic!("{order:?}") };
         assert!(text.contains("--orders"), "{text}");
     }
     for order in ["dial 1 0.5", "graph network dot", "knob focus 0.5", "panel"] {
         let outcome = perform(&parse(order).unwrap(), &mut machine, None);
-        assert!(matches!(outcome, Outcome::Done(Ok(_))), "{order}: {outcome:?}");
+        assert!(matches!(outcome, CommandOutcome::Done(Ok(_))), "{order}: {outcome:?}");
     }
     let folder = tempfile::tempdir().unwrap();
-    let files = Beneath::open(folder.path()).unwrap();
+    let files = Sandbox::open(folder.path()).unwrap();
     for (order, is_written) in
         [("picture vector a.txt", true), ("picture vector ../a.txt", false), ("graph network /a.dot", false)]
     {
         let outcome = perform(&parse(order).unwrap(), &mut machine, Some(&files));
-        assert_eq!(matches!(outcome, Outcome::Done(Ok(_))), is_written, "{order}: {outcome:?}");
+        assert_eq!(matches!(outcome, CommandOutcome::Done(Ok(_))), is_written, "{order}: {outcome:?}");
     }
 }
 
@@ -113,8 +113,8 @@ fn replies(text: &str, orders: &[&str]) -> Vec<String> {
     let line = LineId(1);
     machine.step([Input::Attach(line), Input::Bytes(line, text.as_bytes().to_vec())], 0);
     let one = |order: &&str| match parse(order).map(|order| perform(&order, &mut machine, Some(&everywhere()))) {
-        Ok(Outcome::Done(result)) => reply(&result),
-        Ok(Outcome::Waiting(wait)) => loop {
+        Ok(CommandOutcome::Done(result)) => reply(&result),
+        Ok(CommandOutcome::Waiting(wait)) => loop {
             if let Some(result) = wait.poll(&mut machine) {
                 break reply(&result);
             }
@@ -212,7 +212,7 @@ fn graphs_show_functions_arcs_and_nodes() {
 
 fn performed(machine: &mut Machine, order: &str) -> String {
     match perform(&parse(order).unwrap(), machine, Some(&everywhere())) {
-        Outcome::Done(Ok(text)) => text,
+        CommandOutcome::Done(Ok(text)) => text,
         other => panic!("{order}: {other:?}"),
     }
 }

@@ -15,8 +15,8 @@ mod pattern;
 mod player;
 mod script;
 
-pub use player::{End, Failure, Patience, Player, Watcher};
-pub use script::{Expected, Line, Script, ScriptError, ScriptProblem, Step};
+pub use player::{PlayEnd, Failure, PlayOptions, Player, Watcher};
+pub use script::{Expected, ScriptLine, Script, ScriptError, ScriptProblem, Step};
 
 #[cfg(test)]
 mod tests;

@@ -1,32 +1,32 @@
 //! The player: a machine, one host on its line, an operator, and time that passes only while a step waits.
 
-use super::script::{Expected, Line, Script, Step};
+use super::script::{Expected, ScriptLine, Script, Step};
 use crate::{
     line::LineId,
     machine::{Input, Machine, Micros, Settings, time_of_frame},
-    operator::{Outcome, perform},
+    operator::{CommandOutcome, perform},
 };
-use files::Beneath;
+use files::Sandbox;
 use std::collections::VecDeque;
 
 /// The host line that the text of the files goes to.
 const LINE: LineId = LineId(1);
 /// Messages of the machine that wait to be expected; older ones of the classes W and I are forgotten.
-const KEPT_MESSAGES: usize = 10_000;
+const MAX_PENDING_MESSAGES: usize = 10_000;
 
 /// How a run waits and judges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Patience {
+pub struct PlayOptions {
     /// Frames that a step waits for a message, if it does not say.
     pub frames: u64,
     /// Whether a failed step lets the run go on, and errors of the machine that no step expected are forgiven.
     pub keep_going: bool,
 }
 
-impl Default for Patience {
+impl Default for PlayOptions {
     /// A second, and no forgiveness.
-    fn default() -> Patience {
-        Patience { frames: 60, keep_going: false }
+    fn default() -> PlayOptions {
+        PlayOptions { frames: 60, keep_going: false }
     }
 }
 
@@ -34,7 +34,7 @@ impl Default for Patience {
 pub trait Watcher {
     /// A line of the transcript: `>` text to the machine, `@` a directive, `=` the reply of the operator's line, `<` a
     /// message to the host, `!` a message of the machine.
-    fn heard(&mut self, sign: char, text: &[u8]);
+    fn log(&mut self, sign: char, text: &[u8]);
 
     /// A frame has passed, or a line was begun. Returns whether the run is to end.
     fn stops(&mut self, file: &str, line: usize, frame: u64) -> bool;
@@ -59,7 +59,7 @@ impl std::fmt::Display for Failure {
 
 /// How a file ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum PlayEnd {
     /// All its lines were played.
     Played,
     /// A step failed, and the run does not go on.
@@ -74,9 +74,9 @@ pub enum End {
 #[derive(Debug)]
 pub struct Player {
     machine: Machine,
-    patience: Patience,
+    patience: PlayOptions,
     /// The folder below which orders write; none if they may not.
-    files: Option<Beneath>,
+    files: Option<Sandbox>,
     /// Messages of the machine that were taken from its log.
     seen: u64,
     /// Messages of the machine that no step has expected yet, with the line during which they came.
@@ -96,7 +96,7 @@ impl Player {
     /// A machine as after its start, with a host on its line.
     ///
     /// - `files`: the folder below which orders write; without one, those that write files or end the machine fail.
-    pub fn new(settings: Settings, patience: Patience, files: Option<Beneath>) -> Player {
+    pub fn new(settings: Settings, patience: PlayOptions, files: Option<Sandbox>) -> Player {
         let mut machine = Machine::new(settings);
         machine.step([Input::Attach(LINE)], 0);
         Player {
@@ -115,12 +115,12 @@ impl Player {
     }
 
     /// Plays a file. What it leaves in the machine stays for the next one.
-    pub fn play(&mut self, script: &Script, watcher: &mut dyn Watcher) -> End {
+    pub fn play(&mut self, script: &Script, watcher: &mut dyn Watcher) -> PlayEnd {
         self.file.clone_from(&script.file);
-        for Line { number, step } in &script.lines {
+        for ScriptLine { number, step } in &script.lines {
             self.line = *number;
             if watcher.stops(&self.file, self.line, self.machine.frame()) {
-                return End::Stopped;
+                return PlayEnd::Stopped;
             }
             self.unsent += 1;
             let end = match step {
@@ -130,40 +130,40 @@ impl Player {
                     let mut bytes = vec![b'\n'; std::mem::take(&mut self.unsent) - 1];
                     bytes.extend_from_slice(text);
                     if !text.trim_ascii().is_empty() {
-                        watcher.heard('>', text.trim_ascii_end());
+                        watcher.log('>', text.trim_ascii_end());
                     }
                     self.step([Input::Bytes(LINE, bytes)], 0, watcher);
                     None
                 }
-                Step::Order(order, text) => {
-                    watcher.heard('@', text.as_bytes());
+                Step::OperatorCommand(order, text) => {
+                    watcher.log('@', text.as_bytes());
                     let outcome = perform(order, &mut self.machine, self.files.as_ref());
                     self.step([], 0, watcher);
-                    self.order(outcome, watcher)
+                    self.perform_command(outcome, watcher)
                 }
                 Step::Expect { expected, within } => {
-                    watcher.heard('@', format!("expect {expected}").as_bytes());
+                    watcher.log('@', format!("expect {expected}").as_bytes());
                     self.steps += 1;
                     self.expect(expected, within.unwrap_or(self.patience.frames), watcher)
                 }
             };
             match end {
-                Some(End::Failed) if self.patience.keep_going => {}
+                Some(PlayEnd::Failed) if self.patience.keep_going => {}
                 Some(end) => return end,
                 None => {}
             }
         }
-        End::Played
+        PlayEnd::Played
     }
 
     /// Lets frames pass.
-    pub fn wait(&mut self, frames: u64, watcher: &mut dyn Watcher) -> End {
+    pub fn wait(&mut self, frames: u64, watcher: &mut dyn Watcher) -> PlayEnd {
         for _ in 0..frames {
             if self.frame(watcher) {
-                return End::Stopped;
+                return PlayEnd::Stopped;
             }
         }
-        End::Played
+        PlayEnd::Played
     }
 
     /// Ends the line of the host: what it began and did not end is given up, and said.
@@ -193,29 +193,29 @@ impl Player {
         &mut self.machine
     }
 
-    fn fail(&mut self, text: String) -> Option<End> {
+    fn fail(&mut self, text: String) -> Option<PlayEnd> {
         self.failures.push(Failure { file: self.file.clone(), line: self.line, text });
-        Some(End::Failed)
+        Some(PlayEnd::Failed)
     }
 
-    fn order(&mut self, outcome: Outcome, watcher: &mut dyn Watcher) -> Option<End> {
+    fn perform_command(&mut self, outcome: CommandOutcome, watcher: &mut dyn Watcher) -> Option<PlayEnd> {
         let result = match outcome {
-            Outcome::Quit => return Some(End::Quit),
-            Outcome::Done(result) => result,
-            Outcome::Waiting(wait) => loop {
+            CommandOutcome::Quit => return Some(PlayEnd::Quit),
+            CommandOutcome::Done(result) => result,
+            CommandOutcome::Waiting(wait) => loop {
                 if let Some(result) = wait.poll(&mut self.machine) {
                     break result;
                 }
                 if self.frame(watcher) {
-                    return Some(End::Stopped);
+                    return Some(PlayEnd::Stopped);
                 }
             },
         };
-        watcher.heard('=', crate::operator::reply(&result).as_bytes());
+        watcher.log('=', crate::operator::reply(&result).as_bytes());
         result.err().and_then(|error| self.fail(error))
     }
 
-    fn expect(&mut self, expected: &Expected, frames: u64, watcher: &mut dyn Watcher) -> Option<End> {
+    fn expect(&mut self, expected: &Expected, frames: u64, watcher: &mut dyn Watcher) -> Option<PlayEnd> {
         let last = self.machine.frame().saturating_add(frames);
         loop {
             match expected {
@@ -257,7 +257,7 @@ impl Player {
                 };
             }
             if self.frame(watcher) {
-                return Some(End::Stopped);
+                return Some(PlayEnd::Stopped);
             }
         }
     }
@@ -274,7 +274,7 @@ impl Player {
         }
         let end = self.partial.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
         for line in self.partial[..end].split_inclusive(|byte| *byte == b'\n') {
-            watcher.heard('<', line.trim_ascii_end());
+            watcher.log('<', line.trim_ascii_end());
         }
         self.partial.drain(..end);
         let said = self.machine.counters().messages;
@@ -283,9 +283,9 @@ impl Player {
         let kept = self.machine.log().count();
         let place = |text: &str| Failure { file: self.file.clone(), line: self.line, text: text.into() };
         for text in self.machine.log().skip(kept.saturating_sub(new)) {
-            watcher.heard('!', text.as_bytes());
+            watcher.log('!', text.as_bytes());
             self.waiting.push_back(place(text));
-            if self.waiting.len() > KEPT_MESSAGES {
+            if self.waiting.len() > MAX_PENDING_MESSAGES {
                 self.waiting.pop_front();
             }
         }

@@ -1,7 +1,7 @@
 //! The lines of a command file that is played.
 
 use super::pattern::matches;
-use crate::operator::{self, Order, OrderError, unescape};
+use crate::operator::{self, OperatorCommand, OperatorCommandError, unescape};
 
 /// A command file, line by line.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -9,12 +9,12 @@ pub struct Script {
     /// The name of the file, for reports.
     pub file: String,
     /// Its lines; empty ones are text too.
-    pub lines: Vec<Line>,
+    pub lines: Vec<ScriptLine>,
 }
 
 /// A line of a command file.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Line {
+pub struct ScriptLine {
     /// Its number, from 1.
     pub number: usize,
     /// What it does.
@@ -27,7 +27,7 @@ pub enum Step {
     /// Goes to the machine as it is, with its line end.
     Text(Vec<u8>),
     /// An order of the operator, and its text.
-    Order(Order, String),
+    OperatorCommand(OperatorCommand, String),
     /// Waits for something.
     Expect {
         /// For what.
@@ -78,7 +78,7 @@ pub struct ScriptError {
 pub enum ScriptProblem {
     /// It is no order.
     #[error(transparent)]
-    Order(#[from] OrderError),
+    OperatorCommand(#[from] OperatorCommandError),
     /// What it waits for cannot be read.
     #[error(
         "'{0}' is nothing to expect; write 'TEXT', /PATTERN*/, NUMBER [TOLERANCE], typed 'TEXT', error E 5 ..., or none \
@@ -110,7 +110,7 @@ impl Script {
                 },
             };
             match step {
-                Ok(step) => script.lines.push(Line { number, step }),
+                Ok(step) => script.lines.push(ScriptLine { number, step }),
                 Err(problem) => errors.push(ScriptError { file: file.into(), line: number, problem }),
             }
         }
@@ -124,7 +124,7 @@ fn read_directive(text: &str) -> Result<Step, ScriptProblem> {
     }
     match text.split_once(char::is_whitespace).unwrap_or((text, "")) {
         ("expect", rest) => read_expected(rest.trim()),
-        _ => Ok(Step::Order(operator::parse(text)?, text.into())),
+        _ => Ok(Step::OperatorCommand(operator::parse(text)?, text.into())),
     }
 }
 

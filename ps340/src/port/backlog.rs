@@ -1,13 +1,13 @@
 //! The messages behind the first at each input: queues that are lent to the ports that need one.
 
-use super::place::{self, HUSK};
+use super::place::{self, PLACEHOLDER};
 use protocol::Value;
 
 /// Most messages that wait at one input; later ones are lost, counted and reported. Ours.
 pub const MAX_QUEUE: usize = 10_000;
 
 /// Places above which the memory of a queue that comes back is freed.
-const KEPT_PLACES: usize = 64;
+const RETAINED_SLOTS: usize = 64;
 
 /// The queues of all ports of a network.
 ///
@@ -21,7 +21,7 @@ pub struct Backlog {
 
 /// What a port holds of the queue that it was lent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Lent(u32);
+pub(super) struct QueueHandle(u32);
 
 /// Messages in places that are used again and again, going round.
 #[derive(Debug, Default)]
@@ -32,9 +32,9 @@ struct Ring {
     length: usize,
 }
 
-impl Lent {
+impl QueueHandle {
     /// No queue.
-    pub(super) const NOTHING: Lent = Lent(u32::MAX);
+    pub(super) const NOTHING: QueueHandle = QueueHandle(u32::MAX);
 }
 
 impl Backlog {
@@ -44,7 +44,7 @@ impl Backlog {
     }
 
     /// How many queues are lent.
-    pub const fn lent(&self) -> usize {
+    pub const fn capacity_in_use(&self) -> usize {
         self.queues.len() - self.free.len()
     }
 
@@ -52,10 +52,10 @@ impl Backlog {
     ///
     /// - Returns false if the queue is full, or there is no number for one more queue; the message stays.
     #[inline(always)]
-    pub(super) fn push(&mut self, lent: &mut Lent, message: &mut Value) -> bool {
-        if *lent == Lent::NOTHING {
+    pub(super) fn push(&mut self, lent: &mut QueueHandle, message: &mut Value) -> bool {
+        if *lent == QueueHandle::NOTHING {
             let Some(number) = self.free.pop().or_else(|| self.more()) else { return false };
-            *lent = Lent(number);
+            *lent = QueueHandle(number);
         }
         let ring = &mut self.queues[lent.0 as usize];
         if ring.length + 1 >= MAX_QUEUE {
@@ -69,7 +69,7 @@ impl Backlog {
     ///
     /// - Returns false if there is no message.
     #[inline(always)]
-    pub(super) fn pop(&mut self, lent: &mut Lent, to: &mut Value) -> bool {
+    pub(super) fn pop(&mut self, lent: &mut QueueHandle, to: &mut Value) -> bool {
         match self.queues.get_mut(lent.0 as usize) {
             Some(ring) if ring.length > 0 => {
                 ring.pop(to);
@@ -83,7 +83,7 @@ impl Backlog {
     }
 
     /// Moves the message that came last to a place, if there is one; the others go with the queue.
-    pub(super) fn pop_last(&mut self, lent: &mut Lent, to: &mut Value) {
+    pub(super) fn pop_last(&mut self, lent: &mut QueueHandle, to: &mut Value) {
         if let Some(last) = self.queues.get_mut(lent.0 as usize).and_then(Ring::last) {
             place::shift(last, to);
         }
@@ -91,31 +91,31 @@ impl Backlog {
     }
 
     /// The messages, the first first.
-    pub(super) fn messages(&self, lent: Lent) -> impl Iterator<Item = &Value> {
+    pub(super) fn messages(&self, lent: QueueHandle) -> impl Iterator<Item = &Value> {
         self.queues.get(lent.0 as usize).into_iter().flat_map(Ring::messages)
     }
 
     /// How many messages there are.
-    pub(super) fn length(&self, lent: Lent) -> usize {
+    pub(super) fn length(&self, lent: QueueHandle) -> usize {
         self.queues.get(lent.0 as usize).map_or(0, |ring| ring.length)
     }
 
     /// Takes a queue back, with whatever is in it.
     #[inline(never)]
-    pub(super) fn take_back(&mut self, lent: &mut Lent) {
+    pub(super) fn take_back(&mut self, lent: &mut QueueHandle) {
         if let Some(ring) = self.queues.get_mut(lent.0 as usize) {
-            if ring.length > 0 || ring.places.len() > KEPT_PLACES {
+            if ring.length > 0 || ring.places.len() > RETAINED_SLOTS {
                 *ring = Ring::default();
             }
             self.free.push(lent.0);
-            *lent = Lent::NOTHING;
+            *lent = QueueHandle::NOTHING;
         }
     }
 
     /// Makes one more queue.
     #[cold]
     fn more(&mut self) -> Option<u32> {
-        let number = u32::try_from(self.queues.len()).ok().filter(|&number| Lent(number) != Lent::NOTHING)?;
+        let number = u32::try_from(self.queues.len()).ok().filter(|&number| QueueHandle(number) != QueueHandle::NOTHING)?;
         self.queues.push(Ring::default());
         Some(number)
     }
@@ -154,7 +154,7 @@ impl Ring {
     fn grow(&mut self) {
         self.places.rotate_left(self.first);
         self.first = 0;
-        self.places.resize_with((2 * self.length).max(4), || HUSK);
+        self.places.resize_with((2 * self.length).max(4), || PLACEHOLDER);
     }
 }
 
@@ -165,7 +165,7 @@ mod tests {
     #[test]
     fn a_queue_that_came_back_is_lent_again() {
         let mut backlog = Backlog::new();
-        let (mut a, mut b, mut place) = (Lent::NOTHING, Lent::NOTHING, HUSK);
+        let (mut a, mut b, mut place) = (QueueHandle::NOTHING, QueueHandle::NOTHING, PLACEHOLDER);
         assert!(!backlog.pop(&mut a, &mut place));
         for i in 0..3 {
             assert!(backlog.push(&mut a, &mut Value::Integer(i)));
@@ -173,21 +173,21 @@ mod tests {
         for i in 0..3 {
             assert!(backlog.pop(&mut a, &mut place) && place == Value::Integer(i));
         }
-        assert_eq!(backlog.lent(), 1, "it comes back when it is asked in vain");
+        assert_eq!(backlog.capacity_in_use(), 1, "it comes back when it is asked in vain");
         assert!(!backlog.pop(&mut a, &mut place));
-        assert_eq!((a, backlog.lent()), (Lent::NOTHING, 0));
+        assert_eq!((a, backlog.capacity_in_use()), (QueueHandle::NOTHING, 0));
         backlog.push(&mut b, &mut Value::Integer(5));
         backlog.push(&mut a, &mut Value::Integer(6));
         backlog.push(&mut a, &mut Value::Integer(7));
-        assert_eq!((b, backlog.lent()), (Lent(0), 2));
+        assert_eq!((b, backlog.capacity_in_use()), (QueueHandle(0), 2));
         backlog.pop_last(&mut a, &mut place);
         assert_eq!(place, Value::Integer(7));
-        assert_eq!((backlog.length(a), backlog.length(b), backlog.lent()), (0, 1, 1));
+        assert_eq!((backlog.length(a), backlog.length(b), backlog.capacity_in_use()), (0, 1, 1));
     }
 
     #[test]
     fn a_ring_keeps_the_order_while_it_grows_and_goes_round() {
-        let (mut ring, mut place, mut next_in, mut next_out) = (Ring::default(), HUSK, 0, 0);
+        let (mut ring, mut place, mut next_in, mut next_out) = (Ring::default(), PLACEHOLDER, 0, 0);
         for burst in [3, 5, 1, 40, 2, 100] {
             for _ in 0..burst {
                 ring.push(&mut if next_in % 2 == 0 {

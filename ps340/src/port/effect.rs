@@ -174,7 +174,7 @@ pub enum Effect {
         /// The function, to which the interpreter belongs.
         function: ObjectId,
         /// What the bytes are.
-        stream: Stream,
+        stream: StreamKind,
         /// Some of them; a command may go on in the next.
         bytes: Box<[u8]>,
         /// Whether these are the first since the function was instanced: what was unfinished before is forgotten.
@@ -222,7 +222,7 @@ pub enum TabletCommand {
 
 /// What bytes for an interpreter are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stream {
+pub enum StreamKind {
     /// Text of commands.
     Text,
     /// Binary records of commands.

@@ -3,7 +3,7 @@
 use glam::{DMat2, DMat3, DMat4, DVec2, DVec3, DVec4};
 use protocol::{
     Name, Value,
-    value::{Label, PickList, PickedPlace, TransformedVectors, VectorEnd},
+    value::{Label, PickList, PickCoordinates, TransformedVectors, VectorEnd},
 };
 use std::{fmt, sync::Arc};
 
@@ -62,7 +62,7 @@ pub struct PickLiteral {
 impl PickLiteral {
     fn list(&self) -> PickList {
         let place =
-            |(point, dimension)| PickedPlace { point: DVec3::from(point), dimension, parameter: self.parameter };
+            |(point, dimension)| PickCoordinates { point: DVec3::from(point), dimension, parameter: self.parameter };
         PickList {
             index: self.index,
             identifiers: self.identifiers.iter().filter_map(|name| Name::new(name).ok()).collect(),

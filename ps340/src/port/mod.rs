@@ -12,7 +12,7 @@ mod queue;
 mod rendering;
 
 pub use backlog::{Backlog, MAX_QUEUE};
-pub use effect::{DialSetting, Effect, FileName, Label, MAX_FILE_NAME, Stream, TabletCommand};
+pub use effect::{DialSetting, Effect, FileName, Label, MAX_FILE_NAME, StreamKind, TabletCommand};
 pub use fault::{Cause, Fault, Problem};
 pub use firing::{Elapsed, Firing};
 pub use kinds::KindSet;
@@ -52,14 +52,14 @@ pub struct PortSpec {
     /// The kinds of message that it accepts; others are faults on arrival.
     pub kinds: KindSet,
     /// How messages wait and whether the function waits for them.
-    pub role: Role,
+    pub role: QueueRole,
     /// What it is for, in a few words, with unit and range.
     pub summary: &'static str,
 }
 
 /// How messages wait at an input.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Role {
+pub enum QueueRole {
     /// A queue. A firing consumes one message of it.
     Active,
     /// The most recent value, used again and again. The function waits for the first one.
@@ -73,21 +73,21 @@ pub enum Role {
 impl PortSpec {
     /// An active input.
     pub const fn active(kinds: KindSet, summary: &'static str) -> PortSpec {
-        PortSpec { kinds, role: Role::Active, summary }
+        PortSpec { kinds, role: QueueRole::Active, summary }
     }
 
     /// A constant input that must have a value before the function fires.
     pub const fn constant(kinds: KindSet, summary: &'static str) -> PortSpec {
-        PortSpec { kinds, role: Role::Constant, summary }
+        PortSpec { kinds, role: QueueRole::Constant, summary }
     }
 
     /// A constant input that may stay without a value.
     pub const fn optional(kinds: KindSet, summary: &'static str) -> PortSpec {
-        PortSpec { kinds, role: Role::Optional, summary }
+        PortSpec { kinds, role: QueueRole::Optional, summary }
     }
 
     /// A constant input with a value at the start.
     pub const fn default(kinds: KindSet, value: Literal, summary: &'static str) -> PortSpec {
-        PortSpec { kinds, role: Role::Default(value), summary }
+        PortSpec { kinds, role: QueueRole::Default(value), summary }
     }
 }

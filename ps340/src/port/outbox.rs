@@ -22,7 +22,7 @@ impl Default for Outbox {
 impl Outbox {
     /// An empty one.
     pub const fn new() -> Outbox {
-        Outbox { first: (0, place::HUSK), filled: false, more: Vec::new() }
+        Outbox { first: (0, place::PLACEHOLDER), filled: false, more: Vec::new() }
     }
 
     /// Adds a result.
@@ -30,7 +30,7 @@ impl Outbox {
     pub(super) fn push(&mut self, output: u16, message: &mut Value) {
         match self.next(output) {
             Some(place) => place::shift(message, place),
-            None => self.more.push((output, std::mem::replace(message, place::HUSK))),
+            None => self.more.push((output, std::mem::replace(message, place::PLACEHOLDER))),
         }
     }
 

@@ -9,7 +9,7 @@ use glam::DMat4;
 use protocol::Value;
 
 /// What lies where a message was taken out.
-pub(super) const HUSK: Value = Value::Boolean(false);
+pub(super) const PLACEHOLDER: Value = Value::Boolean(false);
 
 /// Moves a message from one place to another. What stays behind is of no use.
 #[inline(always)]
@@ -48,7 +48,7 @@ fn shift_any(from: &mut Value, to: &mut Value) {
         Value::Vector2(vector) => *to = Value::Vector2(*vector),
         Value::Vector3(vector) => *to = Value::Vector3(*vector),
         Value::Vector4(vector) => *to = Value::Vector4(*vector),
-        from => *to = std::mem::replace(from, HUSK),
+        from => *to = std::mem::replace(from, PLACEHOLDER),
     }
 }
 
@@ -66,6 +66,6 @@ pub(super) fn clear(place: &mut Value) {
             | Value::Matrix4(_)
     );
     if !plain {
-        *place = HUSK;
+        *place = PLACEHOLDER;
     }
 }

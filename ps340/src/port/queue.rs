@@ -1,9 +1,9 @@
 //! The messages that wait at one input.
 
 use super::{
-    Backlog, Literal, PortSpec, Role,
-    backlog::Lent,
-    place::{self, HUSK},
+    Backlog, Literal, PortSpec, QueueRole,
+    backlog::QueueHandle,
+    place::{self, PLACEHOLDER},
 };
 use protocol::{Kind, Value};
 
@@ -14,7 +14,7 @@ use protocol::{Kind, Value};
 #[derive(Debug)]
 pub struct Port {
     value: Value,
-    rest: Lent,
+    rest: QueueHandle,
     /// The kinds that the input accepts, and flags: one word, since all of it is asked at each arrival.
     state: u32,
 }
@@ -34,24 +34,24 @@ pub enum Arrival {
     /// It is the first that the function was waiting for at this input.
     Awaited,
     /// It waits behind others, or replaced a constant.
-    Kept,
+    Queued,
     /// The queue was full: it is lost.
     Lost,
 }
 
 impl Port {
     /// An empty port without a function.
-    pub const UNUSED: Port = Port { value: HUSK, rest: Lent::NOTHING, state: 0 };
+    pub const UNUSED: Port = Port { value: PLACEHOLDER, rest: QueueHandle::NOTHING, state: 0 };
 
     /// An input as a new instance has it.
     pub fn new(spec: &PortSpec) -> Port {
         let (value, flags) = match &spec.role {
-            Role::Active => (HUSK, ACTIVE),
-            Role::Constant => (HUSK, REQUIRED),
-            Role::Optional => (HUSK, 0),
-            Role::Default(literal) => (Literal::value(literal), FILLED),
+            QueueRole::Active => (PLACEHOLDER, ACTIVE),
+            QueueRole::Constant => (PLACEHOLDER, REQUIRED),
+            QueueRole::Optional => (PLACEHOLDER, 0),
+            QueueRole::Default(literal) => (Literal::value(literal), FILLED),
         };
-        Port { value, rest: Lent::NOTHING, state: flags | spec.kinds.bits() }
+        Port { value, rest: QueueHandle::NOTHING, state: flags | spec.kinds.bits() }
     }
 
     /// Whether the input accepts a kind of message.
@@ -109,11 +109,11 @@ impl Port {
     pub fn arrive(&mut self, message: &mut Value, backlog: &mut Backlog) -> Arrival {
         let state = self.state;
         if state & (ACTIVE | FILLED) == ACTIVE | FILLED {
-            return if backlog.push(&mut self.rest, message) { Arrival::Kept } else { Arrival::Lost };
+            return if backlog.push(&mut self.rest, message) { Arrival::Queued } else { Arrival::Lost };
         }
         place::shift(message, &mut self.value);
         self.state = state | FILLED | FRESH;
-        if state & FILLED == 0 && state & (ACTIVE | REQUIRED) != 0 { Arrival::Awaited } else { Arrival::Kept }
+        if state & FILLED == 0 && state & (ACTIVE | REQUIRED) != 0 { Arrival::Awaited } else { Arrival::Queued }
     }
 
     /// Removes the first message of a queue.
@@ -121,7 +121,7 @@ impl Port {
     /// - Returns whether the queue is empty now.
     #[inline(always)]
     pub fn consume(&mut self, backlog: &mut Backlog) -> bool {
-        if self.rest != Lent::NOTHING && backlog.pop(&mut self.rest, &mut self.value) {
+        if self.rest != QueueHandle::NOTHING && backlog.pop(&mut self.rest, &mut self.value) {
             return false;
         }
         place::clear(&mut self.value);
@@ -150,7 +150,7 @@ impl Port {
     /// The first message or the constant; a husk if there is none.
     #[inline]
     pub(super) const fn peek(&self) -> &Value {
-        if self.is_empty() { &HUSK } else { &self.value }
+        if self.is_empty() { &PLACEHOLDER } else { &self.value }
     }
 
     /// Takes the content of the first message of a queue, which stays as a husk until it is consumed; copies a
@@ -159,7 +159,7 @@ impl Port {
     pub fn take(&mut self) -> Value {
         match &mut self.value {
             Value::Real(number) => Value::Real(*number),
-            value if self.state & ACTIVE != 0 => std::mem::replace(value, HUSK),
+            value if self.state & ACTIVE != 0 => std::mem::replace(value, PLACEHOLDER),
             value => value.clone(),
         }
     }
@@ -178,7 +178,7 @@ impl Port {
 
     /// Forgets the constant.
     pub(super) fn forget(&mut self) {
-        self.value = HUSK;
+        self.value = PLACEHOLDER;
         self.state &= !FILLED;
     }
 
@@ -211,7 +211,7 @@ mod tests {
         let mut queue = Port::new(&PortSpec::active(KindSet::ANY, ""));
         let mut constant = Port::new(&PortSpec::constant(KindSet::ANY, ""));
         for i in 0..5 {
-            let expected = if i == 0 { Arrival::Awaited } else { Arrival::Kept };
+            let expected = if i == 0 { Arrival::Awaited } else { Arrival::Queued };
             assert_eq!(arrive(&mut queue, &mut backlog, i), expected);
             assert_eq!(arrive(&mut constant, &mut backlog, i), expected);
         }
@@ -221,7 +221,7 @@ mod tests {
         }
         assert_eq!(queue.first(), None);
         assert_eq!((constant.first(), constant.len(&backlog)), (Some(&Value::Integer(4)), 1));
-        assert_eq!(backlog.lent(), 0);
+        assert_eq!(backlog.capacity_in_use(), 0);
     }
 
     #[test]
@@ -244,7 +244,7 @@ mod tests {
             arrive(&mut port, &mut backlog, i);
         }
         port.make_constant(true, &mut backlog);
-        assert_eq!((port.first(), port.len(&backlog), backlog.lent()), (Some(&Value::Integer(2)), 1, 0));
+        assert_eq!((port.first(), port.len(&backlog), backlog.capacity_in_use()), (Some(&Value::Integer(2)), 1, 0));
         port.make_active();
         arrive(&mut port, &mut backlog, 7);
         assert!(!port.consume(&mut backlog));

@@ -11,12 +11,12 @@
 
 use super::{
     RenderingFault,
-    surface::{self, Light, Surface},
+    surface::{self, DirectionalLight, Surface},
     triangulate::triangulate,
 };
 use crate::{
     port::ObjectId,
-    structure::{Node, Polygons, Sight, State, Structures},
+    structure::{Node, Polygons, MatrixFactors, State, Structures},
     traversal::{Gathered, Plane, newell},
 };
 use glam::{DMat3, DMat4, DVec3, DVec4};
@@ -36,7 +36,7 @@ const RESOLUTION: f64 = 1.0 / (1 << 21) as f64;
 
 /// A point where corners of polygons meet.
 #[derive(Clone, Copy, Debug)]
-pub struct Point {
+pub struct MeshPoint {
     /// In eye coordinates.
     pub eye: DVec3,
     /// In the coordinates of the rendering node, homogeneous.
@@ -49,7 +49,7 @@ pub struct Point {
 
 /// A corner of a face.
 #[derive(Clone, Copy, Debug)]
-pub struct Corner {
+pub struct FaceCorner {
     /// Its point.
     pub point: u32,
     /// The normal given with it, in eye coordinates, towards the front of the face.
@@ -111,7 +111,7 @@ pub struct Edge {
 
 /// How a block of polygons is seen.
 #[derive(Clone, Debug)]
-pub struct View {
+pub struct BlockView {
     /// From eye coordinates to clip space.
     pub matrix: DMat4,
     /// Where the eye is, in eye coordinates; a direction towards it if the last component is 0.
@@ -130,9 +130,9 @@ pub struct Facets {
     /// Whether the node takes them as the boundary of a solid.
     pub solid: bool,
     /// Points.
-    pub points: Vec<Point>,
+    pub points: Vec<MeshPoint>,
     /// Corners of all faces.
-    pub corners: Vec<Corner>,
+    pub corners: Vec<FaceCorner>,
     /// The contours of all faces, as ranges of corners.
     pub contours: Vec<Range<usize>>,
     /// Faces.
@@ -146,9 +146,9 @@ pub struct Facets {
     /// Whether corners have colours of their own.
     pub is_colored: bool,
     /// Ways in which they are seen.
-    pub views: Vec<View>,
+    pub views: Vec<BlockView>,
     /// Lights, at least one.
-    pub lights: Vec<Light>,
+    pub lights: Vec<DirectionalLight>,
     /// The sectioning plane.
     pub plane: Option<Plane>,
     /// Hue and saturation that are in force at the rendering node.
@@ -178,10 +178,10 @@ impl Facets {
         if vertices > MAX_VERTICES || needed > u64::from(working_storage) {
             return Err(RenderingFault::Storage { needed });
         }
-        let lights = gathered.lights.iter().filter_map(|(light, matrix)| Light::new(light, &DMat3::from_mat4(*matrix)));
-        let mut lights: Vec<Light> = lights.collect();
+        let lights = gathered.lights.iter().filter_map(|(light, matrix)| DirectionalLight::new(light, &DMat3::from_mat4(*matrix)));
+        let mut lights: Vec<DirectionalLight> = lights.collect();
         if gathered.lights.is_empty() {
-            lights.push(Light::default());
+            lights.push(DirectionalLight::default());
         }
         let facets = Facets { solid, plane: gathered.plane, color: node.hue_saturation, lights, ..Facets::default() };
         let mut builder = Builder { facets, ..Builder::default() };
@@ -220,7 +220,7 @@ struct Builder {
 }
 
 impl Builder {
-    fn block(&mut self, polygons: &Polygons, state: &State, sight: &Sight, structures: &Structures) {
+    fn block(&mut self, polygons: &Polygons, state: &State, sight: &MatrixFactors, structures: &Structures) {
         let Some(local) = sight.local else { return };
         let view = self.view(state, sight);
         let frame = Frame::new(sight.eye, local, state.ctm);
@@ -241,7 +241,7 @@ impl Builder {
                 continue;
             }
             if !continues {
-                let surfaces = self.look(*attributes, state.hue_saturation, structures);
+                let surfaces = self.surfaces_of(*attributes, state.hue_saturation, structures);
                 self.open_face(begin, surfaces, view, color);
                 open = true;
             }
@@ -266,7 +266,7 @@ impl Builder {
             let rgb = |color: [f32; 3]| surface::rgb(color.map(f64::from)).map(|part| part as f32);
             let colors = vertex.color.map(|color| [color.front, color.back.unwrap_or(color.front)].map(rgb));
             self.facets.is_colored |= colors.is_some();
-            self.facets.corners.push(Corner { point, normal, soft: vertex.soft, colors });
+            self.facets.corners.push(FaceCorner { point, normal, soft: vertex.soft, colors });
         }
         let corners = &mut self.facets.corners;
         let (mut end, mut before) = (begin, corners.last().map(|corner| corner.point));
@@ -295,15 +295,15 @@ impl Builder {
         });
     }
 
-    fn view(&mut self, state: &State, sight: &Sight) -> u32 {
-        let view = View {
+    fn view(&mut self, state: &State, sight: &MatrixFactors) -> u32 {
+        let view = BlockView {
             matrix: sight.view,
             eye: eye_point(&sight.view),
             horizontal: state.horizontal,
             vertical: state.vertical,
             depth_clipping: state.depth_clipping,
         };
-        let same = |other: &View| {
+        let same = |other: &BlockView| {
             other.matrix == view.matrix
                 && (other.horizontal, other.vertical) == (view.horizontal, view.vertical)
                 && other.depth_clipping == view.depth_clipping
@@ -329,13 +329,13 @@ impl Builder {
                 if !(eye.is_finite() && local.is_finite() && clip.is_finite()) {
                     return None;
                 }
-                self.facets.points.push(Point { eye, local, clip, view });
+                self.facets.points.push(MeshPoint { eye, local, clip, view });
                 Some(*new.insert(self.facets.points.len() as u32 - 1))
             }
         }
     }
 
-    fn look(&mut self, attributes: Option<ObjectId>, color: [f64; 2], structures: &Structures) -> [u32; 2] {
+    fn surfaces_of(&mut self, attributes: Option<ObjectId>, color: [f64; 2], structures: &Structures) -> [u32; 2] {
         let surfaces = &mut self.facets.surfaces;
         *self.looks.entry((attributes, color.map(f64::to_bits))).or_insert_with(|| {
             let node = attributes.and_then(|id| structures.node(structures.follow(id)));

@@ -23,7 +23,7 @@ pub enum RenderingFault {
     /// The polygons below a SOLID_RENDERING are no boundary of a solid.
     #[error(
         "not a valid solid: {edges} of its edges are not shared by two polygons in opposite directions, the first from \
-         {} to {}", place(.first[0]), place(.first[1])
+         {} to {}", position_text(.first[0]), position_text(.first[1])
     )]
     NotSolid {
         /// How many edges are wrong.
@@ -37,7 +37,7 @@ pub enum RenderingFault {
 }
 
 /// A point as a command would give it.
-fn place(point: DVec3) -> String {
+fn position_text(point: DVec3) -> String {
     let [x, y, z] = point.to_array().map(|c| c as f32);
     format!("{x},{y},{z}")
 }

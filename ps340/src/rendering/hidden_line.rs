@@ -25,7 +25,7 @@
 use super::{
     Facets, Segment,
     facets::Edge,
-    project::{Line, Projected, project},
+    project::{ProjectedEdge, Projected, project},
 };
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
@@ -47,14 +47,14 @@ const EDGE_UNITS: u64 = 10;
 #[derive(Debug)]
 pub struct HiddenLine {
     grid: Grid,
-    edges: Vec<Straight>,
+    edges: Vec<ScreenEdge>,
     next: usize,
     segments: Vec<Segment>,
 }
 
 /// A point on the grid of the screen; x and y are integers of at most 2^24.
 #[derive(Clone, Copy, Debug, Default)]
-struct Spot {
+struct GridPoint {
     x: f64,
     y: f64,
     nearness: f64,
@@ -62,8 +62,8 @@ struct Spot {
 
 /// An edge on the screen.
 #[derive(Clone, Debug)]
-struct Straight {
-    ends: [Spot; 2],
+struct ScreenEdge {
+    ends: [GridPoint; 2],
     /// Numbers of its ends.
     names: [u32; 2],
     faces: [Option<u32>; 2],
@@ -74,8 +74,8 @@ struct Straight {
 
 /// A triangle on the screen, counter-clockwise.
 #[derive(Clone, Copy, Debug)]
-struct Hider {
-    spots: [Spot; 3],
+struct Occluder {
+    spots: [GridPoint; 3],
     names: [u32; 3],
     face: u32,
     /// Twice its area.
@@ -89,7 +89,7 @@ struct Hider {
 /// Triangles by the cells of the screen that they may touch.
 #[derive(Debug)]
 struct Grid {
-    hiders: Vec<Hider>,
+    hiders: Vec<Occluder>,
     /// Cells across, as a power of two.
     cells: u32,
     /// Where the list of each cell begins.
@@ -104,11 +104,11 @@ impl HiddenLine {
         let edges = drawn(facets, &sides);
         let projected = project(facets, &edges);
         let closed = facets.solid && !projected.opened;
-        let spots: Vec<Spot> = projected.spots.iter().map(Spot::new).collect();
+        let spots: Vec<GridPoint> = projected.spots.iter().map(GridPoint::new).collect();
         let seen = |edge: &Edge| !closed || sides.get(&edge.ends).is_none_or(|side| side.toward > 0);
         let lines = projected.lines.iter().filter(|line| seen(&edges[line.edge]));
-        let edges = lines.map(|line| Straight::new(line, &edges[line.edge], &spots)).collect();
-        HiddenLine { grid: Grid::new(hiders(facets, &projected, &spots, closed)), edges, next: 0, segments: Vec::new() }
+        let edges = lines.map(|line| ScreenEdge::new(line, &edges[line.edge], &spots)).collect();
+        HiddenLine { grid: Grid::new(occluders(facets, &projected, &spots, closed)), edges, next: 0, segments: Vec::new() }
     }
 
     /// Goes on for about so many tests of an edge against a triangle. Returns what is seen, once it is done.
@@ -119,7 +119,7 @@ impl HiddenLine {
                 return None;
             }
             let end = (self.next + BATCH).min(self.edges.len());
-            let seen = |edge: &Straight| self.grid.visible(edge);
+            let seen = |edge: &ScreenEdge| self.grid.visible(edge);
             let parts: Vec<(Vec<Segment>, u64)> = self.edges[self.next..end].par_iter().map(seen).collect();
             for (segments, tests) in parts {
                 self.segments.extend(segments);
@@ -180,19 +180,19 @@ fn drawn(facets: &Facets, sides: &HashMap<[u32; 2], Side>) -> Vec<Edge> {
     edges
 }
 
-fn hiders(facets: &Facets, projected: &Projected, spots: &[Spot], closed: bool) -> Vec<Hider> {
+fn occluders(facets: &Facets, projected: &Projected, spots: &[GridPoint], closed: bool) -> Vec<Occluder> {
     let pieces = projected.pieces.iter().filter_map(|piece| {
         let triangle = &facets.triangles[piece.triangle as usize];
         let corners = piece.spots.map(|spot| spots[spot as usize]);
         let hides = triangle.toward || !closed;
-        hides.then(|| Hider::new(piece.spots, corners, triangle.face)).flatten()
+        hides.then(|| Occluder::new(piece.spots, corners, triangle.face)).flatten()
     });
     pieces.collect()
 }
 
-impl Spot {
-    fn new(spot: &super::project::Spot) -> Spot {
-        Spot {
+impl GridPoint {
+    fn new(spot: &super::project::ScreenPoint) -> GridPoint {
+        GridPoint {
             x: (spot.place.x * STEPS).round().clamp(-STEPS, STEPS),
             y: (spot.place.y * STEPS).round().clamp(-STEPS, STEPS),
             nearness: spot.nearness,
@@ -200,14 +200,14 @@ impl Spot {
     }
 
     /// Twice the area of the triangle with two other points: exact.
-    fn area(&self, a: &Spot, b: &Spot) -> f64 {
+    fn area(&self, a: &GridPoint, b: &GridPoint) -> f64 {
         (a.x - self.x) * (b.y - self.y) - (a.y - self.y) * (b.x - self.x)
     }
 }
 
-impl Hider {
+impl Occluder {
     /// None for a triangle that is seen from its side.
-    fn new(mut names: [u32; 3], mut spots: [Spot; 3], face: u32) -> Option<Hider> {
+    fn new(mut names: [u32; 3], mut spots: [GridPoint; 3], face: u32) -> Option<Occluder> {
         let mut area = spots[0].area(&spots[1], &spots[2]);
         if area < 0.0 {
             names.swap(1, 2);
@@ -221,11 +221,11 @@ impl Hider {
         let largest = a.nearness.abs().max(b.nearness.abs()).max(c.nearness.abs());
         let slack = slope_x.abs() + slope_y.abs() + ROUNDING * largest;
         let nearest = a.nearness.max(b.nearness).max(c.nearness);
-        (area > 0.0).then_some(Hider { spots, names, face, area, nearest, slack })
+        (area > 0.0).then_some(Occluder { spots, names, face, area, nearest, slack })
     }
 
     /// The part of an edge that it hides, as parameters along the edge.
-    fn hidden(&self, edge: &Straight) -> Option<[f64; 2]> {
+    fn hidden(&self, edge: &ScreenEdge) -> Option<[f64; 2]> {
         let [a, b] = &edge.ends;
         let [p, q, r] = &self.spots;
         // Twice the areas that the ends make with the sides, opposite to each corner: exact, negative outside.
@@ -272,7 +272,7 @@ impl Hider {
 }
 
 impl Grid {
-    fn new(hiders: Vec<Hider>) -> Grid {
+    fn new(hiders: Vec<Occluder>) -> Grid {
         let mut cells = (hiders.len().max(1).ilog2() / 2 + 1).min(MOST_CELLS);
         let entries = |cells: u32| -> usize {
             hiders.iter().map(|hider| columns_of(hider, cells).len() * rows_of(hider, cells).len()).sum()
@@ -282,7 +282,7 @@ impl Grid {
             cells -= 1;
         }
         let mut starts = vec![0_u32; (1 << (2 * cells)) + 1];
-        let each_cell = |hider: &Hider, visit: &mut dyn FnMut(usize)| {
+        let each_cell = |hider: &Occluder, visit: &mut dyn FnMut(usize)| {
             for row in rows_of(hider, cells) {
                 columns_of(hider, cells).for_each(|column| visit((row << cells) + column));
             }
@@ -305,7 +305,7 @@ impl Grid {
     }
 
     /// The seen parts of an edge, and the number of tests that they took.
-    fn visible(&self, edge: &Straight) -> (Vec<Segment>, u64) {
+    fn visible(&self, edge: &ScreenEdge) -> (Vec<Segment>, u64) {
         let [a, b] = &edge.ends;
         let (farthest, length) = (a.nearness.min(b.nearness), (b.x - a.x).hypot(b.y - a.y));
         let mut hidden: Vec<[f64; 2]> = Vec::new();
@@ -342,7 +342,7 @@ impl Grid {
     }
 
     /// The columns of cells in a row that a line may touch.
-    fn columns(&self, a: &Spot, b: &Spot, row: usize) -> std::ops::RangeInclusive<usize> {
+    fn columns(&self, a: &GridPoint, b: &GridPoint, row: usize) -> std::ops::RangeInclusive<usize> {
         let size = 2.0 * STEPS / (1_u64 << self.cells) as f64;
         let bottom = row as f64 * size - STEPS;
         let at = |y: f64| {
@@ -355,10 +355,10 @@ impl Grid {
     }
 }
 
-impl Straight {
-    fn new(line: &Line, edge: &Edge, spots: &[Spot]) -> Straight {
+impl ScreenEdge {
+    fn new(line: &ProjectedEdge, edge: &Edge, spots: &[GridPoint]) -> ScreenEdge {
         let ends = line.spots.map(|spot| spots[spot as usize]);
-        Straight { ends, names: line.spots, faces: edge.faces, places: line.ends, color: edge.color }
+        ScreenEdge { ends, names: line.spots, faces: edge.faces, places: line.ends, color: edge.color }
     }
 
     /// A part of the edge in the coordinates of the node. Parameters run evenly on the screen.
@@ -385,13 +385,13 @@ fn span(from: f64, to: f64, cells: u32) -> std::ops::RangeInclusive<usize> {
     cell(from.min(to))..=cell(from.max(to))
 }
 
-fn rows_of(hider: &Hider, cells: u32) -> std::ops::Range<usize> {
+fn rows_of(hider: &Occluder, cells: u32) -> std::ops::Range<usize> {
     let [a, b, c] = hider.spots.map(|spot| spot.y);
     let span = span(a.min(b).min(c), a.max(b).max(c), cells);
     *span.start()..span.end() + 1
 }
 
-fn columns_of(hider: &Hider, cells: u32) -> std::ops::Range<usize> {
+fn columns_of(hider: &Occluder, cells: u32) -> std::ops::Range<usize> {
     let [a, b, c] = hider.spots.map(|spot| spot.x);
     let span = span(a.min(b).min(c), a.max(b).max(c), cells);
     *span.start()..span.end() + 1

@@ -24,7 +24,7 @@ mod members;
 pub use facets::{BYTES_PER_VERTEX, Facets, MAX_VERTICES};
 pub use fault::RenderingFault;
 pub use members::members;
-pub use outcome::{Image, Outcome, Segment};
+pub use outcome::{Image, RenderingResult, Segment};
 pub use task::{Task, render};
 
 #[cfg(test)]

@@ -28,7 +28,7 @@ pub struct Image {
 
 /// What a rendering makes.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Outcome {
+pub enum RenderingResult {
     /// Lines for the vector screen.
     Lines(Vec<Segment>),
     /// An image for the raster screen.

@@ -9,7 +9,7 @@
 
 use super::{
     Facets,
-    facets::{Edge, View},
+    facets::{Edge, BlockView},
 };
 use glam::{DVec2, DVec3, DVec4};
 use std::collections::HashMap;
@@ -23,7 +23,7 @@ const OPENING: u8 = 0b10_0001;
 
 /// A point on the vector screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spot {
+pub struct ScreenPoint {
     /// x and y; the screen is -1..=1.
     pub place: DVec2,
     /// How near.
@@ -32,7 +32,7 @@ pub struct Spot {
 
 /// A piece of a triangle, on the screen.
 #[derive(Clone, Copy, Debug)]
-pub struct Piece {
+pub struct TrianglePiece {
     /// Its corners.
     pub spots: [u32; 3],
     /// The triangle of which it is a piece.
@@ -41,7 +41,7 @@ pub struct Piece {
 
 /// What is left of an edge.
 #[derive(Clone, Copy, Debug)]
-pub struct Line {
+pub struct ProjectedEdge {
     /// Its ends.
     pub spots: [u32; 2],
     /// Both ends in the coordinates of the rendering node, homogeneous, and their w in clip space.
@@ -54,11 +54,11 @@ pub struct Line {
 #[derive(Clone, Debug, Default)]
 pub struct Projected {
     /// Points; the first are those of the facets, as far as they are shown.
-    pub spots: Vec<Spot>,
+    pub spots: Vec<ScreenPoint>,
     /// Triangles.
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<TrianglePiece>,
     /// Edges.
-    pub lines: Vec<Line>,
+    pub lines: Vec<ProjectedEdge>,
     /// Whether something was cut off that is near, so that a solid may show its inside.
     pub opened: bool,
 }
@@ -94,7 +94,7 @@ pub fn project(facets: &Facets, edges: &[Edge]) -> Projected {
         polygon.extend(facet.corners.map(|corner| facets.corners[corner as usize].point));
         projected.opened |= cutter.cut_polygon(&mut polygon, view);
         for k in 2..polygon.len() {
-            projected.pieces.push(Piece { spots: [polygon[0], polygon[k - 1], polygon[k]], triangle });
+            projected.pieces.push(TrianglePiece { spots: [polygon[0], polygon[k - 1], polygon[k]], triangle });
         }
     }
     for (edge, facet) in edges.iter().enumerate() {
@@ -104,10 +104,10 @@ pub fn project(facets: &Facets, edges: &[Edge]) -> Projected {
                 let raw = &cutter.raw[spot as usize];
                 (raw.local, raw.clip.w)
             });
-            projected.lines.push(Line { spots, ends, edge });
+            projected.lines.push(ProjectedEdge { spots, ends, edge });
         }
     }
-    projected.spots = cutter.raw.iter().map(|raw| spot(raw, &facets.views[raw.view as usize])).collect();
+    projected.spots = cutter.raw.iter().map(|raw| screen_point(raw, &facets.views[raw.view as usize])).collect();
     projected
 }
 
@@ -127,7 +127,7 @@ impl Cutter {
     }
 
     /// A bit for each boundary that a point is outside of.
-    fn outside(&self, point: u32, view: &View) -> u8 {
+    fn outside(&self, point: u32, view: &BlockView) -> u8 {
         let p = self.raw[point as usize].clip;
         // The near one counts w = 0 as outside, also where everything is at the eye.
         let mut bits = u8::from(p.w <= 0.0 || p.w < self.near);
@@ -140,7 +140,7 @@ impl Cutter {
     }
 
     /// Cuts a polygon to what is shown. Returns whether something near was cut off.
-    fn cut_polygon(&mut self, polygon: &mut Vec<u32>, view: &View) -> bool {
+    fn cut_polygon(&mut self, polygon: &mut Vec<u32>, view: &BlockView) -> bool {
         let codes = polygon.iter().map(|point| self.outside(*point, view));
         let (mut any, mut all) = (0, u8::MAX);
         codes.for_each(|code| (any, all) = (any | code, all & code));
@@ -176,7 +176,7 @@ impl Cutter {
     }
 
     /// What is shown of an edge.
-    fn cut_line(&mut self, mut ends: [u32; 2], view: &View) -> Option<[u32; 2]> {
+    fn cut_line(&mut self, mut ends: [u32; 2], view: &BlockView) -> Option<[u32; 2]> {
         let codes = ends.map(|end| self.outside(end, view));
         if codes[0] & codes[1] != 0 {
             return None;
@@ -220,9 +220,9 @@ impl Cutter {
 }
 
 /// A point on the screen; some place for one that is not shown.
-fn spot(raw: &Raw, view: &View) -> Spot {
+fn screen_point(raw: &Raw, view: &BlockView) -> ScreenPoint {
     if raw.clip.w <= 0.0 {
-        return Spot { place: DVec2::ZERO, nearness: 0.0 };
+        return ScreenPoint { place: DVec2::ZERO, nearness: 0.0 };
     }
     let across = |[low, high]: [f64; 2], c: f64| low + (c / raw.clip.w + 1.0) * (high - low) / 2.0;
     let nearness = if view.matrix.row(3).truncate() == DVec3::ZERO {
@@ -230,5 +230,5 @@ fn spot(raw: &Raw, view: &View) -> Spot {
     } else {
         1.0 / raw.clip.w
     };
-    Spot { place: DVec2::new(across(view.horizontal, raw.clip.x), across(view.vertical, raw.clip.y)), nearness }
+    ScreenPoint { place: DVec2::new(across(view.horizontal, raw.clip.x), across(view.vertical, raw.clip.y)), nearness }
 }

@@ -28,7 +28,7 @@ pub struct Surface {
 
 /// A light at infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Light {
+pub struct DirectionalLight {
     /// Towards it, of length 1, in eye coordinates.
     pub direction: DVec3,
     /// Red, green, blue, 0..=1.
@@ -49,20 +49,20 @@ impl Surface {
     }
 }
 
-impl Default for Light {
+impl Default for DirectionalLight {
     /// White, from behind the viewer.
-    fn default() -> Light {
-        Light { direction: DVec3::NEG_Z, color: [1.0; 3], ambient: 1.0 }
+    fn default() -> DirectionalLight {
+        DirectionalLight { direction: DVec3::NEG_Z, color: [1.0; 3], ambient: 1.0 }
     }
 }
 
-impl Light {
+impl DirectionalLight {
     /// A light whose direction goes through a matrix; none if nothing is left of the direction.
     ///
     /// ILLUMINATION says where the light goes: a client of the time, whose eye looks along +z, lights what it sees with 0,0,1.
-    pub fn new(light: &Illumination, matrix: &DMat3) -> Option<Light> {
+    pub fn new(light: &Illumination, matrix: &DMat3) -> Option<DirectionalLight> {
         let direction = -(*matrix * light.direction).try_normalize()?;
-        Some(Light { direction, color: rgb(light.color), ambient: light.ambient.clamp(0.0, 1.0) })
+        Some(DirectionalLight { direction, color: rgb(light.color), ambient: light.ambient.clamp(0.0, 1.0) })
     }
 }
 
@@ -79,7 +79,7 @@ pub fn rgb([hue, saturation, intensity]: [f64; 3]) -> [f64; 3] {
 /// - `highlights`: whether the second term counts.
 pub fn light(
     surface: &Surface,
-    lights: &[Light],
+    lights: &[DirectionalLight],
     normal: DVec3,
     eye: DVec3,
     ambient: [f64; 3],
@@ -117,7 +117,7 @@ mod tests {
 
     #[test]
     fn the_terms_are_those_of_the_formula() {
-        let lamp = Light { direction: at(60.0), color: [1.0, 0.5, 0.0], ambient: 0.5 };
+        let lamp = DirectionalLight { direction: at(60.0), color: [1.0, 0.5, 0.0], ambient: 0.5 };
         let got = light(&GREY, &[lamp], DVec3::NEG_Z, at(-60.0), [0.2, 0.4, 0.6], true);
         // cos 60 = 1/2; the eye stands in the mirrored direction.
         let expected = [0.5 * (0.2 * 0.5 + 0.75 * 0.5) + 0.25, 0.5 * (0.5 * (0.4 * 0.5 + 0.75 * 0.5) + 0.25), 0.0];
@@ -128,7 +128,7 @@ mod tests {
 
     #[test]
     fn the_highlight_falls_as_the_cosine_to_the_power_of_two_to_the_concentration() {
-        let lamp = Light { direction: DVec3::NEG_Z, color: [1.0; 3], ambient: 0.0 };
+        let lamp = DirectionalLight { direction: DVec3::NEG_Z, color: [1.0; 3], ambient: 0.0 };
         for specular in 0..=10 {
             let surface = Surface { diffuse: 0.0, specular, ..GREY };
             let got = light(&surface, &[lamp], DVec3::NEG_Z, at(20.0), [0.0; 3], true)[0];
@@ -140,14 +140,14 @@ mod tests {
 
     #[test]
     fn light_from_behind_leaves_the_ambient_part() {
-        let lamp = Light { direction: at(120.0), ..Light::default() };
+        let lamp = DirectionalLight { direction: at(120.0), ..DirectionalLight::default() };
         assert_eq!(light(&GREY, &[lamp], DVec3::NEG_Z, at(0.0), [0.25; 3], true), [0.125; 3]);
     }
 
     #[test]
     fn lights_add_up() {
-        let lamps = [-30.0, 10.0, 70.0].map(|angle| Light { direction: at(angle), ..Light::default() });
-        let of = |lamps: &[Light]| light(&GREY, lamps, DVec3::NEG_Z, at(5.0), [0.1; 3], true)[0];
+        let lamps = [-30.0, 10.0, 70.0].map(|angle| DirectionalLight { direction: at(angle), ..DirectionalLight::default() });
+        let of = |lamps: &[DirectionalLight]| light(&GREY, lamps, DVec3::NEG_Z, at(5.0), [0.1; 3], true)[0];
         let sum: f64 = lamps.iter().map(|lamp| of(std::slice::from_ref(lamp))).sum();
         assert!((of(&lamps) - sum).abs() < 1e-12);
     }
@@ -155,8 +155,8 @@ mod tests {
     #[test]
     fn directions_of_lights_go_through_the_matrix_and_may_vanish() {
         let lamp = Illumination { direction: DVec3::new(0.0, 0.0, 5.0), color: [0.0, 0.0, 1.0], ambient: 1.0 };
-        let turned = Light::new(&lamp, &DMat3::from_rotation_y(std::f64::consts::FRAC_PI_2)).unwrap();
+        let turned = DirectionalLight::new(&lamp, &DMat3::from_rotation_y(std::f64::consts::FRAC_PI_2)).unwrap();
         assert!((turned.direction - DVec3::NEG_X).length() < 1e-12, "towards the light");
-        assert_eq!(Light::new(&lamp, &DMat3::ZERO), None);
+        assert_eq!(DirectionalLight::new(&lamp, &DMat3::ZERO), None);
     }
 }

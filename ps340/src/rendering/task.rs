@@ -1,7 +1,7 @@
 //! A rendering as a task in pieces of bounded work.
 
 use super::{
-    Facets, Outcome, RenderingFault, Segment,
+    Facets, RenderingResult, RenderingFault, Segment,
     back_face::back_face_removal,
     hidden_line::HiddenLine,
     section::{cross_section, sectioned},
@@ -16,7 +16,7 @@ pub struct Task(Stage);
 
 #[derive(Debug)]
 enum Stage {
-    Made(Vec<Segment>),
+    Lines(Vec<Segment>),
     HiddenLine(Box<HiddenLine>),
     Shading(Box<Shading>),
 }
@@ -32,9 +32,9 @@ impl Task {
         }
         let plane = || facets.plane.ok_or(RenderingFault::NoPlane);
         Ok(Task(match kind {
-            Rendering::CrossSection => Stage::Made(cross_section(&facets, &plane()?)),
-            Rendering::Sectioned => Stage::Made(sectioned(&facets, &plane()?)),
-            Rendering::BackFace => Stage::Made(back_face_removal(&facets)),
+            Rendering::CrossSection => Stage::Lines(cross_section(&facets, &plane()?)),
+            Rendering::Sectioned => Stage::Lines(sectioned(&facets, &plane()?)),
+            Rendering::BackFace => Stage::Lines(back_face_removal(&facets)),
             Rendering::HiddenLine => Stage::HiddenLine(Box::new(HiddenLine::new(&facets))),
             Rendering::Wash | Rendering::Flat | Rendering::Gouraud | Rendering::Phong => {
                 Stage::Shading(Box::new(Shading::new(kind, facets, environment)))
@@ -43,11 +43,11 @@ impl Task {
     }
 
     /// Goes on for about so many units of work, each some ten nanoseconds. Returns what was made, once it is done.
-    pub fn advance(&mut self, units: u64) -> Option<Outcome> {
+    pub fn advance(&mut self, units: u64) -> Option<RenderingResult> {
         match &mut self.0 {
-            Stage::Made(segments) => Some(Outcome::Lines(std::mem::take(segments))),
-            Stage::HiddenLine(lines) => lines.advance(units).map(Outcome::Lines),
-            Stage::Shading(shading) => shading.advance(units).map(Outcome::Image),
+            Stage::Lines(segments) => Some(RenderingResult::Lines(std::mem::take(segments))),
+            Stage::HiddenLine(lines) => lines.advance(units).map(RenderingResult::Lines),
+            Stage::Shading(shading) => shading.advance(units).map(RenderingResult::Image),
         }
     }
 }
@@ -56,7 +56,7 @@ impl Task {
 ///
 /// # Errors
 /// As [`Task::new`].
-pub fn render(kind: Rendering, facets: Facets, environment: &ShadingEnvironment) -> Result<Outcome, RenderingFault> {
+pub fn render(kind: Rendering, facets: Facets, environment: &ShadingEnvironment) -> Result<RenderingResult, RenderingFault> {
     let mut task = Task::new(kind, facets, environment)?;
     loop {
         if let Some(outcome) = task.advance(u64::MAX) {

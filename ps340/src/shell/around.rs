@@ -1,16 +1,16 @@
 //! The lines around the machine: opens them, serves them, and ends with the machine or a signal.
 
 use super::{
-    End, Mirror, Operator, Options,
+    ExitReason, Mirror, Operator, Options,
     signals::Signals,
-    turns::{Turns, WAITING_EVENTS},
+    turns::{MachineLoop, WAITING_EVENTS},
 };
 use crate::line::{
-    Address, Capture, Events, LineAddress, LineEvent, Listener, OperatorLine, Source, Surroundings, Token, Visitors,
+    Address, Capture, Events, LineAddress, LineEvent, Listener, OperatorLine, HostEndpoint, LineContext, Token, AllowedPeers,
     serve_operators, serve_stdio, serve_window,
 };
-use files::Beneath;
-use protocol::address::Place;
+use files::Sandbox;
+use protocol::address::Endpoint;
 use std::{io, sync::Arc, time::Duration};
 use tokio::sync::{mpsc, oneshot};
 
@@ -29,9 +29,9 @@ pub struct Window {
 
 /// What stands open before hosts and operators can come.
 struct Opened {
-    files: Beneath,
+    files: Sandbox,
     capture: Option<Capture>,
-    sources: Vec<Source>,
+    sources: Vec<HostEndpoint>,
     operators: Option<(Listener, Option<Token>)>,
 }
 
@@ -43,7 +43,7 @@ struct Opened {
 ///
 /// # Errors
 /// If it cannot listen, or cannot write the capture: the address or the file, and the reason.
-pub fn run(options: &Options, window: Option<Window>, mut ready: impl FnMut(&str)) -> io::Result<End> {
+pub fn run(options: &Options, window: Option<Window>, mut ready: impl FnMut(&str)) -> io::Result<ExitReason> {
     let (events, inbox) = mpsc::channel(WAITING_EVENTS);
     let io_runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     // Whatever is made from here on is cleaned up.
@@ -57,9 +57,9 @@ pub fn run(options: &Options, window: Option<Window>, mut ready: impl FnMut(&str
     let Some((signals, Opened { files, capture, sources, operators })) = opened? else {
         // A name may still be looked up.
         io_runtime.shutdown_background();
-        return Ok(End::Interrupted);
+        return Ok(ExitReason::Interrupted);
     };
-    let around = Surroundings { events: events.clone(), capture: capture.clone() };
+    let around = LineContext { events: events.clone(), capture: capture.clone() };
     for source in sources {
         ready(&format!("ready line {}", source.address()?));
         io_runtime.spawn(source.serve(around.clone()));
@@ -71,7 +71,7 @@ pub fn run(options: &Options, window: Option<Window>, mut ready: impl FnMut(&str
     }
     if let Some((listener, token)) = operators {
         ready(&format!("ready operator {}", listener.address()?));
-        if let Some(text) = token.as_ref().and_then(Token::to_be_told) {
+        if let Some(text) = token.as_ref().and_then(Token::unannounced) {
             ready(&format!("ready token {text}"));
         }
         io_runtime.spawn(serve_operators(listener, token, events.clone()));
@@ -101,7 +101,7 @@ pub fn run(options: &Options, window: Option<Window>, mut ready: impl FnMut(&str
         }
     });
     ready("ready");
-    let end = Turns::new(options, files, mirror, capture.clone(), inbox)?.run();
+    let end = MachineLoop::new(options, files, mirror, capture.clone(), inbox)?.run();
     let _ = stop.send(());
     let _ = lines.join();
     if let Some(capture) = capture {
@@ -117,24 +117,24 @@ async fn open(options: &Options) -> io::Result<Opened> {
     };
     let mut sources = Vec::new();
     for address in &options.listen {
-        let source = Source::open(address).await.map_err(|e| failed(address, e))?;
+        let source = HostEndpoint::open(address).await.map_err(|e| failed(address, e))?;
         check_public(options, source.is_public()).map_err(|e| failed(address, e))?;
         sources.push(source);
     }
     let operators = match &options.operator {
         Operator::Socket(address) => {
-            let listener = Listener::bind(address, Visitors::Owner).await.map_err(|e| failed(address, e))?;
+            let listener = Listener::bind(address, AllowedPeers::Owner).await.map_err(|e| failed(address, e))?;
             check_public(options, listener.is_public()).map_err(|e| failed(address, e))?;
             let token = matches!(address, Address::Tcp(_)).then(Token::begin);
             Some((listener, token.transpose()?))
         }
         Operator::None | Operator::Stdio => None,
     };
-    let files = Beneath::open(&options.files)
+    let files = Sandbox::open(&options.files)
         .map_err(|e| io::Error::new(e.kind(), format!("--files {}: {e}", options.files.display())))?;
     // Last, without a wait behind it: an interruption leaves no part of it.
     let capture = options.capture.as_deref().map(|path| {
-        let is_read = |line: &LineAddress| matches!(&line.place, Place::File { path: read, .. } if read == path);
+        let is_read = |line: &LineAddress| matches!(&line.place, Endpoint::File { path: read, .. } if read == path);
         let created = match options.listen.iter().any(is_read) {
             true => Err(io::Error::new(io::ErrorKind::InvalidInput, "it is to be played")),
             false => Capture::create(path),

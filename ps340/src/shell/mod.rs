@@ -7,5 +7,5 @@ mod turns;
 mod around;
 
 pub use around::{INTERRUPTED, Window, run};
-pub use mirror::{ArcShown, Asked, FunctionShown, InputShown, Mirror, NodeShown, Passed, Shown};
-pub use options::{Clock, End, Operator, Options};
+pub use mirror::{ArcShown, MirrorRequest, FunctionShown, InputShown, Mirror, NodeShown, TrafficEntry, MirrorFrame};
+pub use options::{TimeSource, ExitReason, Operator, Options};

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 /// Where the time of the machine comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum Clock {
+pub enum TimeSource {
     /// Sixty frames in each second of the wall clock.
     Real,
     /// Frames pass only while an operator waits for them, as fast as they can.
@@ -37,7 +37,7 @@ pub struct Options {
     /// Who gives orders.
     pub operator: Operator,
     /// Where time comes from.
-    pub clock: Clock,
+    pub clock: TimeSource,
     /// Whether captures that are played may give orders that write files or end the machine.
     pub replayed_orders: bool,
     /// The folder below which orders write files.
@@ -52,7 +52,7 @@ pub struct Options {
 
 /// Why the process ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum ExitReason {
     /// By the order `quit`, with the operator on standard input, or with the last host that could come.
     Quit,
     /// By a signal.

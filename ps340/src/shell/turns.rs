@@ -1,13 +1,13 @@
 //! The thread of the machine: takes what happens on the lines, and lets frames pass when they are due.
 
-use super::{Clock, End, Mirror, Operator, Options};
+use super::{TimeSource, ExitReason, Mirror, Operator, Options};
 use crate::{
-    calligraphic::Screen,
+    calligraphic::SharedDisplay,
     line::{Capture, Interface, LineEvent, LineId, OperatorLine, Reply, Writer},
     machine::{Input, Machine, Micros, time_of_frame},
-    operator::{Order, Outcome, Wait, parse, perform, reply},
+    operator::{OperatorCommand, CommandOutcome, Wait, parse, perform, reply},
 };
-use files::Beneath;
+use files::Sandbox;
 use std::{
     collections::{BTreeMap, HashMap},
     io,
@@ -24,18 +24,18 @@ const GRACE_FRAMES: u64 = 60;
 const MAX_LAG: Micros = 250_000;
 
 /// What the thread of the machine holds.
-pub(super) struct Turns {
+pub(super) struct MachineLoop {
     machine: Machine,
     mirror: Option<Arc<Mirror>>,
     /// The folder below which orders write.
-    files: Beneath,
+    files: Sandbox,
     /// Whether captures may give orders that reach out.
     replayed_orders: bool,
     /// Takes what the operator does, if it is wanted.
     capture: Option<Capture>,
     inbox: mpsc::Receiver<LineEvent>,
     timer: tokio::runtime::Runtime,
-    clock: Clock,
+    clock: TimeSource,
     /// Wall-clock time of machine time 0.
     epoch: Instant,
     writers: BTreeMap<LineId, (String, Writer)>,
@@ -48,24 +48,24 @@ pub(super) struct Turns {
     sources: usize,
 }
 
-impl Turns {
+impl MachineLoop {
     /// A machine with its lines; `inbox` is told what happens on them.
     ///
     /// # Errors
     /// Those of the system.
     pub(super) fn new(
         options: &Options,
-        files: Beneath,
+        files: Sandbox,
         mirror: Option<Arc<Mirror>>,
         capture: Option<Capture>,
         inbox: mpsc::Receiver<LineEvent>,
-    ) -> io::Result<Turns> {
+    ) -> io::Result<MachineLoop> {
         let sources = options.listen.len() + usize::from(options.operator != Operator::None || mirror.is_some());
         let mut machine = Machine::new(options.settings);
-        let alone = || Arc::new(Screen::new(options.drawer.clone()));
+        let alone = || Arc::new(SharedDisplay::new(options.drawer.clone()));
         machine.share_screen(mirror.as_ref().map_or_else(alone, |mirror| mirror.screen().clone()), mirror.is_some());
         tracing::info!("the vector screen is drawn by {}", options.drawer);
-        Ok(Turns {
+        Ok(MachineLoop {
             machine,
             mirror,
             files,
@@ -84,7 +84,7 @@ impl Turns {
     }
 
     /// Takes events and lets frames pass until the end.
-    pub(super) fn run(mut self) -> End {
+    pub(super) fn run(mut self) -> ExitReason {
         loop {
             let mut event = self.next_event();
             // However much the hosts send, frames pass when they are due.
@@ -101,7 +101,7 @@ impl Turns {
             self.let_go();
             self.poll_waits();
             if self.sources == 0 && self.leaving.is_empty() {
-                return End::Quit;
+                return ExitReason::Quit;
             }
             // One frame a turn, so that events are seen between frames that are late.
             let next = time_of_frame(self.machine.frame() + 1);
@@ -117,17 +117,17 @@ impl Turns {
     /// Whether it is time for the next frame.
     fn frame_is_due(&mut self) -> bool {
         match self.clock {
-            Clock::Real => self.now() >= time_of_frame(self.machine.frame() + 1),
-            Clock::Virtual => !self.waits.is_empty(),
+            TimeSource::Real => self.now() >= time_of_frame(self.machine.frame() + 1),
+            TimeSource::Virtual => !self.waits.is_empty(),
         }
     }
 
     /// The next event, or none when the next frame is due.
     fn next_event(&mut self) -> Option<LineEvent> {
         match self.clock {
-            Clock::Virtual if !self.waits.is_empty() => self.inbox.try_recv().ok(),
-            Clock::Virtual => self.timer.block_on(self.inbox.recv()).or(Some(LineEvent::Interrupted)),
-            Clock::Real => {
+            TimeSource::Virtual if !self.waits.is_empty() => self.inbox.try_recv().ok(),
+            TimeSource::Virtual => self.timer.block_on(self.inbox.recv()).or(Some(LineEvent::Interrupted)),
+            TimeSource::Real => {
                 let due = Duration::from_micros(time_of_frame(self.machine.frame() + 1));
                 let deadline = tokio::time::Instant::from_std(self.epoch + due);
                 let inbox = &mut self.inbox;
@@ -146,7 +146,7 @@ impl Turns {
         elapsed.min(latest)
     }
 
-    fn take(&mut self, event: LineEvent) -> Option<End> {
+    fn take(&mut self, event: LineEvent) -> Option<ExitReason> {
         match event {
             LineEvent::Attached { line, peer, interface, writer } => {
                 tracing::info!("host line {peer} attached");
@@ -173,46 +173,46 @@ impl Turns {
                 self.leaving.push((line, self.machine.frame() + GRACE_FRAMES));
             }
             LineEvent::Operator(order) => {
-                return self.order(order);
+                return self.perform_command(order);
             }
             LineEvent::SourceEnded => self.sources = self.sources.saturating_sub(1),
-            LineEvent::OperatorGone => return Some(End::Quit),
-            LineEvent::Interrupted => return Some(End::Interrupted),
+            LineEvent::OperatorGone => return Some(ExitReason::Quit),
+            LineEvent::Interrupted => return Some(ExitReason::Interrupted),
         }
         None
     }
 
     /// Carries out an order of an operator.
-    fn order(&mut self, OperatorLine { text, reply: answer, is_replayed }: OperatorLine) -> Option<End> {
+    fn perform_command(&mut self, OperatorLine { text, reply: answer, is_replayed }: OperatorLine) -> Option<ExitReason> {
         let parsed = parse(&text);
         let mut outcome = match &parsed {
             Ok(order) => {
                 if let Some(capture) = self.capture.as_ref().filter(|_| order.is_action()) {
-                    capture.record_order(&text);
+                    capture.record_operator_command(&text);
                 }
                 let files = Some(&self.files).filter(|_| !is_replayed || self.replayed_orders);
                 perform(order, &mut self.machine, files)
             }
-            Err(error) => Outcome::Done(Err(error.to_string())),
+            Err(error) => CommandOutcome::Done(Err(error.to_string())),
         };
-        if let (true, Outcome::Done(Err(error))) = (is_replayed, &outcome) {
+        if let (true, CommandOutcome::Done(Err(error))) = (is_replayed, &outcome) {
             tracing::warn!("'{text}' of a capture is not carried out: {error}");
         }
         // What an order made the machine say leaves before its reply.
         self.step(None, 0);
-        if let (Ok(Order::Dial { .. }), Outcome::Done(Ok(said))) = (&parsed, &mut outcome) {
+        if let (Ok(OperatorCommand::Dial { .. }), CommandOutcome::Done(Ok(said))) = (&parsed, &mut outcome) {
             *said = match self.clock {
-                Clock::Real => "the machine reads it at the next frame".into(),
-                Clock::Virtual => "the machine reads it at the next frame; 'frames 1' lets one pass".into(),
+                TimeSource::Real => "the machine reads it at the next frame".into(),
+                TimeSource::Virtual => "the machine reads it at the next frame; 'frames 1' lets one pass".into(),
             };
         }
-        let lines = if let Ok(Order::Lines(on)) = parsed { Some(on) } else { None };
+        let lines = if let Ok(OperatorCommand::Lines(on)) = parsed { Some(on) } else { None };
         match outcome {
-            Outcome::Done(result) => drop(answer.send(Reply { text: reply(&result), lines })),
-            Outcome::Waiting(wait) => self.waits.push((wait, answer)),
-            Outcome::Quit => {
+            CommandOutcome::Done(result) => drop(answer.send(Reply { text: reply(&result), lines })),
+            CommandOutcome::Waiting(wait) => self.waits.push((wait, answer)),
+            CommandOutcome::Quit => {
                 let _ = answer.send(reply(&Ok("quit".into())).into());
-                return Some(End::Quit);
+                return Some(ExitReason::Quit);
             }
         }
         None
@@ -244,7 +244,7 @@ impl Turns {
     /// host stays for a while if that is busy.
     fn let_go(&mut self) {
         for (line, until) in std::mem::take(&mut self.leaving) {
-            let time_stands = self.clock == Clock::Virtual && self.waits.is_empty();
+            let time_stands = self.clock == TimeSource::Virtual && self.waits.is_empty();
             if self.machine.network_rests() || self.machine.frame() >= until || time_stands {
                 self.step(Some(Input::Detach(line)), 0);
                 self.writers.remove(&line);

@@ -19,7 +19,7 @@ pub use identifiers::{IdentifierChains, Identifiers};
 pub use node::{Labels, Member, Node, Polygons, Rendered, Vectors};
 pub use operation::{Asked, Degenerate, Operation};
 pub use physical::{PhysicalFault, VECTOR_WORDS};
-pub use sight::Sight;
+pub use sight::MatrixFactors;
 pub use state::{ALL_SCOPES, State};
 
 use crate::{

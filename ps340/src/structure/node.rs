@@ -5,7 +5,7 @@ use crate::port::ObjectId;
 use glam::DVec2;
 use protocol::{
     Value,
-    command::{Attributes, Characters, FontCharacter, Illumination, Label, Pattern, Polygon, VectorList},
+    command::{Attributes, Characters, FontCharacter, Illumination, LabelText, Pattern, Polygon, VectorList},
 };
 use std::collections::BTreeMap;
 
@@ -102,7 +102,7 @@ pub struct Polygons {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Labels {
     /// Each text, and whether it is shown.
-    pub labels: Vec<(Label, bool)>,
+    pub labels: Vec<(LabelText, bool)>,
     /// Advance from cell to cell, in cells; default (1, 0).
     pub step: DVec2,
 }
@@ -155,7 +155,7 @@ impl Node {
                 Node::Polygons(p) => {
                     p.polygons.iter().map(|p| size_of::<Polygon>() + size_of_val(p.vertices.as_slice())).sum()
                 }
-                Node::Labels(l) => l.labels.iter().map(|(l, _)| size_of::<Label>() + l.text.len()).sum(),
+                Node::Labels(l) => l.labels.iter().map(|(l, _)| size_of::<LabelText>() + l.text.len()).sum(),
                 Node::Font(font) => {
                     font.values().map(|c| size_of::<FontCharacter>() + size_of_val(c.points.as_slice())).sum()
                 }

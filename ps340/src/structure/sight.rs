@@ -9,7 +9,7 @@ use glam::DMat4;
 
 /// The parts of the accumulated matrix while polygons are gathered: `ctm = view eye`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sight {
+pub struct MatrixFactors {
     /// From eye coordinates to clip space.
     pub view: DMat4,
     /// From the coordinates of the data to eye coordinates.
@@ -22,15 +22,15 @@ pub struct Sight {
     pub plane: Option<bool>,
 }
 
-impl Default for Sight {
-    fn default() -> Sight {
-        Sight { view: DMat4::IDENTITY, eye: DMat4::IDENTITY, local: None, framed: false, plane: None }
+impl Default for MatrixFactors {
+    fn default() -> MatrixFactors {
+        MatrixFactors { view: DMat4::IDENTITY, eye: DMat4::IDENTITY, local: None, framed: false, plane: None }
     }
 }
 
-impl Sight {
+impl MatrixFactors {
     /// The parts below a matrix that does not project.
-    pub(super) fn place(&mut self, m: &DMat4) {
+    pub(super) fn transform(&mut self, m: &DMat4) {
         self.eye *= *m;
         self.local.iter_mut().for_each(|local| *local *= *m);
     }
@@ -39,7 +39,7 @@ impl Sight {
     pub(super) fn project(&mut self, m: &DMat4) {
         let affine = m.row(3) == glam::DVec4::W;
         if affine && self.framed {
-            return self.place(m);
+            return self.transform(m);
         }
         self.view = self.view * self.eye * *m;
         self.eye = DMat4::IDENTITY;

@@ -1,6 +1,6 @@
 //! What a walk carries down the structure: matrices and attributes.
 
-use super::{Sight, identifiers::Identifiers};
+use super::{MatrixFactors, identifiers::Identifiers};
 use crate::port::ObjectId;
 use glam::{DMat2, DMat4, DVec2};
 use protocol::command::CharacterOrientation;
@@ -71,7 +71,7 @@ pub struct State {
     /// The XFORM VECTOR node that gathers the vectors below.
     pub gatherer: Option<ObjectId>,
     /// The parts of the matrix, while polygons are gathered for a rendering.
-    pub sight: Option<Box<Sight>>,
+    pub sight: Option<Box<MatrixFactors>>,
 }
 
 impl Default for State {
@@ -112,9 +112,9 @@ impl Default for State {
 
 impl State {
     /// The state below a matrix that moves and does not project.
-    pub(super) fn place(&mut self, m: DMat4) {
+    pub(super) fn transform(&mut self, m: DMat4) {
         self.ctm *= m;
-        self.sight.iter_mut().for_each(|sight| sight.place(&m));
+        self.sight.iter_mut().for_each(|sight| sight.transform(&m));
     }
 
     /// The state below a window, a field of view or another 4x4 matrix.

@@ -154,7 +154,7 @@ fn some(kind: OperateKind) -> Option<Operation> {
 
 /// One node of each kind, the operate nodes of each command.
 fn every_node() -> Vec<Node> {
-    use protocol::command::{Attributes, Fourth, Illumination, Label, Pattern, SurfaceColor};
+    use protocol::command::{Attributes, Fourth, Illumination, LabelText, Pattern, SurfaceColor};
     let commands =
         OperateKind::ALL.iter().map(|kind| some(*kind).unwrap_or_else(|| panic!("{kind:?} makes no operation")));
     let mut nodes: Vec<Node> = commands.map(|operation| Node::operate(operation, None)).collect();
@@ -168,7 +168,7 @@ fn every_node() -> Vec<Node> {
         points: vec![[0.0, 0.0, 0.0, 1.0]; 3],
         lines: lines.to_vec(),
     };
-    let label = Label { position: DVec3::ZERO, text: (*b"A").into() };
+    let label = LabelText { position: DVec3::ZERO, text: (*b"A").into() };
     let front = SurfaceColor::default();
     nodes.extend([
         Node::Nil,
@@ -325,7 +325,7 @@ fn each_operate_node_takes_what_its_command_says() {
 #[test]
 fn labels_are_moved_written_shown_and_hidden_one_by_one() {
     let mut structures = Structures::default();
-    let label = |text: &[u8]| (protocol::command::Label { position: DVec3::ZERO, text: text.into() }, true);
+    let label = |text: &[u8]| (protocol::command::LabelText { position: DVec3::ZERO, text: text.into() }, true);
     let block = Labels { labels: vec![label(b"A"), label(b"B")], step: DVec2::X };
     structures.define(ID, Node::Labels(Box::new(block)));
     send(&mut structures, 1, Value::string("ONE")).unwrap();

@@ -15,7 +15,7 @@ pub(super) const THIRD: Input = Input::Number(3);
 pub(super) const FOURTH: Input = Input::Number(4);
 
 /// The kinds of a place in two or three dimensions.
-pub(super) const PLACE: KindSet = KindSet::VECTOR2.or(KindSet::VECTOR3);
+pub(super) const POSITION: KindSet = KindSet::VECTOR2.or(KindSet::VECTOR3);
 
 /// The fault of a message of the wrong kind.
 pub(super) fn wrong_kind(input: Input, value: &Value) -> NodeFault {
@@ -43,7 +43,7 @@ pub(super) fn count(value: &Value, input: Input) -> Result<u32, NodeFault> {
 }
 
 /// A place in two or three dimensions; z is 0 in two.
-pub(super) fn place(value: &Value, input: Input) -> Result<DVec3, NodeFault> {
+pub(super) fn position(value: &Value, input: Input) -> Result<DVec3, NodeFault> {
     match value {
         Value::Vector2(v) => Ok(v.extend(0.0)),
         Value::Vector3(v) => Ok(*v),

@@ -25,7 +25,7 @@ pub use modes::Modes;
 pub use screen::{Attributes, COLUMNS, Cell, ROWS};
 
 use graphics::CharacterSet;
-use screen::Screen;
+use screen::TerminalScreen;
 use sequence::Sequences;
 
 /// The most bytes of answers that wait for the host; a host that asks without reading gets no more. Ours.
@@ -35,7 +35,7 @@ pub const MAX_REPLIES: usize = 4096;
 #[derive(Debug, Default)]
 pub struct Terminal {
     sequences: Sequences,
-    screen: Screen,
+    screen: TerminalScreen,
     modes: Modes,
     sets: [CharacterSet; 2],
     /// Which of `sets` is in use: 1 after SO.
@@ -124,7 +124,7 @@ impl Terminal {
 
     /// Back to the state at the start, except for the ink and the set-up page.
     fn reset(&mut self) {
-        self.screen = Screen::default();
+        self.screen = TerminalScreen::default();
         self.modes = Modes::default();
         self.sets = Default::default();
         self.shift = 0;

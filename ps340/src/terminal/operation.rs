@@ -107,8 +107,8 @@ impl Terminal {
                 self.carriage_return();
             }
             b'G' | b'`' => self.screen.move_to(row, n - 1),
-            b'H' | b'f' => self.place(n - 1, s.or(1, 1) - 1),
-            b'd' => self.place(n - 1, column),
+            b'H' | b'f' => self.move_cursor(n - 1, s.or(1, 1) - 1),
+            b'd' => self.move_cursor(n - 1, column),
             b'I' => self.screen.tab(n),
             b'Z' => self.screen.back_tab(n),
             b'J' => part(s.choice()).into_iter().for_each(|part| self.screen.erase(part)),
@@ -149,7 +149,7 @@ impl Terminal {
                     self.modes.set_private(*mode, s.last == b'h');
                     // The cursor goes home when rows begin to count otherwise.
                     if *mode == 6 {
-                        self.place(0, 0);
+                        self.move_cursor(0, 0);
                     }
                 }
             }
@@ -163,12 +163,12 @@ impl Terminal {
     /// Sets the scroll region, which sends the cursor home.
     fn set_region(&mut self, top: usize, bottom: usize) {
         if self.screen.set_region(top, bottom) {
-            self.place(0, 0);
+            self.move_cursor(0, 0);
         }
     }
 
     /// Moves the cursor; in origin mode rows count from the scroll region, which the cursor then does not leave.
-    fn place(&mut self, row: usize, column: usize) {
+    fn move_cursor(&mut self, row: usize, column: usize) {
         let (top, bottom) = self.screen.region();
         let row = if self.modes.origin { (top + row).min(bottom) } else { row };
         self.screen.move_to(row, column);
@@ -213,7 +213,7 @@ impl Terminal {
 /// What a parameter of an erasure means.
 fn part(choice: u16) -> Option<Part> {
     match choice {
-        0 => Some(Part::Rest),
+        0 => Some(Part::FromCursor),
         1 => Some(Part::Beginning),
         2 => Some(Part::All),
         _ => None,

@@ -50,7 +50,7 @@ struct Cursor {
 
 /// The screen.
 #[derive(Debug)]
-pub(super) struct Screen {
+pub(super) struct TerminalScreen {
     rows: Vec<Row>,
     cursor: Cursor,
     saved: Cursor,
@@ -60,9 +60,9 @@ pub(super) struct Screen {
     tabs: [bool; COLUMNS],
 }
 
-impl Default for Screen {
-    fn default() -> Screen {
-        Screen {
+impl Default for TerminalScreen {
+    fn default() -> TerminalScreen {
+        TerminalScreen {
             rows: vec![[Cell::default(); COLUMNS]; ROWS],
             cursor: Cursor::default(),
             saved: Cursor::default(),
@@ -77,14 +77,14 @@ impl Default for Screen {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Part {
     /// From the cursor to the end.
-    Rest,
+    FromCursor,
     /// From the beginning to the cursor.
     Beginning,
     /// All.
     All,
 }
 
-impl Screen {
+impl TerminalScreen {
     pub(super) fn row(&self, row: usize) -> &[Cell] {
         self.rows.get(row).map_or(&[], |r| &r[..])
     }
@@ -241,7 +241,7 @@ impl Screen {
     pub(super) fn erase_in_row(&mut self, part: Part) {
         let column = self.cursor.column;
         let cells = match part {
-            Part::Rest => column..COLUMNS,
+            Part::FromCursor => column..COLUMNS,
             Part::Beginning => 0..column + 1,
             Part::All => 0..COLUMNS,
         };
@@ -254,7 +254,7 @@ impl Screen {
         self.erase_in_row(part);
         let row = self.cursor.row;
         let rows = match part {
-            Part::Rest => row + 1..ROWS,
+            Part::FromCursor => row + 1..ROWS,
             Part::Beginning => 0..row,
             Part::All => 0..ROWS,
         };

@@ -8,20 +8,20 @@
 
 use crate::{
     port::ObjectId,
-    structure::{Node, Polygons, Sight, State},
+    structure::{Node, Polygons, MatrixFactors, State},
 };
 use glam::{DMat4, DVec3};
 use protocol::command::Illumination;
 
 /// A polygon node where it is displayed.
 #[derive(Clone, Debug)]
-pub struct Block<'a> {
+pub struct PolygonBlock<'a> {
     /// The polygons.
     pub polygons: &'a Polygons,
     /// Where they are, and their colour if they do not say.
     pub state: State,
     /// The parts of their matrix.
-    pub sight: Sight,
+    pub sight: MatrixFactors,
 }
 
 /// A plane in eye coordinates.
@@ -39,7 +39,7 @@ pub struct Gathered<'a> {
     /// The state at the node; none if the picture does not meet it.
     pub node: Option<State>,
     /// Polygons of the object.
-    pub blocks: Vec<Block<'a>>,
+    pub blocks: Vec<PolygonBlock<'a>>,
     /// Lights, each with the matrix to eye coordinates.
     pub lights: Vec<(Illumination, DMat4)>,
     /// The sectioning plane.
@@ -82,7 +82,7 @@ impl<'a> Gatherer<'a> {
                 }
                 if sight.local.is_some() && sight.plane != Some(true) {
                     let state = State { sight: None, ..state.clone() };
-                    self.gathered.blocks.push(Block { polygons, state, sight: *sight });
+                    self.gathered.blocks.push(PolygonBlock { polygons, state, sight: *sight });
                 }
             }
             _ => {}

@@ -14,7 +14,7 @@ const BLEND_STEP: f64 = 6.0;
 
 /// A straight piece, or a dot if its ends are the same.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Piece {
+pub(super) struct LineSegment {
     /// Number of the vector, character, label or polygon in its node, from 1.
     pub(super) index: u32,
     /// Its ends in clip space.
@@ -30,10 +30,10 @@ pub(super) struct Piece {
 }
 
 /// What takes the pieces; it may end the matter.
-pub(super) type Sink<'s> = &'s mut dyn FnMut(Piece) -> ControlFlow<()>;
+pub(super) type Sink<'s> = &'s mut dyn FnMut(LineSegment) -> ControlFlow<()>;
 
 /// Gives all pieces of a data node to `sink`, in drawing order. Other nodes have none.
-pub(super) fn pieces(node: &Node, state: &State, structures: &Structures, sink: Sink) -> ControlFlow<()> {
+pub(super) fn line_segments(node: &Node, state: &State, structures: &Structures, sink: Sink) -> ControlFlow<()> {
     match node {
         Node::Vectors(vectors) => list(vectors.drawn(), state, sink),
         Node::Characters(characters) => {
@@ -70,7 +70,7 @@ fn list(list: &VectorList, state: &State, sink: Sink) -> ControlFlow<()> {
         let source = [place(from), place(to)];
         let ends = source.map(|p| state.ctm * p.extend(1.0));
         let index = to as u32 + 1;
-        let piece = Piece { index, ends, source, intensity: [intensity(from), intensity(to)], color: None, dot };
+        let piece = LineSegment { index, ends, source, intensity: [intensity(from), intensity(to)], color: None, dot };
         match blending {
             Some(saturation) => {
                 blend(piece, [list.points[from][3], list.points[to][3]].map(f64::from), saturation, sink)?
@@ -82,7 +82,7 @@ fn list(list: &VectorList, state: &State, sink: Sink) -> ControlFlow<()> {
 }
 
 /// Cuts a piece into so many that the hue of each is nearly constant.
-fn blend(piece: Piece, hues: [f64; 2], saturation: f64, sink: Sink) -> ControlFlow<()> {
+fn blend(piece: LineSegment, hues: [f64; 2], saturation: f64, sink: Sink) -> ControlFlow<()> {
     // 0 to 720, so that no more than 120 pieces come of a line whatever the host sends.
     let [from, to] = hues.map(|h| h.clamp(0.0, 720.0));
     let parts = ((to - from).abs() / BLEND_STEP).ceil().max(1.0) as u32;
@@ -92,7 +92,7 @@ fn blend(piece: Piece, hues: [f64; 2], saturation: f64, sink: Sink) -> ControlFl
         let color = Some(hue::rgb((middle % 360.0) as f32, saturation as f32));
         let ends = t.map(|t| piece.ends[0].lerp(piece.ends[1], t));
         let source = t.map(|t| piece.source[0].lerp(piece.source[1], t));
-        sink(Piece { ends, source, color, ..piece })?;
+        sink(LineSegment { ends, source, color, ..piece })?;
     }
     ControlFlow::Continue(())
 }
@@ -120,7 +120,7 @@ fn polygons(block: &Polygons, state: &State, sink: Sink) -> ControlFlow<()> {
             if let Some(from) = from {
                 let source = [from, to];
                 let ends = source.map(|p| state.ctm * p.extend(1.0));
-                sink(Piece { index, ends, source, intensity: [1.0; 2], color, dot: false })?;
+                sink(LineSegment { index, ends, source, intensity: [1.0; 2], color, dot: false })?;
             }
             from = Some(to);
         }
@@ -160,7 +160,7 @@ impl<'a> Text<'a> {
                     _ => local.map(|l| self.on_screen(position, l)),
                 };
                 let dot = stroke[0] == stroke[1];
-                sink(Piece { index, ends, source, intensity: [1.0; 2], color: None, dot })?;
+                sink(LineSegment { index, ends, source, intensity: [1.0; 2], color: None, dot })?;
             }
         }
         ControlFlow::Continue(())

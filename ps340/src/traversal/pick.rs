@@ -4,10 +4,10 @@
 //! As remembered from the manuals: traversal order decides, only data below SET PICKING ON is considered, the
 //! identifiers are listed from the data upward. That a pick needs at least one identifier is uncertain.
 
-use super::outline::Piece;
+use super::outline::LineSegment;
 use crate::{port::ObjectId, structure::State};
 use glam::{DVec2, DVec3, DVec4};
-use protocol::{Name, value::PickedPlace};
+use protocol::{Name, value::PickCoordinates};
 
 /// What is to be picked.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,7 +32,7 @@ pub struct PickHit {
     /// What kind of data.
     pub kind: PickedKind,
     /// Where it was picked, if that was wanted: the point of the vector that is nearest to the centre of the box.
-    pub place: Option<PickedPlace>,
+    pub place: Option<PickCoordinates>,
 }
 
 /// The kind of data that was picked.
@@ -131,7 +131,7 @@ impl PickBox {
     }
 
     /// The place on a piece that was hit, and how far along it that is.
-    pub(super) fn place(&self, piece: &Piece, span: [f64; 2]) -> (DVec3, f64) {
+    pub(super) fn coordinates_on(&self, piece: &LineSegment, span: [f64; 2]) -> (DVec3, f64) {
         let t = self.nearest(piece.ends, span);
         (piece.source[0].lerp(piece.source[1], t), t)
     }

@@ -1,6 +1,6 @@
 //! What an update is asked for, and what it gives.
 
-use super::{MAX_DEPTH, MAX_GATHERED, MAX_KEPT, MAX_VECTORS, MAX_VISITS, PickHit, PickRequest, Stroke};
+use super::{MAX_DEPTH, MAX_GATHERED, MAX_STORED_VECTORS, MAX_VECTORS, MAX_VISITS, PickHit, PickRequest, Stroke};
 use crate::{port::ObjectId, structure::ALL_SCOPES};
 use glam::{DMat4, DVec3};
 use std::{
@@ -21,7 +21,7 @@ pub struct Requests {
 
 /// Why an update is incomplete.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Trouble {
+pub enum UpdateFault {
     /// An object contains itself; it is drawn once.
     #[error("a structure contains itself")]
     ContainsItself(ObjectId),
@@ -35,8 +35,8 @@ pub enum Trouble {
     #[error("an update draws at most {MAX_VECTORS} vectors")]
     TooManyVectors,
     /// More than [`MAX_KEPT`] vectors in a picture whose strokes are kept.
-    #[error("a window and lists of strokes show at most {MAX_KEPT} vectors")]
-    TooManyKept,
+    #[error("a window and lists of strokes show at most {MAX_STORED_VECTORS} vectors")]
+    TooManyStored,
     /// More than [`MAX_GATHERED`] vectors below XFORM VECTOR.
     #[error("XFORM VECTOR gathers at most {MAX_GATHERED} vectors")]
     TooManyGathered,
@@ -75,7 +75,7 @@ pub struct Update {
     /// Vectors and character strokes that went into the pipeline.
     pub vectors: u64,
     /// What was left out, if anything.
-    pub trouble: Option<Trouble>,
+    pub trouble: Option<UpdateFault>,
 }
 
 impl Update {

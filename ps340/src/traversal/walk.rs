@@ -1,21 +1,21 @@
 //! The walk over the display structure.
 
 use super::{
-    Clipper, MAX_DEPTH, MAX_GATHERED, MAX_KEPT, MAX_VECTORS, MAX_VISITS, PickHit, PickedKind, Requests, Stroke,
-    Trouble, Update,
+    Clipper, MAX_DEPTH, MAX_GATHERED, MAX_STORED_VECTORS, MAX_VECTORS, MAX_VISITS, PickHit, PickedKind, Requests, Stroke,
+    UpdateFault, Update,
     gather::{Gathered, Gatherer},
-    outline::{self, Piece},
+    outline::{self, LineSegment},
     phase,
     pick::PickBox,
 };
 use crate::{
     port::ObjectId,
-    structure::{Asked, IdentifierChains, Identifiers, Member, Node, Operation, Rendered, Sight, State, Structures},
+    structure::{Asked, IdentifierChains, Identifiers, Member, Node, Operation, Rendered, MatrixFactors, State, Structures},
 };
 use glam::{DMat4, DVec3, DVec4};
 use protocol::{
     command::{CharacterOrientation, Fourth, VectorClass, VectorList},
-    value::PickedPlace,
+    value::PickCoordinates,
 };
 use rayon::prelude::*;
 use std::{
@@ -32,7 +32,7 @@ const BLOCK: usize = 64 * PIECE;
 ///
 /// - `frame`: the number of the refresh frame, for SET RATE and blinking.
 pub fn update(structures: &Structures, frame: u64, requests: &Requests) -> Update {
-    update_into(structures, frame, requests, Vec::new(), MAX_KEPT)
+    update_into(structures, frame, requests, Vec::new(), MAX_STORED_VECTORS)
 }
 
 /// Walks everything that is displayed, with the room of the strokes of an earlier update; most of the time of a fresh one
@@ -50,7 +50,7 @@ pub fn update_into(
     let mut walk = Walk::new(structures, frame, requests);
     strokes.clear();
     walk.update.strokes = strokes;
-    walk.drawing = Drawing::Kept { most };
+    walk.drawing = Drawing::Stored { most };
     walk.displayed();
     walk.update
 }
@@ -82,7 +82,7 @@ pub fn gather(structures: &Structures, frame: u64, node: ObjectId) -> Gathered<'
     let mut walk = Walk::new(structures, frame, &NOTHING);
     walk.gatherer = Some(Gatherer::new(node));
     for root in structures.displayed() {
-        walk.root(root, State { sight: Some(Box::<Sight>::default()), ..State::default() });
+        walk.root(root, State { sight: Some(Box::<MatrixFactors>::default()), ..State::default() });
     }
     walk.gatherer.map(Gatherer::finish).unwrap_or_default()
 }
@@ -105,7 +105,7 @@ struct Walk<'a> {
 /// What becomes of strokes.
 enum Drawing<'t> {
     /// They stay in the update, unless there are more vectors than this.
-    Kept { most: u64 },
+    Stored { most: u64 },
     /// Those that one screen shows, a bit, go to somebody who takes them.
     HandedOn { screen: u8, take: &'t mut dyn FnMut(&[Stroke]) },
 }
@@ -167,7 +167,7 @@ impl<'a> Walk<'a> {
             structures,
             frame,
             requests,
-            drawing: Drawing::Kept { most: MAX_KEPT },
+            drawing: Drawing::Stored { most: MAX_STORED_VECTORS },
             gatherer: None,
             update: Update::default(),
             identifiers: IdentifierChains::default(),
@@ -205,7 +205,7 @@ impl<'a> Walk<'a> {
     fn visit(&mut self, visit: &Visit<'a>, levels: &mut Vec<Level<'a>>) -> ControlFlow<()> {
         self.update.visits += 1;
         if self.update.visits > MAX_VISITS {
-            self.update.trouble = Some(Trouble::TooManyVisits);
+            self.update.trouble = Some(UpdateFault::TooManyVisits);
             return ControlFlow::Break(());
         }
         let Some(level) = levels.last_mut() else { return ControlFlow::Break(()) };
@@ -261,13 +261,13 @@ impl<'a> Walk<'a> {
     /// Goes a level down, unless the structure is too deep or contains itself.
     fn enter(&mut self, object: Option<ObjectId>, items: Items<'a>, state: State, levels: &mut Vec<Level<'a>>) {
         if levels.len() >= MAX_DEPTH {
-            self.update.trouble = Some(Trouble::TooDeep);
+            self.update.trouble = Some(UpdateFault::TooDeep);
             return;
         }
         if let Some(id) = object {
             let (word, bit) = (&mut self.entered[id.index() / 64], 1 << (id.index() % 64));
             if *word & bit != 0 {
-                self.update.trouble = Some(Trouble::ContainsItself(id));
+                self.update.trouble = Some(UpdateFault::ContainsItself(id));
                 return;
             }
             *word |= bit;
@@ -316,7 +316,7 @@ impl<'a> Walk<'a> {
             }
         }
         let seen_by = match &self.drawing {
-            Drawing::Kept { .. } => state.scopes,
+            Drawing::Stored { .. } => state.scopes,
             Drawing::HandedOn { screen, .. } => state.scopes & screen,
         };
         if seen_by != 0 {
@@ -349,7 +349,7 @@ impl<'a> Walk<'a> {
     fn counted(&mut self, vectors: usize) -> bool {
         let sum = self.update.vectors + vectors as u64;
         if sum > MAX_VECTORS {
-            self.update.trouble = Some(Trouble::TooManyVectors);
+            self.update.trouble = Some(UpdateFault::TooManyVectors);
             return false;
         }
         self.update.vectors = sum;
@@ -359,9 +359,9 @@ impl<'a> Walk<'a> {
     /// Whether the vectors that were counted last are drawn.
     fn is_drawn(&mut self) -> bool {
         match self.drawing {
-            Drawing::Kept { most } if self.update.vectors > most => {
-                if most == MAX_KEPT {
-                    self.update.trouble = Some(Trouble::TooManyKept);
+            Drawing::Stored { most } if self.update.vectors > most => {
+                if most == MAX_STORED_VECTORS {
+                    self.update.trouble = Some(UpdateFault::TooManyStored);
                 } else if !self.update.is_counted_only {
                     self.update.is_counted_only = true;
                     self.update.strokes.clear();
@@ -435,7 +435,7 @@ impl<'a> Walk<'a> {
         }
         let structures = self.structures;
         // That a piece was one too many is told by the account.
-        let _ = outline::pieces(node, state, structures, &mut |piece: Piece| {
+        let _ = outline::line_segments(node, state, structures, &mut |piece: LineSegment| {
             if !self.counted(1) || !self.is_drawn() {
                 return ControlFlow::Break(());
             }
@@ -459,7 +459,7 @@ impl<'a> Walk<'a> {
         coordinates: bool,
     ) -> Option<PickHit> {
         let mut hit = None;
-        let _ = outline::pieces(node, state, self.structures, &mut |piece: Piece| {
+        let _ = outline::line_segments(node, state, self.structures, &mut |piece: LineSegment| {
             let Some(span) = pick_box.inside(piece.ends) else { return ControlFlow::Continue(()) };
             hit = Some((piece, span));
             ControlFlow::Break(())
@@ -478,12 +478,12 @@ impl<'a> Walk<'a> {
             _ => (PickedKind::Characters, 3, None),
         };
         let place = coordinates.then(|| {
-            let (point, t) = pick_box.place(&piece, span);
+            let (point, t) = pick_box.coordinates_on(&piece, span);
             let parameter = parameters.map(|([first, last], chords)| {
                 let along = (f64::from(piece.index) - 2.0 + t).max(0.0) / chords.max(1.0);
                 first + (last - first) * along
             });
-            PickedPlace { point, dimension, parameter }
+            PickCoordinates { point, dimension, parameter }
         });
         let identifiers = self.identifiers.names(state.identifiers);
         Some(PickHit { index: piece.index, identifiers, node: object, kind, place })
@@ -495,7 +495,7 @@ impl<'a> Walk<'a> {
         let list = vectors.drawn();
         let into = self.update.transformed.entry(gatherer).or_default();
         if into.points.len() + list.points.len() > MAX_GATHERED {
-            self.update.trouble = Some(Trouble::TooManyGathered);
+            self.update.trouble = Some(UpdateFault::TooManyGathered);
             return;
         }
         let place = |p: &[f32; 4]| state.ctm.project_point3(DVec3::new(p[0].into(), p[1].into(), p[2].into()));

@@ -3,7 +3,7 @@
 use crate::{
     chance::Chance,
     mutation::mutate,
-    pool::{Features, Pool},
+    pool::{Features, InputPool},
     watch::Slot,
 };
 use std::{
@@ -31,7 +31,7 @@ pub struct Target {
 
 /// An input that fails, and how.
 #[derive(Clone, Debug)]
-pub struct Failure {
+pub struct FuzzFailure {
     pub message: String,
     pub input: Vec<u8>,
 }
@@ -40,16 +40,16 @@ pub struct Failure {
 #[derive(Debug)]
 pub struct Campaign {
     pub target: &'static Target,
-    pool: Mutex<Pool>,
+    pool: Mutex<InputPool>,
     executions: AtomicU64,
     /// By the place in the source that panicked.
-    failures: Mutex<BTreeMap<String, Failure>>,
+    failures: Mutex<BTreeMap<String, FuzzFailure>>,
 }
 
 impl Campaign {
     /// A campaign that has tried every seed.
     pub fn new(target: &'static Target, slot: Option<&Slot>) -> Campaign {
-        let mut pool = Pool::default();
+        let mut pool = InputPool::default();
         let seeds = (target.seeds)();
         seeds.iter().for_each(|seed| pool.plant(seed.clone()));
         let campaign = Campaign { target, pool: pool.into(), executions: 0.into(), failures: BTreeMap::new().into() };
@@ -90,10 +90,10 @@ impl Campaign {
         let input = reduced(self.target, input, &place);
         let file = write_input(self.target.name, &place, &input);
         eprintln!("fuzz {}: {place}: {message}\n  again with PERIS_FUZZ_INPUT={}", self.target.name, file.display());
-        lock(&self.failures).insert(place, Failure { message, input });
+        lock(&self.failures).insert(place, FuzzFailure { message, input });
     }
 
-    pub fn failures(&self) -> BTreeMap<String, Failure> {
+    pub fn failures(&self) -> BTreeMap<String, FuzzFailure> {
         lock(&self.failures).clone()
     }
 

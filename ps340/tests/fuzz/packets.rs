@@ -2,9 +2,9 @@
 
 use crate::{campaign::Target, chance::Chance, pool::Features, seeds};
 use protocol::{
-    capture::{CaptureReader, Event, HEADER, MAX_ORDER, PIECE},
+    capture::{CaptureReader, Event, HEADER, MAX_OPERATOR_COMMAND, PIECE},
     listing::Listing,
-    parallel::{self, FrameReader, Side},
+    parallel::{self, ParallelFrameReader, Side},
     wire::{
         Counters, Frame, FrameDecoder, MessageForm, MessageReader, NoiseReason, PacketForm, Route, write_packet_as,
     },
@@ -151,7 +151,7 @@ fn check_listing(listing: &str, length: usize) {
 /// The words of the parallel interface.
 fn words(input: &[u8], pieces: &[&[u8]], features: &mut Features) {
     let frames = |pieces: &[&[u8]]| {
-        let mut reader = FrameReader::default();
+        let mut reader = ParallelFrameReader::default();
         let mut frames = Vec::new();
         for piece in pieces {
             reader.push(piece);
@@ -163,14 +163,14 @@ fn words(input: &[u8], pieces: &[&[u8]], features: &mut Features) {
     assert_eq!(whole, frames(pieces), "the same words however the stream is cut");
     for frame in &whole {
         match frame {
-            parallel::Frame::Word(word) => {
-                features.saw(parallel::Command::from_word(*word).map(|command| command.code.name()))
+            parallel::ParallelFrame::Word(word) => {
+                features.saw(parallel::CommandWord::from_word(*word).map(|command| command.code.name()))
             }
-            parallel::Frame::Block(bytes) => features.saw_amount("block", bytes.len() as u64),
-            parallel::Frame::Reset | parallel::Frame::Noise(_) => {}
+            parallel::ParallelFrame::Block(bytes) => features.saw_amount("block", bytes.len() as u64),
+            parallel::ParallelFrame::Reset | parallel::ParallelFrame::Noise(_) => {}
         }
     }
-    let mut listing = parallel::Listing::default();
+    let mut listing = parallel::ParallelListing::default();
     let mut text = String::new();
     for (index, piece) in pieces.iter().enumerate() {
         listing.push(if index % 3 == 1 { Side::Machine } else { Side::Host }, piece, &mut text);
@@ -198,7 +198,7 @@ fn captured(input: &[u8], pieces: &[&[u8]], features: &mut Features) {
                 features.saw(std::mem::discriminant(&record.event));
                 let fits = match &record.event {
                     Event::Open(peer) => peer.len() <= 1024,
-                    Event::Order(order) => order.len() <= MAX_ORDER,
+                    Event::OperatorCommand(order) => order.len() <= MAX_OPERATOR_COMMAND,
                     Event::FromHost(bytes) | Event::ToHost(bytes) => (1..=PIECE).contains(&bytes.len()),
                     Event::Close => true,
                 };

@@ -41,12 +41,12 @@ impl Features {
 
 /// Inputs and what they showed.
 #[derive(Debug, Default)]
-pub struct Pool {
+pub struct InputPool {
     inputs: Vec<Vec<u8>>,
     seen: HashSet<u64>,
 }
 
-impl Pool {
+impl InputPool {
     /// Puts a seed in.
     pub fn plant(&mut self, input: Vec<u8>) {
         self.inputs.push(input);

@@ -6,9 +6,9 @@ use crate::{campaign::Target, pool::Features, seeds, vocabulary::pairs};
 use protocol::command::{CommandReader, reference::name_of};
 use ps340::{
     line::LineId,
-    machine::{Input, Machine, Output, Settings, WORK_PER_STEP},
+    machine::{Input, Machine, HostOutput, Settings, WORK_PER_STEP},
     memory::MASS_MEMORY,
-    operator::{Order, Outcome, SightOrder, parse, perform},
+    operator::{OperatorCommand, CommandOutcome, DisplayCommand, parse, perform},
 };
 
 pub static SESSION: Target = Target { name: "session", seeds: seeds::sessions, run };
@@ -52,7 +52,7 @@ const ANSWERS: &str = "HOST_MESSAGE";
 struct Session {
     machine: Machine,
     line: LineId,
-    outputs: Vec<Output>,
+    outputs: Vec<HostOutput>,
     frames: u64,
 }
 
@@ -120,9 +120,9 @@ impl Session {
     fn order(&mut self, line: &str) {
         match parse(line) {
             // A picture would be a file of a name that chance made.
-            Ok(Order::Sight(SightOrder::Picture { .. }) | Order::Quit) | Err(_) => {}
+            Ok(OperatorCommand::Display(DisplayCommand::Picture { .. }) | OperatorCommand::Quit) | Err(_) => {}
             Ok(order) => {
-                if let Outcome::Waiting(wait) = perform(&order, &mut self.machine, None) {
+                if let CommandOutcome::Waiting(wait) = perform(&order, &mut self.machine, None) {
                     while wait.poll(&mut self.machine).is_none() && self.may_go_on() {
                         self.frame();
                     }
@@ -161,7 +161,7 @@ impl Session {
         if lot % 16 == 5 {
             assert!(self.machine.raster_picture().width() > 0);
         }
-        for order in [Order::Panel, Order::Terminal, Order::Log, Order::Counters, Order::Show("A".into())] {
+        for order in [OperatorCommand::Panel, OperatorCommand::Terminal, OperatorCommand::Log, OperatorCommand::Counters, OperatorCommand::Show("A".into())] {
             perform(&order, &mut self.machine, None);
         }
     }

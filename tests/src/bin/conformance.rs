@@ -3,7 +3,7 @@
 use clap::Parser;
 use std::{path::PathBuf, process::ExitCode, time::Duration};
 use tests::conformance::{
-    self, Case, Form, Operator, OperatorLine, Packets, Person, Target, Verdict, Way, line::Place, mutation, walk,
+    self, Case, Form, Operator, OperatorLine, Packets, Person, Target, Verdict, Transport, line::Endpoint, mutation, walk,
 };
 
 /// Runs the conformance suite of the PS 340 against a machine; see protocol/CONFORMANCE.md.
@@ -18,7 +18,7 @@ use tests::conformance::{
 )]
 struct Arguments {
     /// The machine's host line: tcp:HOST:PORT, unix:PATH, pty:PATH or serial:PATH.
-    place: Place,
+    place: Endpoint,
     /// Who is at the machine: the address of an emulator's operator line, or 'ask' to be asked on this terminal.
     #[arg(long, value_name = "ADDRESS|ask")]
     operator: Option<String>,
@@ -109,7 +109,7 @@ fn run(arguments: &Arguments) -> Result<bool, (u8, String)> {
         return Ok(true);
     }
     let default = if arguments.form == Form::Text { Packets::None } else { Packets::Long };
-    let way = Way { form: arguments.form, packets: arguments.packets.unwrap_or(default) };
+    let way = Transport { form: arguments.form, packets: arguments.packets.unwrap_or(default) };
     way.check().map_err(|e| usage(e.to_string()))?;
     let target = Target {
         place: arguments.place.clone(),

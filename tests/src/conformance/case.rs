@@ -76,7 +76,7 @@ impl Case {
     /// Whether someone must be at the machine. Strokes of one frame can also be asked for over the host line.
     pub fn needs_operator(&self) -> bool {
         let needs = |step: &Step| match step {
-            Step::Order(_) | Step::Reply(_) => true,
+            Step::OperatorCommand(_) | Step::Reply(_) => true,
             Step::Strokes { frames, .. } => *frames > 1,
             _ => false,
         };
@@ -135,7 +135,7 @@ pub enum Step {
     /// The next message.
     Expect(Expected),
     /// `@ order`: something that a person does.
-    Order(String),
+    OperatorCommand(String),
     /// `@~ glob`: what the person saw.
     Reply(String),
     /// `frames N`: time passes.
@@ -152,7 +152,7 @@ pub enum Step {
     /// `drop`: messages that are there do not matter.
     Drop,
     /// `quiet`: no message is there.
-    Quiet,
+    Silence,
 }
 
 /// What a message must be.

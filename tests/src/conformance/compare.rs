@@ -4,7 +4,7 @@ use super::case::{Expected, StrokeLine};
 
 /// A numbered message of the machine, in parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Fault<'m> {
+pub struct MachineMessage<'m> {
     /// `E`, `W` or `I`.
     pub class: char,
     /// Its number.
@@ -14,11 +14,11 @@ pub struct Fault<'m> {
 }
 
 /// Reads a message of the form `E 5 *** text`.
-pub fn fault(message: &[u8]) -> Option<Fault<'_>> {
+pub fn fault(message: &[u8]) -> Option<MachineMessage<'_>> {
     let text = std::str::from_utf8(message).ok()?;
     let class = text.chars().next().filter(|c| "EWI".contains(*c))?;
     let (number, text) = text[1..].strip_prefix(' ')?.split_once(" *** ")?;
-    Some(Fault { class, number: number.parse().ok()?, text })
+    Some(MachineMessage { class, number: number.parse().ok()?, text })
 }
 
 /// Whether a message is what was expected. [`Expected::AnyOrder`] is no question for one message, and false.
@@ -41,13 +41,13 @@ pub fn matches(expected: &Expected, message: &[u8], tolerance: f64, any_fault: b
 
 /// A piece of a text: a number or a word.
 #[derive(Clone, Debug, PartialEq)]
-enum Piece<'t> {
+enum TextToken<'t> {
     Number(f64),
     Word(&'t str),
 }
 
 /// Numbers and words; blanks and commas separate, and a number ends a word.
-fn pieces(text: &str) -> Vec<Piece<'_>> {
+fn pieces(text: &str) -> Vec<TextToken<'_>> {
     let mut pieces = Vec::new();
     let mut rest = text.trim_start_matches([' ', ',']);
     while let Some(first) = rest.chars().next() {
@@ -55,13 +55,13 @@ fn pieces(text: &str) -> Vec<Piece<'_>> {
         if length > 0
             && let Ok(number) = rest[..length].parse()
         {
-            pieces.push(Piece::Number(number));
+            pieces.push(TextToken::Number(number));
             rest = &rest[length..];
         } else {
             let ends = |c: char| c == ' ' || c == ',' || c.is_ascii_digit() || "+-.".contains(c);
             let after = first.len_utf8();
             let end = rest[after..].find(ends).map_or(rest.len(), |at| at + after);
-            pieces.push(Piece::Word(&rest[..end]));
+            pieces.push(TextToken::Word(&rest[..end]));
             rest = &rest[end..];
         }
         rest = rest.trim_start_matches([' ', ',']);
@@ -106,7 +106,7 @@ pub fn same_numbers(expected: &str, found: &str, tolerance: f64) -> bool {
     let (expected, found) = (pieces(expected), pieces(found));
     expected.len() == found.len()
         && expected.iter().zip(&found).all(|pair| match pair {
-            (Piece::Number(a), Piece::Number(b)) => close(*a, *b, tolerance),
+            (TextToken::Number(a), TextToken::Number(b)) => close(*a, *b, tolerance),
             (a, b) => a == b,
         })
 }
@@ -195,7 +195,7 @@ mod tests {
     #[test]
     fn faults_are_known_by_their_form() {
         let found = fault(b"E 5 *** Bad message type").unwrap();
-        assert_eq!(found, Fault { class: 'E', number: 5, text: "Bad message type" });
+        assert_eq!(found, MachineMessage { class: 'E', number: 5, text: "Bad message type" });
         assert_eq!(fault(b"E5"), None);
         assert_eq!(fault(b"X 5 *** y"), None);
         let wanted = |number| Expected::Fault { class: 'E', number, text: None };

@@ -50,7 +50,7 @@ impl Packets {
 
 /// A form and a carrier.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub struct Way {
+pub struct Transport {
     /// The form of commands.
     pub form: Form,
     /// What carries them.
@@ -59,7 +59,7 @@ pub struct Way {
 
 /// Why a text cannot go a way.
 #[derive(Debug, thiserror::Error)]
-pub enum WayError {
+pub enum TransportError {
     /// Binary records need packets.
     #[error("the binary forms travel in packets only")]
     NoPackets,
@@ -71,12 +71,12 @@ pub enum WayError {
     Record(EncodeError),
 }
 
-impl Way {
+impl Transport {
     /// Every way that commands can go.
-    pub fn all() -> Vec<Way> {
+    pub fn all() -> Vec<Transport> {
         let forms = <Form as clap::ValueEnum>::value_variants();
         let packets = <Packets as clap::ValueEnum>::value_variants();
-        let all = forms.iter().flat_map(|&form| packets.iter().map(move |&packets| Way { form, packets }));
+        let all = forms.iter().flat_map(|&form| packets.iter().map(move |&packets| Transport { form, packets }));
         all.filter(|way| way.check().is_ok()).collect()
     }
 
@@ -84,12 +84,12 @@ impl Way {
     ///
     /// # Errors
     /// [`WayError::NoPackets`].
-    pub fn check(self) -> Result<(), WayError> {
-        if self.form != Form::Text && self.packets == Packets::None { Err(WayError::NoPackets) } else { Ok(()) }
+    pub fn check(self) -> Result<(), TransportError> {
+        if self.form != Form::Text && self.packets == Packets::None { Err(TransportError::NoPackets) } else { Ok(()) }
     }
 }
 
-impl std::fmt::Display for Way {
+impl std::fmt::Display for Transport {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{:?} in {:?}", self.form, self.packets)
     }
@@ -98,7 +98,7 @@ impl std::fmt::Display for Way {
 /// Brings command text on its way: into bytes of the line.
 #[derive(Debug)]
 pub struct Sender {
-    way: Way,
+    way: Transport,
     cut: Option<Pcg64Mcg>,
     reader: CommandReader,
 }
@@ -107,7 +107,7 @@ impl Sender {
     /// A sender at the beginning of a stream.
     ///
     /// - `cut`: seed for cutting the stream at random places.
-    pub fn new(way: Way, cut: Option<u64>) -> Sender {
+    pub fn new(way: Transport, cut: Option<u64>) -> Sender {
         Sender { way, cut: cut.map(Pcg64Mcg::seed_from_u64), reader: CommandReader::default() }
     }
 
@@ -115,7 +115,7 @@ impl Sender {
     ///
     /// # Errors
     /// [`WayError`] if the text cannot go this way.
-    pub fn write(&mut self, text: &[u8], text_only: bool, out: &mut Vec<u8>) -> Result<(), WayError> {
+    pub fn write(&mut self, text: &[u8], text_only: bool, out: &mut Vec<u8>) -> Result<(), TransportError> {
         if self.way.form == Form::Text || text_only {
             self.write_text(text, out);
             return Ok(());
@@ -123,11 +123,11 @@ impl Sender {
         self.reader.push(text);
         let mut commands = Vec::new();
         for read in self.reader.by_ref() {
-            commands.push(read.map_err(WayError::Text)?.command);
+            commands.push(read.map_err(TransportError::Text)?.command);
         }
         let data = if self.way.form == Form::Binary6 { DataForm::SixBit } else { DataForm::EightBit };
-        let packets = self.way.packets.form().ok_or(WayError::NoPackets)?;
-        write_commands_as(Sending { packets, data }, &commands, out).map_err(WayError::Record)
+        let packets = self.way.packets.form().ok_or(TransportError::NoPackets)?;
+        write_commands_as(Sending { packets, data }, &commands, out).map_err(TransportError::Record)
     }
 
     fn write_text(&mut self, text: &[u8], out: &mut Vec<u8>) {
@@ -170,7 +170,7 @@ mod tests {
     };
 
     /// The commands that a machine would hear.
-    fn heard(stream: &[u8]) -> Vec<Command> {
+    fn decoded_commands(stream: &[u8]) -> Vec<Command> {
         let (mut frames, mut text, mut binary) =
             (FrameDecoder::default(), CommandReader::default(), BinaryDecoder::default());
         let mut all = Vec::new();
@@ -195,9 +195,9 @@ mod tests {
     #[test]
     fn every_way_says_the_same_also_when_it_is_cut() {
         let text: String = (0..400).map(|i| format!("V{i} := VECTOR_LIST {i},0 1,{i}; DISPLAY V{i};\n")).collect();
-        let plain = heard(text.as_bytes());
+        let plain = decoded_commands(text.as_bytes());
         assert_eq!(plain.len(), 800);
-        for way in Way::all() {
+        for way in Transport::all() {
             for cut in [None, Some(7)] {
                 let mut sender = Sender::new(way, cut);
                 let mut stream = Vec::new();
@@ -205,7 +205,7 @@ mod tests {
                 let (first, second) = text.as_bytes().split_at(1001);
                 sender.write(first, false, &mut stream).unwrap();
                 sender.write(second, false, &mut stream).unwrap();
-                assert!(heard(&stream) == plain, "{way}");
+                assert!(decoded_commands(&stream) == plain, "{way}");
                 assert_eq!(sender.pieces(&stream).concat(), stream);
             }
         }
@@ -213,10 +213,10 @@ mod tests {
 
     #[test]
     fn a_text_that_is_no_command_has_no_binary_form() {
-        let way = Way { form: Form::Binary8, packets: Packets::Long };
+        let way = Transport { form: Form::Binary8, packets: Packets::Long };
         let mut sender = Sender::new(way, None);
-        assert!(matches!(sender.write(b"DISPLAY 3;", false, &mut Vec::new()), Err(WayError::Text(_))));
+        assert!(matches!(sender.write(b"DISPLAY 3;", false, &mut Vec::new()), Err(TransportError::Text(_))));
         assert!(sender.write(b"DISPLAY 3;", true, &mut Vec::new()).is_ok());
-        assert!(Way { form: Form::Binary8, packets: Packets::None }.check().is_err());
+        assert!(Transport { form: Form::Binary8, packets: Packets::None }.check().is_err());
     }
 }

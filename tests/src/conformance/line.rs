@@ -33,32 +33,32 @@ const TERMINAL_TURN: Timespec = Timespec { tv_sec: 0, tv_nsec: 2_000_000 };
 
 /// Where a line is.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum Endpoint {
     /// A socket that listens.
     Socket(Address),
     /// A terminal device: a pseudo-terminal, or a serial line that is set up already.
     Terminal(PathBuf),
 }
 
-impl FromStr for Place {
+impl FromStr for Endpoint {
     type Err = String;
 
     /// `tcp:HOST:PORT`, `unix:PATH`, `pty:PATH` or `serial:PATH`.
-    fn from_str(text: &str) -> Result<Place, String> {
+    fn from_str(text: &str) -> Result<Endpoint, String> {
         for prefix in ["pty:", "serial:"] {
             if let Some(path) = text.strip_prefix(prefix) {
-                return Ok(Place::Terminal(path.into()));
+                return Ok(Endpoint::Terminal(path.into()));
             }
         }
-        text.parse().map(Place::Socket).map_err(|e: protocol::address::AddressError| e.to_string())
+        text.parse().map(Endpoint::Socket).map_err(|e: protocol::address::AddressError| e.to_string())
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Endpoint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Place::Socket(address) => address.fmt(f),
-            Place::Terminal(path) => path.display().fmt(f),
+            Endpoint::Socket(address) => address.fmt(f),
+            Endpoint::Terminal(path) => path.display().fmt(f),
         }
     }
 }
@@ -105,22 +105,22 @@ impl Line {
     ///
     /// # Errors
     /// Those of the system.
-    pub fn attach(place: &Place) -> io::Result<Line> {
+    pub fn attach(place: &Endpoint) -> io::Result<Line> {
         let (stream, reader): (Stream, Box<dyn Read + Send>) = match place {
-            Place::Socket(Address::Tcp(at)) => {
+            Endpoint::Socket(Address::Tcp(at)) => {
                 let stream = connect(at)?;
                 stream.set_nodelay(true)?;
                 stream.set_write_timeout(Some(WRITE_LIMIT))?;
                 let reader = stream.try_clone()?;
                 (Stream::Tcp(stream), Box::new(reader))
             }
-            Place::Socket(Address::Unix(path)) => {
+            Endpoint::Socket(Address::Unix(path)) => {
                 let stream = UnixStream::connect(path)?;
                 stream.set_write_timeout(Some(WRITE_LIMIT))?;
                 let reader = stream.try_clone()?;
                 (Stream::Unix(stream), Box::new(reader))
             }
-            Place::Terminal(path) => {
+            Endpoint::Terminal(path) => {
                 let file = OpenOptions::new().read(true).write(true).open(path)?;
                 make_raw(&file)?;
                 let has_left = Arc::new(AtomicBool::new(false));

@@ -16,7 +16,7 @@ pub mod report;
 pub mod suite;
 
 pub use case::{Case, Expected, Step, StrokeLine, Tag};
-pub use form::{Form, Packets, Way};
+pub use form::{Form, Packets, Transport};
 pub use line::Line;
 pub use parse::{CaseError, parse};
 pub use person::{Operator, OperatorLine, Person};

@@ -156,7 +156,7 @@ impl Reader<'_> {
             return Err(Problem::Expected("more expectations of '<&'"));
         }
         let expects = |step: &Step| {
-            matches!(step, Step::Expect(_) | Step::Reply(_) | Step::Strokes { .. } | Step::Drop | Step::Quiet)
+            matches!(step, Step::Expect(_) | Step::Reply(_) | Step::Strokes { .. } | Step::Drop | Step::Silence)
         };
         let is_heard_or_seen = |step: &Step| match step {
             Step::Strokes { count, lines, .. } => count.is_some_and(|count| count > 0) || !lines.is_empty(),
@@ -213,12 +213,12 @@ fn step(word: &str, rest: &str) -> Result<Step, Problem> {
         "raw" => Step::Raw(quoted(rest)?),
         "each" => each(rest)?,
         "watch" => watch(rest)?,
-        "@" => Step::Order(required(rest, "an order of the operator")?.into()),
+        "@" => Step::OperatorCommand(required(rest, "an order of the operator")?.into()),
         "@~" => Step::Reply(required(rest, "a pattern")?.into()),
         "frames" => Step::Frames(rest.trim().parse().map_err(|_| Problem::Expected("a number of frames"))?),
         "strokes" => strokes(rest.trim())?,
         "drop" => Step::Drop,
-        "quiet" => Step::Quiet,
+        "quiet" => Step::Silence,
         other => return Err(Problem::Unknown(other.into())),
     })
 }

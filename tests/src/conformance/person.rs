@@ -10,14 +10,14 @@ use std::{
 };
 
 /// How long the operator line may take to answer.
-const PATIENCE: Duration = Duration::from_secs(60);
+const REPLY_TIMEOUT: Duration = Duration::from_secs(60);
 
 /// The environment variable with the token of an emulator whose operator line is TCP.
 const TOKEN_VARIABLE: &str = "PS340_TOKEN";
 
 /// Why an order was not carried out.
 #[derive(Debug, thiserror::Error)]
-pub enum OrderFault {
+pub enum OperatorFault {
     /// The machine said no.
     #[error("the order was refused: {0}")]
     Refused(String),
@@ -35,7 +35,7 @@ pub trait Operator {
     ///
     /// # Errors
     /// [`OrderFault`].
-    fn give(&mut self, order: &str) -> Result<String, OrderFault>;
+    fn give(&mut self, order: &str) -> Result<String, OperatorFault>;
 
     /// Whether what was seen is like a pattern.
     fn confirm(&mut self, reply: &str, glob: &str) -> bool;
@@ -74,12 +74,12 @@ impl OperatorLine {
             Address::Tcp(at) => {
                 let stream = TcpStream::connect(at.as_str())?;
                 stream.set_nodelay(true)?;
-                stream.set_read_timeout(Some(PATIENCE))?;
+                stream.set_read_timeout(Some(REPLY_TIMEOUT))?;
                 (Box::new(stream.try_clone()?), Box::new(stream))
             }
             Address::Unix(path) => {
                 let stream = UnixStream::connect(path)?;
-                stream.set_read_timeout(Some(PATIENCE))?;
+                stream.set_read_timeout(Some(REPLY_TIMEOUT))?;
                 (Box::new(stream.try_clone()?), Box::new(stream))
             }
         };
@@ -88,7 +88,7 @@ impl OperatorLine {
 }
 
 impl Operator for OperatorLine {
-    fn give(&mut self, order: &str) -> Result<String, OrderFault> {
+    fn give(&mut self, order: &str) -> Result<String, OperatorFault> {
         self.writer.write_all(format!("{order}\n").as_bytes())?;
         let mut line = String::new();
         if self.reader.read_line(&mut line)? == 0 {
@@ -110,10 +110,10 @@ impl Operator for OperatorLine {
 ///
 /// # Errors
 /// [`OrderFault::Refused`] if it is no `ok`.
-pub fn understood(reply: &str) -> Result<String, OrderFault> {
+pub fn understood(reply: &str) -> Result<String, OperatorFault> {
     match reply.strip_prefix("ok") {
         Some(text) if text.is_empty() || text.starts_with(' ') => Ok(unescaped(text.trim_start())),
-        _ => Err(OrderFault::Refused(reply.into())),
+        _ => Err(OperatorFault::Refused(reply.into())),
     }
 }
 
@@ -140,9 +140,9 @@ fn unescaped(text: &str) -> String {
 pub struct Person;
 
 impl Operator for Person {
-    fn give(&mut self, order: &str) -> Result<String, OrderFault> {
+    fn give(&mut self, order: &str) -> Result<String, OperatorFault> {
         let answer = ask(&format!("Please do: {order}\nThen press RETURN (or s RETURN to skip the case): "))?;
-        if answer.trim() == "s" { Err(OrderFault::Beyond("skipped by the person")) } else { Ok(String::new()) }
+        if answer.trim() == "s" { Err(OperatorFault::Beyond("skipped by the person")) } else { Ok(String::new()) }
     }
 
     fn confirm(&mut self, _: &str, glob: &str) -> bool {
@@ -173,6 +173,6 @@ mod tests {
     fn replies_are_read_back() {
         assert_eq!(understood("ok a\\nb\\\\n").unwrap(), "a\nb\\n");
         assert_eq!(understood("ok").unwrap(), "");
-        assert!(matches!(understood("error no"), Err(OrderFault::Refused(_))));
+        assert!(matches!(understood("error no"), Err(OperatorFault::Refused(_))));
     }
 }

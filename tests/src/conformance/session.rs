@@ -3,10 +3,10 @@
 use super::{
     case::{Case, Expected, Step, StrokeLine, with_number},
     compare::{matches, strokes_differ},
-    form::{Sender, Way, WayError},
-    line::{Line, Place},
-    person::{Operator, OrderFault},
-    strokes::{self, Rest, WritebackText},
+    form::{Sender, Transport, TransportError},
+    line::{Line, Endpoint},
+    person::{Operator, OperatorFault},
+    strokes::{self, Continuation, WritebackText},
 };
 use protocol::wire::MessageReader;
 use std::{
@@ -30,9 +30,9 @@ const WRITEBACK_TOLERANCE: f64 = 1e-5;
 #[derive(Clone, Debug)]
 pub struct Target {
     /// Where the machine is.
-    pub place: Place,
+    pub place: Endpoint,
     /// How commands travel.
-    pub way: Way,
+    pub way: Transport,
     /// Seed for cutting the stream at random places.
     pub cut: Option<u64>,
     /// How long a machine may take to answer.
@@ -79,16 +79,16 @@ impl From<io::Error> for Stop {
     }
 }
 
-impl From<WayError> for Stop {
-    fn from(error: WayError) -> Stop {
+impl From<TransportError> for Stop {
+    fn from(error: TransportError) -> Stop {
         Stop::Failed { expected: "commands that can travel in this form".into(), found: error.to_string() }
     }
 }
 
-impl From<OrderFault> for Stop {
-    fn from(fault: OrderFault) -> Stop {
+impl From<OperatorFault> for Stop {
+    fn from(fault: OperatorFault) -> Stop {
         match fault {
-            OrderFault::Beyond(why) => Stop::Skipped(why.into()),
+            OperatorFault::Beyond(why) => Stop::Skipped(why.into()),
             fault => Stop::Failed { expected: "an order that is carried out".into(), found: fault.to_string() },
         }
     }
@@ -169,7 +169,7 @@ impl<'s> Session<'s> {
     fn give_rest(&mut self, from: usize) {
         let Some(operator) = self.operator.as_mut().filter(|operator| operator.drives_time()) else { return };
         for (_, step) in &self.case.steps[from..] {
-            if let Step::Order(order) = step {
+            if let Step::OperatorCommand(order) = step {
                 // The case has failed; what an order says now does not matter.
                 let _ = operator.give(order);
             }
@@ -194,9 +194,9 @@ impl<'s> Session<'s> {
             }
             Step::Watch { name, output, word } => self.watch(name, *output, word.as_deref())?,
             Step::Expect(expected) => self.expect(expected)?,
-            Step::Order(order) => {
+            Step::OperatorCommand(order) => {
                 self.synchronize()?;
-                self.reply = self.order(order)?;
+                self.reply = self.operator_command(order)?;
             }
             Step::Reply(glob) => {
                 let reply = std::mem::take(&mut self.reply);
@@ -212,7 +212,7 @@ impl<'s> Session<'s> {
                 self.synchronize()?;
                 self.messages.clear();
             }
-            Step::Quiet => self.quiet()?,
+            Step::Silence => self.quiet()?,
         }
         Ok(())
     }
@@ -322,7 +322,7 @@ impl<'s> Session<'s> {
         }
         // What takes a few frames has the time to end, where time stands otherwise.
         if self.messages.is_empty() && self.time_stands() {
-            self.order("idle 300")?;
+            self.operator_command("idle 300")?;
             self.synchronize()?;
         }
         // Where time passes by itself, a message may still be on its way.
@@ -376,7 +376,7 @@ impl<'s> Session<'s> {
         if some.is_empty() { "nothing".into() } else { format!("{}{more}", some.join(", ")) }
     }
 
-    fn order(&mut self, order: &str) -> Result<String, Stop> {
+    fn operator_command(&mut self, order: &str) -> Result<String, Stop> {
         self.note(format!("@ {order}"));
         let Some(operator) = &mut self.operator else { return Err(no_operator()) };
         let reply = operator.give(order)?;
@@ -389,7 +389,7 @@ impl<'s> Session<'s> {
     fn frames(&mut self, count: u64) -> Result<(), Stop> {
         self.synchronize()?;
         if self.time_stands() {
-            self.order(&format!("frames {count}"))?;
+            self.operator_command(&format!("frames {count}"))?;
         } else {
             // A few frames more, for machines that are late.
             std::thread::sleep(Duration::from_millis((count + 3) * 1000 / 60));
@@ -420,7 +420,7 @@ impl<'s> Session<'s> {
         let mut found = Vec::new();
         for _ in 0..frames {
             self.frames(1)?;
-            let reply = self.order("strokes")?;
+            let reply = self.operator_command("strokes")?;
             let Some(drawn) = strokes::from_operator(&reply) else {
                 return Err(Stop::Failed { expected: "strokes, one a line".into(), found: reply });
             };
@@ -452,9 +452,9 @@ impl<'s> Session<'s> {
             };
             let line = String::from_utf8_lossy(line);
             match text.line(&line) {
-                Some(Rest::Lines) => {}
-                Some(Rest::Nothing) => break,
-                Some(Rest::TooMany) => {
+                Some(Continuation::Lines) => {}
+                Some(Continuation::Nothing) => break,
+                Some(Continuation::TooMany) => {
                     return Err(Stop::Skipped("more strokes than WRITEBACK brings over the host line".into()));
                 }
                 None => {

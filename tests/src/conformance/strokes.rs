@@ -36,7 +36,7 @@ fn numbers(text: &str) -> Option<Vec<f64>> {
 
 /// What a line of WRITEBACK leaves to be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rest {
+pub enum Continuation {
     /// There are further lines.
     Lines,
     /// It was the last.
@@ -57,12 +57,12 @@ pub struct WritebackText {
 
 impl WritebackText {
     /// Reads a line; none if it is no line of the text.
-    pub fn line(&mut self, line: &str) -> Option<Rest> {
-        let (line, rest) = line.strip_suffix(';').map_or((line, Rest::Lines), |line| (line, Rest::Nothing));
+    pub fn line(&mut self, line: &str) -> Option<Continuation> {
+        let (line, rest) = line.strip_suffix(';').map_or((line, Continuation::Lines), |line| (line, Continuation::Nothing));
         if !self.begun {
             self.begun = true;
             let count: usize = line.strip_prefix("VECTOR_LIST ITEMIZED N=")?.parse().ok()?;
-            return Some(if count > MAX_VECTORS { Rest::TooMany } else { rest });
+            return Some(if count > MAX_VECTORS { Continuation::TooMany } else { rest });
         }
         if let Some(color) = line.strip_prefix("{ COLOR ").and_then(|line| line.strip_suffix(" }")) {
             let [hue, saturation] = numbers(color)?.try_into().ok()?;
@@ -118,11 +118,11 @@ mod tests {
         let mut text = WritebackText::default();
         let lines = ["VECTOR_LIST ITEMIZED N=5", "{ COLOR 120,1 }", "P -1,0 I=1", "L 0.5,0.25 I=1", "L 1,1 I=0.5"];
         for line in lines {
-            assert_eq!(text.line(line), Some(Rest::Lines), "{line}");
+            assert_eq!(text.line(line), Some(Continuation::Lines), "{line}");
         }
-        assert_eq!(text.line("{ COLOR 0,0 }"), Some(Rest::Lines));
-        assert_eq!(text.line("P 0,0 I=1"), Some(Rest::Lines));
-        assert_eq!(text.line("L 0,0 I=1;"), Some(Rest::Nothing));
+        assert_eq!(text.line("{ COLOR 0,0 }"), Some(Continuation::Lines));
+        assert_eq!(text.line("P 0,0 I=1"), Some(Continuation::Lines));
+        assert_eq!(text.line("L 0,0 I=1;"), Some(Continuation::Nothing));
         let stroke =
             |start, end, intensity, color| StrokeLine { start, end, intensity: Some(intensity), color: Some(color) };
         let expected = [
@@ -135,8 +135,8 @@ mod tests {
 
     #[test]
     fn an_empty_picture_and_one_that_is_too_large_are_told_apart() {
-        assert_eq!(WritebackText::default().line("VECTOR_LIST ITEMIZED N=0;"), Some(Rest::Nothing));
-        assert_eq!(WritebackText::default().line("VECTOR_LIST ITEMIZED N=20000"), Some(Rest::TooMany));
+        assert_eq!(WritebackText::default().line("VECTOR_LIST ITEMIZED N=0;"), Some(Continuation::Nothing));
+        assert_eq!(WritebackText::default().line("VECTOR_LIST ITEMIZED N=20000"), Some(Continuation::TooMany));
         assert_eq!(WritebackText::default().line("P 0,0 I=1"), None);
     }
 

@@ -5,7 +5,7 @@ use protocol::{
     Name, Value,
     command::{Command, CommandReader, Destination, Input, print},
 };
-use ps340::functions::{Confidence, Example, FAMILIES, FunctionRow};
+use ps340::functions::{Confidence, FunctionExample, FAMILIES, FunctionRow};
 
 /// Allowed difference of printed numbers: F:PRINT has nine digits.
 const TOLERANCE: f64 = 1e-8;
@@ -55,7 +55,7 @@ fn sending(input: u16, value: Value) -> Option<String> {
     (is_read_back && is_bare).then(|| String::from_utf8(text).ok())?
 }
 
-fn case(section: &str, row: &FunctionRow, number: usize, example: &Example) -> Option<Case> {
+fn case(section: &str, row: &FunctionRow, number: usize, example: &FunctionExample) -> Option<Case> {
     if ANSWERED.contains(&row.name) {
         return None;
     }
@@ -92,7 +92,7 @@ fn case(section: &str, row: &FunctionRow, number: usize, example: &Example) -> O
     } else {
         steps.push(Step::Expect(Expected::AnyOrder(expected)));
     }
-    steps.push(Step::Quiet);
+    steps.push(Step::Silence);
     case.steps = steps.into_iter().map(|step| (0, step)).collect();
     Some(case)
 }

@@ -1,6 +1,6 @@
 //! Judges cases.
 
-use super::{Case, Class, Score, points};
+use super::{CorpusCase, Class, Score, points};
 use crate::simple;
 use host::mesh::Mesh;
 use host::numeric::exact::{ExactNumber, cross, dot};
@@ -11,19 +11,19 @@ use std::{panic::catch_unwind, sync::mpsc, time::Duration};
 pub fn score(class: &'static Class, number: u32, limit: Duration) -> Score {
     let (sender, receiver) = mpsc::channel();
     std::thread::spawn(move || {
-        let score = catch_unwind(|| judge(&class.case(number)).unwrap_or_else(|score| score));
+        let score = catch_unwind(|| score_case(&class.case(number)).unwrap_or_else(|score| score));
         let _ = sender.send(score.unwrap_or(Score::Crashed));
     });
     receiver.recv_timeout(limit).unwrap_or(Score::TimedOut)
 }
 
-fn judge(case: &Case) -> Result<Score, Score> {
+fn score_case(case: &CorpusCase) -> Result<Score, Score> {
     match case {
-        Case::Pair { solids, common } => pair(solids, *common)?,
-        Case::Chain(meshes) => chain(meshes)?,
-        Case::Tree { solids, expression, volume } => tree(solids, expression, *volume)?,
-        Case::Single(meshes) => single(meshes)?,
-        Case::NotSimple { mesh, volume } => not_simple(mesh, *volume)?,
+        CorpusCase::Pair { solids, common } => pair(solids, *common)?,
+        CorpusCase::Chain(meshes) => chain(meshes)?,
+        CorpusCase::Tree { solids, expression, volume } => tree(solids, expression, *volume)?,
+        CorpusCase::Single(meshes) => single(meshes)?,
+        CorpusCase::NotSimple { mesh, volume } => not_simple(mesh, *volume)?,
     }
     Ok(Score::Passed)
 }

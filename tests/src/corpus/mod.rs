@@ -12,7 +12,7 @@ use host::solid::Expression;
 
 /// What is asked.
 #[derive(Clone, Debug)]
-pub enum Case {
+pub enum CorpusCase {
     /// All operations on two solids.
     Pair {
         /// The solids.

@@ -3,7 +3,7 @@
 use protocol::capture::CaptureReader;
 use protocol::command::{BinaryDecoder, Command, CommandReader, encode, parse, print};
 use protocol::listing::Listing;
-use protocol::parallel::{self, AddressList, FrameReader, Side};
+use protocol::parallel::{self, AddressList, ParallelFrameReader, Side};
 use protocol::raster;
 use protocol::wire::{FrameDecoder, MessageForm, MessageReader, read_six_bit, write_six_bit};
 use ps340::operator;
@@ -89,8 +89,8 @@ pub fn packets(bytes: &[u8]) {
 /// However the stream of the parallel interface is cut, it holds the same words, and all of it can be listed.
 pub fn parallel(bytes: &[u8]) {
     let [whole, cut] = pieces(bytes).map(|pieces| {
-        let mut reader = FrameReader::default();
-        let (mut found, mut listing, mut text) = (Vec::new(), parallel::Listing::default(), String::new());
+        let mut reader = ParallelFrameReader::default();
+        let (mut found, mut listing, mut text) = (Vec::new(), parallel::ParallelListing::default(), String::new());
         for piece in pieces {
             reader.push(piece);
             found.extend(reader.by_ref());
@@ -123,7 +123,7 @@ pub fn capture(bytes: &[u8]) {
 }
 
 /// Lines of the operator are read; none is obeyed.
-pub fn orders(bytes: &[u8]) {
+pub fn operator_commands(bytes: &[u8]) {
     for line in String::from_utf8_lossy(bytes).lines() {
         let _ = operator::parse(line);
         operator::unescape(line);

@@ -48,7 +48,7 @@ pub const READERS: [Reader; 27] = [
     Reader { name: "packets", read: machine::packets },
     Reader { name: "parallel", read: machine::parallel },
     Reader { name: "capture", read: machine::capture },
-    Reader { name: "orders", read: machine::orders },
+    Reader { name: "orders", read: machine::operator_commands },
     Reader { name: "play", read: machine::play },
     Reader { name: "lint", read: machine::lint },
 ];

@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, HashMap};
 
 /// Why a surface is not simple.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Fault {
+pub enum NotSimple {
     /// Three corners are on one line.
     #[error("triangle {0} has no area")]
     Flat(usize),
@@ -49,29 +49,29 @@ pub enum Fault {
 ///
 /// # Panics
 /// If a coordinate is no finite number.
-pub fn check(mesh: &Mesh) -> Result<(), Fault> {
-    let (at, triangles) = by_place(mesh);
+pub fn check(mesh: &Mesh) -> Result<(), NotSimple> {
+    let (at, triangles) = by_position(mesh);
     let points = Points::of(&at);
     let is_flat = |t: &[u32; 3]| (0..3).all(|axis| points.turn(axis, *t) == 0);
     if let Some(flat) = triangles.iter().position(is_flat) {
-        return Err(Fault::Flat(flat));
+        return Err(NotSimple::Flat(flat));
     }
     let sheets = sheets(&at, &triangles)?;
     let pairs = meeting::pairs(&points, &triangles);
     if let Some(&pair) = pairs.first() {
-        return Err(Fault::Crossing { pair, count: pairs.len() });
+        return Err(NotSimple::Crossing { pair, count: pairs.len() });
     }
     for triangle in sheets {
         let winding = winding::before(&points, &triangles, triangle);
         if winding != 0 {
-            return Err(Fault::Winding { triangle, winding });
+            return Err(NotSimple::Winding { triangle, winding });
         }
     }
     Ok(())
 }
 
 /// The places of the corners, each once, and the triangles over them.
-fn by_place(mesh: &Mesh) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+fn by_position(mesh: &Mesh) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let (mut at, mut known) = (Vec::new(), HashMap::new());
     let mut number = |place: DVec3| {
         // 0 and -0 are one place.
@@ -86,7 +86,7 @@ fn by_place(mesh: &Mesh) -> (Vec<DVec3>, Vec<[u32; 3]>) {
 }
 
 /// A triangle of each part that hangs together by edges of two triangles.
-fn sheets(at: &[DVec3], triangles: &[[u32; 3]]) -> Result<Vec<usize>, Fault> {
+fn sheets(at: &[DVec3], triangles: &[[u32; 3]]) -> Result<Vec<usize>, NotSimple> {
     // The triangles at each edge, and in which direction they run along it.
     let mut edges: BTreeMap<[u32; 2], Vec<(usize, bool)>> = BTreeMap::new();
     for (index, t) in triangles.iter().enumerate() {
@@ -97,7 +97,7 @@ fn sheets(at: &[DVec3], triangles: &[[u32; 3]]) -> Result<Vec<usize>, Fault> {
     let mut beside = vec![Vec::new(); triangles.len()];
     for (ends, around) in &edges {
         if around.iter().filter(|(_, is_up)| *is_up).count() * 2 != around.len() {
-            return Err(Fault::Open(ends.map(|end| at[end as usize])));
+            return Err(NotSimple::Open(ends.map(|end| at[end as usize])));
         }
         if let [(one, _), (two, _)] = around[..] {
             beside[one].push(two);

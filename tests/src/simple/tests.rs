@@ -39,14 +39,14 @@ fn every_fault_is_found() {
     let unit = cube(0.0, 1.0);
     let mut open = unit.clone();
     open.triangles.pop();
-    assert!(matches!(check(&open), Err(Fault::Open(_))));
+    assert!(matches!(check(&open), Err(NotSimple::Open(_))));
     let mut flat = unit.clone();
     flat.vertices.push(DVec3::ZERO.midpoint(DVec3::X));
     flat.vertices.push(DVec3::ZERO);
     flat.vertices.push(DVec3::X);
     let last = flat.vertices.len() as u32;
     flat.triangles.push([last - 3, last - 2, last - 1]);
-    assert!(matches!(check(&flat), Err(Fault::Flat(_))));
+    assert!(matches!(check(&flat), Err(NotSimple::Flat(_))));
     // Into each other by much, by a rounding, at a corner and at an edge only; over half of a face; twice the same.
     for by in [
         DVec3::new(0.5, 0.4, 0.3),
@@ -57,10 +57,10 @@ fn every_fault_is_found() {
         DVec3::ZERO,
     ] {
         let both = joined(&unit, &shifted(&unit, by));
-        assert!(matches!(check(&both), Err(Fault::Crossing { .. })), "{by}");
+        assert!(matches!(check(&both), Err(NotSimple::Crossing { .. })), "{by}");
     }
-    assert!(matches!(check(&joined(&cube(-1.0, 2.0), &unit)), Err(Fault::Winding { winding: 1, .. })));
-    assert!(matches!(check(&unit.clone().reversed()), Err(Fault::Winding { winding: -1, .. })));
+    assert!(matches!(check(&joined(&cube(-1.0, 2.0), &unit)), Err(NotSimple::Winding { winding: 1, .. })));
+    assert!(matches!(check(&unit.clone().reversed()), Err(NotSimple::Winding { winding: -1, .. })));
     let beside = joined(&unit, &shifted(&unit, DVec3::X * 3.0).reversed());
-    assert!(matches!(check(&beside), Err(Fault::Winding { winding: -1, .. })));
+    assert!(matches!(check(&beside), Err(NotSimple::Winding { winding: -1, .. })));
 }

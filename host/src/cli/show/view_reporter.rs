@@ -34,7 +34,7 @@ impl ViewReporter {
             return Ok(());
         }
         if let Some(file) = &self.file {
-            file.write_or_keep(|file| writeln!(file, "{line}"))?;
+            file.write_or_save_elsewhere(|file| writeln!(file, "{line}"))?;
         }
         if !self.is_quiet {
             say!("{line}");

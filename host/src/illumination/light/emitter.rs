@@ -5,7 +5,7 @@ use crate::color::Channels;
 use crate::numeric::ray::Ray;
 use glam::DVec3;
 
-/// A light of one kind, ready for rendering. [`Source`](super::LightSource) says what each function gives.
+/// A light of one kind, ready for rendering. [`LightSource`](super::LightSource) says what each function gives.
 pub(super) trait Emitter {
     /// Light that arrives at a point if nothing stands between.
     fn sample_incident(

@@ -26,7 +26,7 @@ pub struct LightHit {
     pub t: f64,
     /// Its radiance there, W/(m² sr); 0 on the dark side.
     pub radiance: Channels,
-    /// The density with which [`Source::beam`](super::LightSource::sample_incident) would have drawn this direction, 1/sr.
+    /// The density with which [`LightSource::sample_incident`](super::LightSource::sample_incident) would have drawn this direction, 1/sr.
     pub pdf: f64,
 }
 

@@ -30,7 +30,7 @@ pub struct ShadingContext<'a> {
     pub indices: InterfaceIndices,
     /// For which lane refracted directions are drawn.
     pub lane: usize,
-    /// What the patterns give at the place, as [`Optics::paint`](super::Bsdf::texture_values) tells; nothing for a material that has none.
+    /// What the patterns give at the place, as [`Bsdf::texture_values`](super::Bsdf::texture_values) tells; nothing for a material that has none.
     pub texture_values: &'a [Channels],
 }
 

@@ -18,14 +18,14 @@ use crate::{
 use glam::{DMat2, DMat3, DMat4, DVec2, DVec3, DVec4};
 
 /// Room that is made when a list begins, whatever length it announces, in vectors.
-const FIRST_ROOM: usize = 1 << 16;
+const INITIAL_CAPACITY: usize = 1 << 16;
 
 /// How many times what was received more room may be made for what was announced. Large, because moving a long list is
 /// dear.
 const GROWTH: usize = 7;
 
 /// Vectors that the witness is told of in each part, one by one.
-const TOLD_POINTS: usize = 4;
+const LISTED_POINTS: usize = 4;
 
 /// Makes commands out of the bodies of binary packets.
 ///
@@ -84,7 +84,7 @@ impl BinaryDecoder {
         let Some(opcode) = Opcode::from_code(code) else {
             return Err(reader.error(1, "opcode", BinaryProblem::Unknown(code.into())));
         };
-        reader.tell(1, "opcode", format_args!("{}", opcode.word()));
+        reader.report(1, "opcode", format_args!("{}", opcode.word()));
         match opcode {
             Opcode::VectorsBegin => {
                 let begun = begin_list(&mut reader)?;
@@ -212,7 +212,7 @@ fn begin_list<W: Witness>(reader: &mut Reader<'_, '_, W>) -> Result<OpenList, Bi
         class,
         dimension,
         estimate: (flags & FLAG_ESTIMATE != 0).then_some(estimate),
-        points: Vec::with_capacity(announced.min(FIRST_ROOM)),
+        points: Vec::with_capacity(announced.min(INITIAL_CAPACITY)),
         lines: Vec::new(),
     };
     Ok(OpenList { name, announced, list })
@@ -228,7 +228,7 @@ fn part<W: Witness>(open: &mut OpenList, reader: &mut Reader<'_, '_, W>) -> Resu
     }
     let flags: &[u8] = if list.class == VectorClass::Itemized {
         let flags = reader.take(count.div_ceil(8), "line flags")?;
-        reader.tell(flags.len(), "line flags", format_args!("bit 0 of the first byte for the first vector"));
+        reader.report(flags.len(), "line flags", format_args!("bit 0 of the first byte for the first vector"));
         flags
     } else {
         &[]
@@ -250,7 +250,7 @@ fn part<W: Witness>(open: &mut OpenList, reader: &mut Reader<'_, '_, W>) -> Resu
         let at = points.iter().position(|point| !point.iter().all(|c| c.is_finite())).unwrap_or(0);
         return Err(reader.error((count - at) * POINT, "vectors", BinaryProblem::NotFinite));
     }
-    let told = count.min(TOLD_POINTS);
+    let told = count.min(LISTED_POINTS);
     let place = reader.at() - bytes.len();
     let word = match list.fourth {
         Fourth::Intensity => "intensity",
@@ -258,11 +258,11 @@ fn part<W: Witness>(open: &mut OpenList, reader: &mut Reader<'_, '_, W>) -> Resu
         Fourth::Table => "table index",
     };
     for (index, [x, y, z, i]) in points[..told].iter().enumerate() {
-        reader.tell_at(place + index * POINT, POINT, "vector", format_args!("{x}, {y}, {z}, {word} {i}"));
+        reader.report_at(place + index * POINT, POINT, "vector", format_args!("{x}, {y}, {z}, {word} {i}"));
     }
     if count > told {
         let rest = (count - told) * POINT;
-        reader.tell(rest, "vectors", format_args!("{} more", count - told));
+        reader.report(rest, "vectors", format_args!("{} more", count - told));
     }
     if list.class == VectorClass::Itemized {
         list.lines.resize(first + count, false);
@@ -355,7 +355,7 @@ fn value<W: Witness>(reader: &mut Reader<'_, '_, W>) -> Result<Value, BinaryErro
     let Some(&kind) = Kind::ALL.get(usize::from(code)) else {
         return Err(reader.error(1, "kind", BinaryProblem::Unknown(code.into())));
     };
-    reader.tell(1, "kind", format_args!("{kind}"));
+    reader.report(1, "kind", format_args!("{kind}"));
     Ok(match kind {
         Kind::Boolean => Value::Boolean(reader.boolean("value")?),
         Kind::Integer => Value::Integer(reader.i32("value")?),

@@ -187,7 +187,7 @@ fn another_record_gives_up_an_open_text_and_is_obeyed() {
 
 #[test]
 fn what_no_text_can_say_is_not_encoded() {
-    let label = crate::command::Label { position: Default::default(), text: vec![b'a'; 241].into() };
+    let label = crate::command::LabelText { position: Default::default(), text: vec![b'a'; 241].into() };
     let labels = crate::command::Labels { labels: vec![label] };
     let command = Command::Define { name: None, object: Object::Labels(labels) };
     assert_eq!(encode(&command, &mut Vec::new()).unwrap_err().what, "the text of a label");

@@ -49,7 +49,7 @@ ATTRIBUTES {
         /// OFF ignores the range.
         on: bool = SWITCH,
         /// Intensity at the back and at the front.
-        range: [f64; 2] = Ends,
+        range: [f64; 2] = Interval,
     } "SET INTENSITY" [Set Intensity] record 0x2c help {
         section: "B.7",
         confidence: Confirmed,
@@ -65,7 +65,7 @@ ATTRIBUTES {
     };
 
     /// `SET CONTRAST TO c`, 0..=1.
-    SetContrast(contrast: f64 = loose(Word::To, Real)) "SET CONTRAST" [Set Contrast] help {
+    SetContrast(contrast: f64 = optional(Word::To, Real)) "SET CONTRAST" [Set Contrast] help {
         section: "B.7",
         summary: "Contrast of what is below",
         syntax: &["name := SET CONTRAST [TO] c [APPLied TO name1];"],
@@ -121,7 +121,7 @@ ATTRIBUTES {
     };
 
     /// `SET CHARACTERS WORLD_ORIENTED|SCREEN_ORIENTED[/FIXED]`.
-    SetCharacters(orientation: CharacterOrientation = Oriented) "SET CHARACTERS" [Set Characters] help {
+    SetCharacters(orientation: CharacterOrientation = Orientation) "SET CHARACTERS" [Set Characters] help {
         section: "B.7",
         summary: "How characters stand",
         syntax: &["name := SET CHARacters WORLD_oriented | SCREEN_oriented [/FIXED] [APPLied TO name1];"],
@@ -148,7 +148,7 @@ ATTRIBUTES {
     };
 
     /// `SET PICKING IDENTIFIER = id`.
-    SetPickingIdentifier(id: Name = equal(Named)) "SET PICKING IDENTIFIER" [Set Picking Identifier] help {
+    SetPickingIdentifier(id: Name = equal(ObjectName)) "SET PICKING IDENTIFIER" [Set Picking Identifier] help {
         section: "B.7",
         confidence: Confirmed,
         summary: "A name that a pick of what is below reports",
@@ -163,7 +163,7 @@ ATTRIBUTES {
         /// Centre of the pick box on the screen, -1..=1.
         center: DVec2 = equal(Vector2),
         /// Half its size.
-        size: Option<DVec2> = More(Vector2),
+        size: Option<DVec2> = OptionalNumber(Vector2),
     } "SET PICKING LOCATION" [Set Picking Location] help {
         section: "B.7",
         summary: "The pick box",
@@ -179,7 +179,7 @@ ATTRIBUTES {
     };
 
     /// `SET LEVEL_OF_DETAIL TO n`, 0..=32767.
-    SetLevelOfDetail(level: u16 = loose(Word::To, LEVEL)) "SET LEVEL_OF_DETAIL" [Set LevelOfDetail] help {
+    SetLevelOfDetail(level: u16 = optional(Word::To, LEVEL)) "SET LEVEL_OF_DETAIL" [Set LevelOfDetail] help {
         section: "B.7",
         summary: "The level that IF LEVEL_OF_DETAIL compares",
         syntax: &["name := SET LEVel_of_detail [TO] n [APPLied TO name1];"],
@@ -228,7 +228,7 @@ ATTRIBUTES {
     };
 
     /// `SET RATE on off ON|OFF delay`.
-    SetRate(rate: Rate = Phases) "SET RATE" [Set Rate] help {
+    SetRate(rate: Rate = PhaseRate) "SET RATE" [Set Rate] help {
         section: "B.7",
         summary: "Phases that IF PHASE looks at",
         syntax: &[

@@ -9,7 +9,7 @@ CONDITIONS {
         /// 0..=14.
         bit: u8 = BIT,
         /// The state that lets through.
-        on: bool = loose(Word::Is, SWITCH),
+        on: bool = optional(Word::Is, SWITCH),
     } "IF CONDITIONAL_BIT" [If ConditionalBit] help {
         section: "B.8",
         confidence: Confirmed,
@@ -27,7 +27,7 @@ CONDITIONS {
     /// `IF LEVEL_OF_DETAIL <= n`.
     IfLevelOfDetail {
         /// How the level is compared with `level`.
-        comparison: Comparison = Sign,
+        comparison: Comparison = ComparisonSign,
         /// 0..=32767.
         level: u16 = LEVEL,
     } "IF LEVEL_OF_DETAIL" [If LevelOfDetail] help {
@@ -42,7 +42,7 @@ CONDITIONS {
     };
 
     /// `IF PHASE IS ON|OFF`.
-    IfPhase(on: bool = loose(Word::Is, SWITCH)) "IF PHASE" [If Phase] help {
+    IfPhase(on: bool = optional(Word::Is, SWITCH)) "IF PHASE" [If Phase] help {
         section: "B.8",
         summary: "Draws what is below only in one phase of the nearest SET RATE above",
         syntax: &["name := IF PHASE [IS] ON | OFF [THEN name1];"],

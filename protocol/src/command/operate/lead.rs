@@ -3,23 +3,23 @@
 use crate::command::{error::Fault, parse::cursor::Parser, words::Word};
 
 /// Most words of all beginnings together.
-const ROOM: usize = 128;
+const MAX_KEYWORDS: usize = 128;
 
 /// The node that nothing leads to, and which leads nowhere.
-const NOWHERE: u8 = ROOM as u8 - 1;
+const DEAD_END: u8 = MAX_KEYWORDS as u8 - 1;
 
 /// What is expected behind SET, which too many words can follow to list them.
 const SETTING: (Word, &[&str]) = (Word::Set, &["a setting (such as COLOR)"]);
 
 /// A tree of words, made when the code is built: from the words that were read to those that can follow.
-pub(super) struct Leads {
+pub(super) struct KeywordTree {
     /// The words that can follow, those behind one node together.
-    words: [Word; ROOM],
+    words: [Word; MAX_KEYWORDS],
     /// Each of these words as an error says it.
-    names: [&'static str; ROOM],
+    names: [&'static str; MAX_KEYWORDS],
     /// The node that each of these words leads to.
-    targets: [u8; ROOM],
-    nodes: [Node; ROOM],
+    targets: [u8; MAX_KEYWORDS],
+    nodes: [Node; MAX_KEYWORDS],
     /// The node behind each first word; an empty one behind a word that begins no command.
     firsts: [u8; Word::ALL.len()],
 }
@@ -35,19 +35,19 @@ struct Node {
     whole: Option<u8>,
 }
 
-impl Leads {
+impl KeywordTree {
     /// The tree of some beginnings.
-    pub(super) const fn new(beginnings: &[&[Word]]) -> Leads {
+    pub(super) const fn new(beginnings: &[&[Word]]) -> KeywordTree {
         let node = Node { begin: 0, end: 0, whole: None };
-        let mut leads = Leads {
-            words: [Word::Set; ROOM],
-            names: [""; ROOM],
-            targets: [0; ROOM],
-            nodes: [node; ROOM],
-            firsts: [NOWHERE; Word::ALL.len()],
+        let mut leads = KeywordTree {
+            words: [Word::Set; MAX_KEYWORDS],
+            names: [""; MAX_KEYWORDS],
+            targets: [0; MAX_KEYWORDS],
+            nodes: [node; MAX_KEYWORDS],
+            firsts: [DEAD_END; Word::ALL.len()],
         };
         // A beginning of each node, and how many of its words lead there.
-        let mut samples = [(0, 0); ROOM];
+        let mut samples = [(0, 0); MAX_KEYWORDS];
         let (mut nodes, mut words) = (1, 0);
         let mut at = 0;
         while at < nodes {
@@ -73,7 +73,7 @@ impl Leads {
             leads.nodes[at].end = words as u8;
             at += 1;
         }
-        assert!(nodes < ROOM, "no room for more words");
+        assert!(nodes < MAX_KEYWORDS, "no room for more words");
         let mut first = 0;
         while first < leads.nodes[0].end as usize {
             leads.firsts[leads.words[first] as usize] = leads.targets[first];
@@ -83,7 +83,7 @@ impl Leads {
     }
 
     /// The words that can follow a first word.
-    pub(super) fn behind(&self, first: Word) -> &[Word] {
+    pub(super) fn after(&self, first: Word) -> &[Word] {
         self.following(self.nodes[usize::from(self.firsts[first as usize])])
     }
 

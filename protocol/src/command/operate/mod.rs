@@ -14,7 +14,7 @@ mod table;
 
 #[cfg(any(test, feature = "proptest"))]
 pub use table::operates;
-pub(super) use table::{ATTRIBUTES, CONDITIONS, READING_BACK, RENDERING, TEXT, TRANSFORMATIONS, VIEWING, words_behind};
+pub(super) use table::{ATTRIBUTES, CONDITIONS, READING_BACK, RENDERING, TEXT, TRANSFORMATIONS, VIEWING, words_after};
 pub use table::{Operate, OperateKind};
 
 #[cfg(test)]

@@ -36,12 +36,12 @@ pub(super) trait Fields: Notation {
     ///
     /// # Errors
     /// [`BinaryError`] names the field.
-    fn read<W: Witness>(&self, label: Label, reader: &mut Reader<'_, '_, W>) -> Result<Self::Value, BinaryError>;
+    fn read<W: Witness>(&self, label: FieldLabel, reader: &mut Reader<'_, '_, W>) -> Result<Self::Value, BinaryError>;
 }
 
 /// What a field is called in the listing of records and in errors.
 #[derive(Clone, Copy)]
-pub(super) struct Label {
+pub(super) struct FieldLabel {
     /// The field.
     pub name: &'static str,
     /// Whether the field is given.
@@ -49,50 +49,50 @@ pub(super) struct Label {
 }
 
 /// What stands before a value.
-enum Lead {
+enum Prefix {
     /// A word that must be there.
     Word(Word),
     /// A word that may be left out, and is printed.
-    Loose(Word),
+    Optional(Word),
     /// A word that may be left out, and is not printed.
-    Silent(Word),
+    Unprinted(Word),
     /// A `=` that may be left out, and is printed.
     Equal,
 }
 
 /// A value behind a word or a sign.
-pub(super) struct Behind<N>(Lead, N);
+pub(super) struct Prefixed<N>(Prefix, N);
 
 /// A value behind a word that must be there.
-pub(super) const fn after<N>(word: Word, notation: N) -> Behind<N> {
-    Behind(Lead::Word(word), notation)
+pub(super) const fn after<N>(word: Word, notation: N) -> Prefixed<N> {
+    Prefixed(Prefix::Word(word), notation)
 }
 
 /// A value behind a word that may be left out, and is printed.
-pub(super) const fn loose<N>(word: Word, notation: N) -> Behind<N> {
-    Behind(Lead::Loose(word), notation)
+pub(super) const fn optional<N>(word: Word, notation: N) -> Prefixed<N> {
+    Prefixed(Prefix::Optional(word), notation)
 }
 
 /// A value behind a word that may be left out, and is not printed.
-pub(super) const fn silent<N>(word: Word, notation: N) -> Behind<N> {
-    Behind(Lead::Silent(word), notation)
+pub(super) const fn unprinted<N>(word: Word, notation: N) -> Prefixed<N> {
+    Prefixed(Prefix::Unprinted(word), notation)
 }
 
 /// A value behind a `=` that may be left out, and is printed.
-pub(super) const fn equal<N>(notation: N) -> Behind<N> {
-    Behind(Lead::Equal, notation)
+pub(super) const fn equal<N>(notation: N) -> Prefixed<N> {
+    Prefixed(Prefix::Equal, notation)
 }
 
-impl<N: Notation> Notation for Behind<N> {
+impl<N: Notation> Notation for Prefixed<N> {
     type Value = N::Value;
 
     fn parse(&self, parser: &mut Parser<'_>) -> Result<N::Value, Fault> {
         match self.0 {
-            Lead::Word(word) => parser.expect_word(word, word.expected())?,
-            Lead::Loose(word) | Lead::Silent(word) => {
+            Prefix::Word(word) => parser.expect_word(word, word.expected())?,
+            Prefix::Optional(word) | Prefix::Unprinted(word) => {
                 parser.accept_word(word);
             }
-            Lead::Equal => {
+            Prefix::Equal => {
                 parser.accept(TokenKind::Equal);
             }
         }
@@ -101,12 +101,12 @@ impl<N: Notation> Notation for Behind<N> {
 
     fn print(&self, value: &N::Value, printer: &mut Printer<'_>) {
         match self.0 {
-            Lead::Word(word) | Lead::Loose(word) => {
+            Prefix::Word(word) | Prefix::Optional(word) => {
                 printer.text(" ");
                 printer.word(word);
             }
-            Lead::Silent(_) => {}
-            Lead::Equal => printer.text(" ="),
+            Prefix::Unprinted(_) => {}
+            Prefix::Equal => printer.text(" ="),
         }
         self.1.print(value, printer);
     }
@@ -117,20 +117,20 @@ impl<N: Notation> Notation for Behind<N> {
     }
 }
 
-impl<N: Fields> Fields for Behind<N> {
+impl<N: Fields> Fields for Prefixed<N> {
     fn write(&self, value: &N::Value, writer: &mut Writer<'_>) {
         self.1.write(value, writer);
     }
 
-    fn read<W: Witness>(&self, label: Label, reader: &mut Reader<'_, '_, W>) -> Result<N::Value, BinaryError> {
+    fn read<W: Witness>(&self, label: FieldLabel, reader: &mut Reader<'_, '_, W>) -> Result<N::Value, BinaryError> {
         self.1.read(label, reader)
     }
 }
 
 /// A value that is given if a word stands before it.
-pub(super) struct Given<N>(pub Word, pub N);
+pub(super) struct OptionalAfter<N>(pub Word, pub N);
 
-impl<N: Notation> Notation for Given<N> {
+impl<N: Notation> Notation for OptionalAfter<N> {
     type Value = Option<N::Value>;
 
     fn parse(&self, parser: &mut Parser<'_>) -> Result<Option<N::Value>, Fault> {
@@ -151,7 +151,7 @@ impl<N: Notation> Notation for Given<N> {
     }
 }
 
-impl<N: Fields> Fields for Given<N> {
+impl<N: Fields> Fields for OptionalAfter<N> {
     fn write(&self, value: &Option<N::Value>, writer: &mut Writer<'_>) {
         writer.u8(value.is_some().into());
         if let Some(value) = value {
@@ -159,15 +159,15 @@ impl<N: Fields> Fields for Given<N> {
         }
     }
 
-    fn read<W: Witness>(&self, label: Label, reader: &mut Reader<'_, '_, W>) -> Result<Option<N::Value>, BinaryError> {
+    fn read<W: Witness>(&self, label: FieldLabel, reader: &mut Reader<'_, '_, W>) -> Result<Option<N::Value>, BinaryError> {
         if reader.boolean(label.given)? { self.1.read(label, reader).map(Some) } else { Ok(None) }
     }
 }
 
 /// A value that is given if a number stands there; a comma before it may be missing and is not printed.
-pub(super) struct More<N>(pub N);
+pub(super) struct OptionalNumber<N>(pub N);
 
-impl<N: Notation> Notation for More<N> {
+impl<N: Notation> Notation for OptionalNumber<N> {
     type Value = Option<N::Value>;
 
     fn parse(&self, parser: &mut Parser<'_>) -> Result<Option<N::Value>, Fault> {

@@ -1,6 +1,6 @@
 //! Notations of numbers: reals, whole numbers, vectors, factors, matrices, ranges.
 
-use super::notation::{Fields, Label, Notation};
+use super::notation::{Fields, FieldLabel, Notation};
 use crate::{
     command::{
         error::Fault,
@@ -46,7 +46,7 @@ impl Fields for Real {
         writer.reals(&[*value]);
     }
 
-    fn read<W: Witness>(&self, label: Label, reader: &mut Reader<'_, '_, W>) -> Result<f64, BinaryError> {
+    fn read<W: Witness>(&self, label: FieldLabel, reader: &mut Reader<'_, '_, W>) -> Result<f64, BinaryError> {
         reader.f64(label.name)
     }
 }
@@ -77,36 +77,36 @@ impl Fields for NextReal {
         Real.write(value, writer);
     }
 
-    fn read<W: Witness>(&self, label: Label, reader: &mut Reader<'_, '_, W>) -> Result<f64, BinaryError> {
+    fn read<W: Witness>(&self, label: FieldLabel, reader: &mut Reader<'_, '_, W>) -> Result<f64, BinaryError> {
         Real.read(label, reader)
     }
 }
 
 /// A whole number in a range.
-pub(super) struct Whole<T> {
+pub(super) struct IntegerIn<T> {
     range: Range<i64>,
     of: PhantomData<T>,
 }
 
-impl<T> Whole<T> {
+impl<T> IntegerIn<T> {
     const fn of(range: Range<i64>) -> Self {
-        Whole { range, of: PhantomData }
+        IntegerIn { range, of: PhantomData }
     }
 }
 
 /// A level of detail.
-pub(super) const LEVEL: Whole<u16> = Whole::of(0..32_768);
+pub(super) const LEVEL: IntegerIn<u16> = IntegerIn::of(0..32_768);
 /// The number of a conditional bit.
-pub(super) const BIT: Whole<u8> = Whole::of(0..15);
+pub(super) const BIT: IntegerIn<u8> = IntegerIn::of(0..15);
 /// A count of 32 bits.
-pub(super) const COUNT: Whole<u32> = Whole::of(0..NUMBERS);
+pub(super) const COUNT: IntegerIn<u32> = IntegerIn::of(0..NUMBERS);
 /// A whole number of 32 bits with sign.
-pub(super) const SIGNED: Whole<i32> = Whole::of(i32::MIN as i64..i32::MAX as i64 + 1);
+pub(super) const SIGNED: IntegerIn<i32> = IntegerIn::of(i32::MIN as i64..i32::MAX as i64 + 1);
 
 /// Whole numbers of a type that holds every number of its range.
 macro_rules! whole {
     ($($type:ident)*) => {
-        $(impl Notation for Whole<$type> {
+        $(impl Notation for IntegerIn<$type> {
             type Value = $type;
 
             fn parse(&self, parser: &mut Parser<'_>) -> Result<$type, Fault> {
@@ -167,7 +167,7 @@ macro_rules! lists {
 
                 fn read<W: Witness>(
                     &self,
-                    label: Label,
+                    label: FieldLabel,
                     reader: &mut Reader<'_, '_, W>,
                 ) -> Result<$type, BinaryError> {
                     reader.reals(Self::LABEL.first().unwrap_or(&label.name)).map(Self::FROM)
@@ -215,9 +215,9 @@ fn character_factors(parser: &mut Parser<'_>) -> Result<[f64; 2], Fault> {
 }
 
 /// Two ends with a colon between them.
-pub(super) struct Ends;
+pub(super) struct Interval;
 
-impl Notation for Ends {
+impl Notation for Interval {
     type Value = [f64; 2];
 
     fn parse(&self, parser: &mut Parser<'_>) -> Result<[f64; 2], Fault> {
@@ -234,12 +234,12 @@ impl Notation for Ends {
     }
 }
 
-impl Fields for Ends {
+impl Fields for Interval {
     fn write(&self, value: &[f64; 2], writer: &mut Writer<'_>) {
         writer.reals(value);
     }
 
-    fn read<W: Witness>(&self, label: Label, reader: &mut Reader<'_, '_, W>) -> Result<[f64; 2], BinaryError> {
+    fn read<W: Witness>(&self, label: FieldLabel, reader: &mut Reader<'_, '_, W>) -> Result<[f64; 2], BinaryError> {
         reader.reals(label.name)
     }
 }

@@ -1,6 +1,6 @@
 //! Notations of switches, axes, screens, phases, comparisons, names and the parts of views.
 
-use super::notation::{Fields, Label, Notation};
+use super::notation::{Fields, FieldLabel, Notation};
 use crate::{
     Name,
     command::{
@@ -55,7 +55,7 @@ impl Fields for Switch {
         writer.u8((*value).into());
     }
 
-    fn read<W: Witness>(&self, label: Label, reader: &mut Reader<'_, '_, W>) -> Result<bool, BinaryError> {
+    fn read<W: Witness>(&self, label: FieldLabel, reader: &mut Reader<'_, '_, W>) -> Result<bool, BinaryError> {
         reader.boolean(label.name)
     }
 }
@@ -84,9 +84,9 @@ impl Notation for Flag {
 }
 
 /// X, Y or Z.
-pub(super) struct Letter;
+pub(super) struct AxisLetter;
 
-impl Notation for Letter {
+impl Notation for AxisLetter {
     type Value = Axis;
 
     fn parse(&self, parser: &mut Parser<'_>) -> Result<Axis, Fault> {
@@ -111,7 +111,7 @@ impl Notation for Letter {
     }
 }
 
-impl Fields for Letter {
+impl Fields for AxisLetter {
     fn write(&self, value: &Axis, writer: &mut Writer<'_>) {
         writer.u8(match value {
             Axis::X => 0,
@@ -120,7 +120,7 @@ impl Fields for Letter {
         });
     }
 
-    fn read<W: Witness>(&self, label: Label, reader: &mut Reader<'_, '_, W>) -> Result<Axis, BinaryError> {
+    fn read<W: Witness>(&self, label: FieldLabel, reader: &mut Reader<'_, '_, W>) -> Result<Axis, BinaryError> {
         match reader.u8(label.name)? {
             0 => Ok(Axis::X),
             1 => Ok(Axis::Y),
@@ -131,9 +131,9 @@ impl Fields for Letter {
 }
 
 /// A name.
-pub(super) struct Named;
+pub(super) struct ObjectName;
 
-impl Notation for Named {
+impl Notation for ObjectName {
     type Value = Name;
 
     fn parse(&self, parser: &mut Parser<'_>) -> Result<Name, Fault> {
@@ -152,9 +152,9 @@ impl Notation for Named {
 }
 
 /// `FRONT [BOUNDARY] [=] f BACK [BOUNDARY] [=] b`, or nothing.
-pub(super) struct Depth;
+pub(super) struct DepthBoundaries;
 
-impl Depth {
+impl DepthBoundaries {
     fn boundary(word: Word, parser: &mut Parser<'_>) -> Result<f64, Fault> {
         parser.expect_word(word, word.expected())?;
         parser.accept_word(Word::Boundary);
@@ -163,15 +163,15 @@ impl Depth {
     }
 }
 
-impl Notation for Depth {
+impl Notation for DepthBoundaries {
     type Value = Option<Boundaries>;
 
     fn parse(&self, parser: &mut Parser<'_>) -> Result<Option<Boundaries>, Fault> {
         if !parser.is(Word::Front) {
             return Ok(None);
         }
-        let front = Depth::boundary(Word::Front, parser)?;
-        Ok(Some(Boundaries { front, back: Depth::boundary(Word::Back, parser)? }))
+        let front = DepthBoundaries::boundary(Word::Front, parser)?;
+        Ok(Some(Boundaries { front, back: DepthBoundaries::boundary(Word::Back, parser)? }))
     }
 
     fn print(&self, value: &Option<Boundaries>, printer: &mut Printer<'_>) {
@@ -186,7 +186,7 @@ impl Notation for Depth {
     }
 }
 
-impl Fields for Depth {
+impl Fields for DepthBoundaries {
     fn write(&self, value: &Option<Boundaries>, writer: &mut Writer<'_>) {
         writer.u8(value.is_some().into());
         if let Some(Boundaries { front, back }) = value {
@@ -196,7 +196,7 @@ impl Fields for Depth {
 
     fn read<W: Witness>(
         &self,
-        label: Label,
+        label: FieldLabel,
         reader: &mut Reader<'_, '_, W>,
     ) -> Result<Option<Boundaries>, BinaryError> {
         if !reader.boolean(label.given)? {
@@ -207,14 +207,14 @@ impl Fields for Depth {
 }
 
 /// An offset to one of two sides, or none: `LEFT|RIGHT x`.
-pub(super) struct Offset {
+pub(super) struct SideOffset {
     /// Both words, in the order in which they are tried.
     pub sides: &'static [Word; 2],
     /// The side of negative offsets.
     pub negative: Word,
 }
 
-impl Notation for Offset {
+impl Notation for SideOffset {
     type Value = f64;
 
     fn parse(&self, parser: &mut Parser<'_>) -> Result<f64, Fault> {
@@ -311,9 +311,9 @@ impl Notation for Screens {
 }
 
 /// `WORLD_ORIENTED` or `SCREEN_ORIENTED[/FIXED]`
-pub(super) struct Oriented;
+pub(super) struct Orientation;
 
-impl Notation for Oriented {
+impl Notation for Orientation {
     type Value = CharacterOrientation;
 
     fn parse(&self, parser: &mut Parser<'_>) -> Result<CharacterOrientation, Fault> {
@@ -348,9 +348,9 @@ impl Notation for Oriented {
 }
 
 /// `on off [ON|OFF] [delay]`, where EXTERNAL can stand.
-pub(super) struct Phases;
+pub(super) struct PhaseRate;
 
-impl Notation for Phases {
+impl Notation for PhaseRate {
     type Value = Rate;
 
     fn parse(&self, parser: &mut Parser<'_>) -> Result<Rate, Fault> {
@@ -384,9 +384,9 @@ impl Notation for Phases {
 }
 
 /// `<`, `<=`, `=`, `<>`, `>=` or `>`
-pub(super) struct Sign;
+pub(super) struct ComparisonSign;
 
-impl Notation for Sign {
+impl Notation for ComparisonSign {
     type Value = Comparison;
 
     fn parse(&self, parser: &mut Parser<'_>) -> Result<Comparison, Fault> {

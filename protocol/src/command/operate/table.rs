@@ -17,14 +17,14 @@
 use super::{
     attribute::{ON_OFF, SWITCH_INPUT, attribute_rows},
     condition::condition_rows,
-    lead::Leads,
-    notation::{Fields, Given, Label, More, Notation, after, equal, loose, silent},
+    lead::KeywordTree,
+    notation::{Fields, OptionalAfter, FieldLabel, OptionalNumber, Notation, after, equal, optional, unprinted},
     number::{
-        BIT, COUNT, CharacterFactors, Ends, Factors, LEVEL, Matrix2, Matrix3, Matrix4, Matrix4x3, NextReal, Place,
+        BIT, COUNT, CharacterFactors, Interval, Factors, LEVEL, Matrix2, Matrix3, Matrix4, Matrix4x3, NextReal, Place,
         Real, SIGNED, Vector2, Vector3,
     },
     rendering::{RENDERING_INPUTS, rendering_rows},
-    setting::{Depth, Flag, Letter, Named, Offset, Oriented, PICKING, Phases, SWITCH, ScreenWidth, Screens, Sign},
+    setting::{DepthBoundaries, Flag, AxisLetter, ObjectName, SideOffset, Orientation, PICKING, PhaseRate, SWITCH, ScreenWidth, Screens, ComparisonSign},
     text::{MATRIX_2, text_rows},
     transformation::{MATRIX_3, transformation_rows},
     viewing::{DEPTH, LIMITS, MATRIX_4, viewing_rows},
@@ -69,7 +69,7 @@ macro_rules! record {
     (read [$code:literal] $reader:ident $variant:ident $(($label:ident $field:tt $notation:expr))*) => {
         Ok(Operate::$variant {
             $($field: $notation.read(
-                Label { name: stringify!($label), given: concat!(stringify!($label), " given") },
+                FieldLabel { name: stringify!($label), given: concat!(stringify!($label), " given") },
                 $reader,
             )?,)*
         })
@@ -189,7 +189,7 @@ macro_rules! operates {
             /// # Errors
             /// [`Fault`] says what was expected.
             pub(in crate::command) fn parse(first: Word, parser: &mut Parser<'_>) -> Result<Operate, Fault> {
-                Ok(match FORMS[LEADS.follow(first, parser)?] {
+                Ok(match FORMS[KEYWORD_TREE.follow(first, parser)?] {
                     $($(
                         Form::$variant => Operate::$variant {
                             $(0: $one_notation.parse(parser)?,)? $($($field: $notation.parse(parser)?,)*)?
@@ -227,11 +227,11 @@ macro_rules! operates {
 
 text_rows! { { transformation_rows viewing_rows attribute_rows condition_rows rendering_rows operates } }
 
-static LEADS: Leads = Leads::new(BEGINNINGS);
+static KEYWORD_TREE: KeywordTree = KeywordTree::new(BEGINNINGS);
 
 /// The words that operate commands have behind a first word.
-pub(in crate::command) fn words_behind(first: Word) -> &'static [Word] {
-    LEADS.behind(first)
+pub(in crate::command) fn words_after(first: Word) -> &'static [Word] {
+    KEYWORD_TREE.after(first)
 }
 
 /// Random operate nodes of every kind.

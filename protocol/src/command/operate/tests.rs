@@ -2,7 +2,7 @@
 
 use super::{
     OperateKind,
-    table::{BEGINNINGS, words_behind},
+    table::{BEGINNINGS, words_after},
 };
 use crate::command::{
     BinaryDecoder,
@@ -113,9 +113,9 @@ fn no_abbreviation_means_two_words_behind_the_same_words() {
 fn first_words_begin_objects_and_lead_to_what_follows_them() {
     for beginning in BEGINNINGS {
         assert!(OBJECTS.contains(&beginning[0]), "{:?} begins no object", beginning[0]);
-        assert!(beginning.len() < 2 || words_behind(beginning[0]).contains(&beginning[1]));
+        assert!(beginning.len() < 2 || words_after(beginning[0]).contains(&beginning[1]));
     }
-    assert!(words_behind(Word::Nil).is_empty());
+    assert!(words_after(Word::Nil).is_empty());
 }
 
 #[test]

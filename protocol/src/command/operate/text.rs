@@ -10,7 +10,7 @@ macro_rules! text_rows {
 
 TEXT {
     /// `CHARACTER FONT name`.
-    CharacterFont(font: Name = Named) "CHARACTER FONT" [Characters Font], Font [Font] { 0 = Named, } help {
+    CharacterFont(font: Name = ObjectName) "CHARACTER FONT" [Characters Font], Font [Font] { 0 = ObjectName, } help {
         section: "B.4",
         summary: "The font of the characters below",
         syntax: &["name := [CHARacters] FONT font_name [APPLied TO name1];"],
@@ -42,7 +42,7 @@ TEXT {
     };
 
     /// `CHARACTER SCALE s` or `sx,sy`.
-    CharacterScale(factor: DVec2 = silent(Word::By, CharacterFactors)) "CHARACTER SCALE" [Characters Scale] help {
+    CharacterScale(factor: DVec2 = unprinted(Word::By, CharacterFactors)) "CHARACTER SCALE" [Characters Scale] help {
         section: "B.4",
         confidence: Confirmed,
         summary: "Scales the characters below",

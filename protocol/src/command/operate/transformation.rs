@@ -12,7 +12,7 @@ TRANSFORMATIONS {
     /// `ROTATE IN X angle`, degrees.
     Rotate {
         /// About which axis.
-        axis: Axis = loose(Word::In, Letter),
+        axis: Axis = optional(Word::In, AxisLetter),
         /// Degrees, left-hand rule.
         angle: f64 = Real,
     } "ROTATE" [Rotate] record 0x20 help {
@@ -27,7 +27,7 @@ TRANSFORMATIONS {
     };
 
     /// `SCALE BY s` or `sx,sy,sz`.
-    Scale(factor: DVec3 = loose(Word::By, Factors)) "SCALE" [Scale] record 0x21 help {
+    Scale(factor: DVec3 = optional(Word::By, Factors)) "SCALE" [Scale] record 0x21 help {
         section: "B.5",
         confidence: Confirmed,
         summary: "Scales what is below",
@@ -39,7 +39,7 @@ TRANSFORMATIONS {
     };
 
     /// `TRANSLATE BY tx,ty,tz`.
-    Translate(component: DVec3 = loose(Word::By, Place)) "TRANSLATE" [Translate] record 0x22 help {
+    Translate(component: DVec3 = optional(Word::By, Place)) "TRANSLATE" [Translate] record 0x22 help {
         section: "B.5",
         confidence: Confirmed,
         summary: "Moves what is below",
@@ -102,9 +102,9 @@ TRANSFORMATIONS {
         /// The eye.
         from: DVec3 = after(Word::From, Vector3),
         /// UP as given; without it, +y is upward.
-        up: Option<DVec3> = Given(Word::Up, Vector3),
+        up: Option<DVec3> = OptionalAfter(Word::Up, Vector3),
     } "LOOK" as "LOOK AT" [Look At], LookFrom [Look From] {
-            from = Vector3, at = after(Word::At, Vector3), up = Given(Word::Up, Vector3),
+            from = Vector3, at = after(Word::At, Vector3), up = OptionalAfter(Word::Up, Vector3),
         } record 0x27 help {
         section: "B.5",
         confidence: Confirmed,

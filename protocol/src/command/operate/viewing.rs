@@ -22,11 +22,11 @@ VIEWING {
     /// `WINDOW X = a:b Y = c:d FRONT = f BACK = b`.
     Window {
         /// Left and right.
-        x: [f64; 2] = after(Word::X, equal(Ends)),
+        x: [f64; 2] = after(Word::X, equal(Interval)),
         /// Bottom and top.
-        y: [f64; 2] = after(Word::Y, equal(Ends)),
+        y: [f64; 2] = after(Word::Y, equal(Interval)),
         /// Front and back; a wide default if not given.
-        boundaries: Option<Boundaries> = Depth,
+        boundaries: Option<Boundaries> = DepthBoundaries,
     } "WINDOW" [Window] record 0x28 help {
         section: "B.6",
         confidence: Confirmed,
@@ -46,7 +46,7 @@ VIEWING {
         /// Full angle in degrees.
         angle: f64 = Real,
         /// Front and back; a wide default if not given.
-        boundaries: Option<Boundaries> = Depth,
+        boundaries: Option<Boundaries> = DepthBoundaries,
     } "FIELD_OF_VIEW" [FieldOfView] record 0x29 help {
         section: "B.6",
         confidence: Confirmed,
@@ -63,13 +63,13 @@ VIEWING {
         /// Distance of the eye before the screen.
         back: f64 = after(Word::Back, Real),
         /// Offset of the eye from the middle of the screen, positive to the right.
-        right: f64 = Offset { sides: &[Word::Left, Word::Right], negative: Word::Left },
+        right: f64 = SideOffset { sides: &[Word::Left, Word::Right], negative: Word::Left },
         /// Offset upward.
-        up: f64 = Offset { sides: &[Word::Up, Word::Down], negative: Word::Down },
+        up: f64 = SideOffset { sides: &[Word::Up, Word::Down], negative: Word::Down },
         /// Width of the screen.
         width: f64 = ScreenWidth,
         /// Front and back; a wide default if not given.
-        boundaries: Option<Boundaries> = Depth,
+        boundaries: Option<Boundaries> = DepthBoundaries,
     } "EYE" [Eye] help {
         section: "B.6",
         confidence: Confirmed,
@@ -93,11 +93,11 @@ VIEWING {
     /// `VIEWPORT HORIZONTAL = a:b VERTICAL = c:d INTENSITY = e:f`.
     Viewport {
         /// Left and right, -1..=1 of the enclosing viewport.
-        horizontal: [f64; 2] = after(Word::Horizontal, equal(Ends)),
+        horizontal: [f64; 2] = after(Word::Horizontal, equal(Interval)),
         /// Bottom and top.
-        vertical: [f64; 2] = after(Word::Vertical, equal(Ends)),
+        vertical: [f64; 2] = after(Word::Vertical, equal(Interval)),
         /// Intensity at the back and at the front, 0..=1; that of the enclosing viewport if not given.
-        intensity: Option<[f64; 2]> = Given(Word::Intensity, equal(Ends)),
+        intensity: Option<[f64; 2]> = OptionalAfter(Word::Intensity, equal(Interval)),
     } "VIEWPORT" [Viewport] record 0x2a help {
         section: "B.6",
         confidence: Confirmed,
@@ -119,11 +119,11 @@ VIEWING {
     /// `LOAD VIEWPORT ...`: replaces the enclosing viewport. Of later models.
     LoadViewport {
         /// Left and right on the screen, -1..=1.
-        horizontal: [f64; 2] = after(Word::Horizontal, equal(Ends)),
+        horizontal: [f64; 2] = after(Word::Horizontal, equal(Interval)),
         /// Bottom and top.
-        vertical: [f64; 2] = after(Word::Vertical, equal(Ends)),
+        vertical: [f64; 2] = after(Word::Vertical, equal(Interval)),
         /// Intensity at the back and at the front.
-        intensity: Option<[f64; 2]> = Given(Word::Intensity, equal(Ends)),
+        intensity: Option<[f64; 2]> = OptionalAfter(Word::Intensity, equal(Interval)),
     } "LOAD VIEWPORT" [Load Viewport] help {
         section: "B.6",
         summary: "Replaces the enclosing viewport; later models",

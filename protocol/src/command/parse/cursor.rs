@@ -14,21 +14,21 @@ pub(in crate::command) struct Parser<'t> {
     /// Where the last token that was taken begins and ends.
     pub(super) last_start: usize,
     pub(super) last_end: usize,
-    missed: Missed,
+    missed: TriedWords,
     /// What was left out of the command.
     pub(super) warnings: Vec<Fault>,
 }
 
 /// The words that the current token was compared with; what an error suggests comes from them.
 #[derive(Clone, Copy, Default)]
-struct Missed {
-    lists: [&'static [Word]; Missed::ROOM],
+struct TriedWords {
+    lists: [&'static [Word]; TriedWords::MAX_TRIED],
     count: usize,
 }
 
-impl Missed {
+impl TriedWords {
     /// Lists that are kept for one token; those that come later are forgotten.
-    const ROOM: usize = 12;
+    const MAX_TRIED: usize = 12;
 
     fn note(&mut self, words: &'static [Word]) {
         if let Some(list) = self.lists.get_mut(self.count) {
@@ -58,7 +58,7 @@ impl<'t> Parser<'t> {
     pub(super) fn new(text: &'t [u8], at: usize) -> Self {
         let mut lexer = Lexer::new(text, at);
         let token = lexer.token();
-        Parser { lexer, token, last_start: at, last_end: at, missed: Missed::default(), warnings: Vec::new() }
+        Parser { lexer, token, last_start: at, last_end: at, missed: TriedWords::default(), warnings: Vec::new() }
     }
 
     /// Takes the current token.

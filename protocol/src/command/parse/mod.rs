@@ -41,7 +41,7 @@ fn whole(text: &[u8]) -> Result<Command, Fault> {
 }
 
 /// What [`next_command`] found.
-pub(super) struct Found {
+pub(super) struct ParsedCommand {
     pub(super) command: Command,
     /// Its bytes, from its first token to its last; without the `;`.
     pub(super) span: Range<usize>,
@@ -55,7 +55,7 @@ pub(super) struct Found {
 ///
 /// A statement holds several commands when a word that opens a bracket (BEGIN, BEGIN_STRUCTURE, BEGIN_FONT) stands in
 /// it, which needs no `;`.
-pub(super) fn next_command(text: &[u8], at: usize) -> Option<Result<Found, Fault>> {
+pub(super) fn next_command(text: &[u8], at: usize) -> Option<Result<ParsedCommand, Fault>> {
     let mut parser = Parser::new(text, at);
     if Parser::ends(parser.token.kind) {
         return None;
@@ -72,7 +72,7 @@ pub(super) fn next_command(text: &[u8], at: usize) -> Option<Result<Found, Fault
             _ if begins => parser.token.start,
             _ => return Err(parser.fail(&["`;`"])),
         };
-        Ok(Found { command, span, warnings: std::mem::take(&mut parser.warnings), next })
+        Ok(ParsedCommand { command, span, warnings: std::mem::take(&mut parser.warnings), next })
     }))
 }
 

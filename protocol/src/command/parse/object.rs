@@ -6,8 +6,8 @@ use super::{
 };
 use crate::command::{
     error::{Fault, Problem},
-    operate::words_behind,
-    syntax::{Characters, FontCharacter, Label, Labels, Object, Operate, Pattern},
+    operate::words_after,
+    syntax::{Characters, FontCharacter, LabelText, Labels, Object, Operate, Pattern},
     token::TokenKind,
     words::{self, Word},
 };
@@ -42,7 +42,7 @@ impl Parser<'_> {
             Word::BeginStructure => Object::BeginStructure,
             Word::BeginFont => Object::BeginFont,
             Word::Instance => self.instance()?,
-            Word::Characters if self.find(words_behind(word)).is_none() => Object::Characters(self.characters()?),
+            Word::Characters if self.find(words_after(word)).is_none() => Object::Characters(self.characters()?),
             Word::Labels => Object::Labels(self.labels()?),
             Word::VectorList => Object::VectorList(self.vector_list()?),
             Word::Polygon | Word::With | Word::Outline => Object::Polygons(self.polygons(word)?),
@@ -101,7 +101,7 @@ impl Parser<'_> {
         let mut labels = Vec::new();
         while labels.is_empty() || self.is_number() {
             let position = DVec3::from_array(self.point()?);
-            labels.push(Label { position, text: self.string()? });
+            labels.push(LabelText { position, text: self.string()? });
             self.accept(TokenKind::Comma);
         }
         Ok(Labels { labels })

@@ -4,7 +4,7 @@ use super::basic::{names, reals, singles, texts, vectors2, vectors3};
 use crate::command::{
     operate::operates,
     syntax::{
-        Attributes, Bspline, Characters, CornerColor, FontCharacter, Fourth, Illumination, Label, Labels, Object,
+        Attributes, Bspline, Characters, CornerColor, FontCharacter, Fourth, Illumination, LabelText, Labels, Object,
         Pattern, Polygon, PolygonVertex, Polynomial, SurfaceColor, VectorClass, VectorList,
     },
 };
@@ -119,7 +119,7 @@ fn patterns() -> impl Strategy<Value = Pattern> {
 pub fn objects() -> impl Strategy<Value = Object> {
     let characters = (vectors3(), prop_oneof![Just(DVec2::X), vectors2()], texts())
         .prop_map(|(position, step, text)| Characters { position, step, text });
-    let label = (vectors3(), texts()).prop_map(|(position, text)| Label { position, text });
+    let label = (vectors3(), texts()).prop_map(|(position, text)| LabelText { position, text });
     let light = (vectors3(), [reals(), reals(), reals()], reals())
         .prop_map(|(direction, color, ambient)| Illumination { direction, color, ambient });
     prop_oneof![

@@ -107,7 +107,7 @@ pub struct Characters {
 
 /// One text of [`Labels`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct Label {
+pub struct LabelText {
     /// Lower left corner of the first cell.
     pub position: DVec3,
     /// The text.
@@ -118,7 +118,7 @@ pub struct Label {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Labels {
     /// The texts, at least one.
-    pub labels: Vec<Label>,
+    pub labels: Vec<LabelText>,
 }
 
 /// `C[code]: N = n P x,y L x,y...;` inside BEGIN_FONT: how a character is drawn.

@@ -10,7 +10,7 @@ mod command;
 pub use super::operate::{Operate, OperateKind};
 pub use command::{Command, Initialize, NamePattern, Object};
 pub use curve::{Bspline, Polynomial};
-pub use data::{Characters, FontCharacter, Fourth, Label, Labels, Pattern, VectorClass, VectorList};
+pub use data::{Characters, FontCharacter, Fourth, LabelText, Labels, Pattern, VectorClass, VectorList};
 pub use network::{Arc, Destination, Input};
 pub use operate::{Axis, Boundaries, CharacterOrientation, Comparison, Rate, Scopes};
 pub use polygon::{Attributes, CornerColor, Illumination, Polygon, PolygonVertex, SurfaceColor};

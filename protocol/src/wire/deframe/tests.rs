@@ -188,7 +188,7 @@ fn the_largest_packet_arrives_and_a_larger_one_is_noise() {
     let pieces: Vec<&[u8]> = stream.chunks(100_003).collect();
     let (all, decoder) = frames(&pieces);
     assert_eq!(all, [long(&payload)]);
-    assert!(decoder.buffer.len() < MAX_PAYLOAD + 4 * ROOM);
+    assert!(decoder.buffer.len() < MAX_PAYLOAD + 4 * BUFFER_CAPACITY);
     let mut header = [LONG_START, b'1', 1, 0, 16, 0, 0, 0];
     let check = header_check(&header[..6]);
     header[6..].copy_from_slice(&check.to_le_bytes());

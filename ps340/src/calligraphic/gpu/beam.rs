@@ -4,9 +4,9 @@ use super::{
     GpuError,
     canvas::{BATCH, Canvas},
     device::Device,
-    instance::Instance,
+    instance::StrokeInstance,
 };
-use crate::{calligraphic::Light, traversal::Stroke};
+use crate::{calligraphic::ScreenLight, traversal::Stroke};
 use rayon::prelude::*;
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},
@@ -16,16 +16,16 @@ use std::{
 /// A graphics processor that writes light.
 pub struct Gpu {
     device: Device,
-    canvas: Mutex<Room>,
+    canvas: Mutex<GpuScratch>,
     /// Whether it is not asked any more.
     given_up: OnceLock<()>,
 }
 
 /// What is kept from picture to picture.
 #[derive(Default)]
-struct Room {
+struct GpuScratch {
     canvas: Option<Canvas>,
-    instances: Vec<Instance>,
+    instances: Vec<StrokeInstance>,
 }
 
 impl std::fmt::Debug for Gpu {
@@ -55,7 +55,7 @@ impl Gpu {
 
     /// Writes strokes in place of what was written before. Returns false if it cannot: then the light is not touched, or
     /// partly, and the processor must write it.
-    pub(in crate::calligraphic) fn write(&self, light: &mut Light, strokes: &[Stroke]) -> bool {
+    pub(in crate::calligraphic) fn write(&self, light: &mut ScreenLight, strokes: &[Stroke]) -> bool {
         let most = self.device.device.limits().max_texture_dimension_2d as usize;
         if !self.works() || light.optics.size.iter().any(|pixels| *pixels > most) {
             return false;
@@ -71,9 +71,9 @@ impl Gpu {
         false
     }
 
-    fn try_write(&self, light: &mut Light, strokes: &[Stroke]) -> Result<(), String> {
+    fn try_write(&self, light: &mut ScreenLight, strokes: &[Stroke]) -> Result<(), String> {
         let mut room = self.canvas.lock().unwrap_or_else(PoisonError::into_inner);
-        let Room { canvas, instances } = &mut *room;
+        let GpuScratch { canvas, instances } = &mut *room;
         let (optics, guns) = (light.optics, light.guns);
         if canvas.as_ref().is_none_or(|canvas| !canvas.fits(optics.size, guns)) {
             *canvas = None;
@@ -88,7 +88,7 @@ impl Gpu {
         canvas.clear(&self.device, optics.spot);
         let mut latest = None;
         for batch in strokes.chunks(BATCH) {
-            batch.par_iter().map(|stroke| Instance::new(&optics, guns, stroke)).collect_into_vec(instances);
+            batch.par_iter().map(|stroke| StrokeInstance::new(&optics, guns, stroke)).collect_into_vec(instances);
             let sent = canvas.draw(&self.device, instances);
             // One batch is drawn while the next is made ready: no more, so that memory stays bounded.
             if let Some(before) = latest.replace(sent) {

@@ -2,11 +2,11 @@
 
 use super::{
     device::Device,
-    instance::Instance,
+    instance::StrokeInstance,
     pipeline::{floats, format},
 };
 use crate::calligraphic::{
-    Light,
+    ScreenLight,
     tile::{PLANE, STRIDE, TILE_HEIGHT, TILE_WIDTH, Tile},
 };
 use rayon::prelude::*;
@@ -71,7 +71,7 @@ impl Canvas {
             screen,
             group,
             pipeline: pipeline.clone(),
-            instances: buffer(BATCH * size_of::<Instance>(), BufferUsages::VERTEX | BufferUsages::COPY_DST),
+            instances: buffer(BATCH * size_of::<StrokeInstance>(), BufferUsages::VERTEX | BufferUsages::COPY_DST),
             band: buffer(band_rows * row_bytes, BufferUsages::MAP_READ | BufferUsages::COPY_DST),
             band_rows,
             row_bytes,
@@ -93,7 +93,7 @@ impl Canvas {
     }
 
     /// Adds the light of strokes, at most [`BATCH`], in their order.
-    pub fn draw(&self, on: &Device, instances: &[Instance]) -> wgpu::SubmissionIndex {
+    pub fn draw(&self, on: &Device, instances: &[StrokeInstance]) -> wgpu::SubmissionIndex {
         on.queue.write_buffer(&self.instances, 0, bytemuck::cast_slice(instances));
         let mut encoder = on.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let mut pass = self.pass(&mut encoder, LoadOp::Load);
@@ -121,7 +121,7 @@ impl Canvas {
     ///
     /// # Errors
     /// What the device complains about.
-    pub fn read(&self, on: &Device, light: &mut Light) -> Result<(), String> {
+    pub fn read(&self, on: &Device, light: &mut ScreenLight) -> Result<(), String> {
         let columns = light.columns();
         let bands = light.tiles.chunks_mut(columns * self.band_rows / TILE_HEIGHT).enumerate();
         for (index, tiles) in bands {

@@ -8,7 +8,7 @@ use std::{
 use wgpu::{DeviceType, PollType};
 
 /// How long the device may take for a part of a picture.
-const PATIENCE: Duration = Duration::from_secs(30);
+const DEVICE_TIMEOUT: Duration = Duration::from_secs(30);
 /// The kinds of adapter, the one to be taken first.
 const KINDS: [DeviceType; 5] =
     [DeviceType::DiscreteGpu, DeviceType::IntegratedGpu, DeviceType::VirtualGpu, DeviceType::Other, DeviceType::Cpu];
@@ -110,7 +110,7 @@ impl Device {
 
     /// Waits until something is done.
     pub(super) fn wait(&self, sent: wgpu::SubmissionIndex) -> Result<(), String> {
-        let waited = self.device.poll(PollType::Wait { submission_index: Some(sent), timeout: Some(PATIENCE) });
+        let waited = self.device.poll(PollType::Wait { submission_index: Some(sent), timeout: Some(DEVICE_TIMEOUT) });
         match (waited, self.trouble.get()) {
             (_, Some(why)) => Err(why.clone()),
             (Err(error), None) => Err(error.to_string()),

@@ -15,7 +15,7 @@ pub(super) const NUMBERS: usize = 20;
 /// Of a stroke that is not seen all numbers are 0: a rectangle without pixels.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-pub(super) struct Instance {
+pub(super) struct StrokeInstance {
     anchor: [f32; 2],
     step: [f32; 2],
     /// Distances at the anchor from start, end, and across.
@@ -31,15 +31,15 @@ pub(super) struct Instance {
     color: [f32; 4],
 }
 
-impl Instance {
+impl StrokeInstance {
     /// A stroke for a tube of some guns.
     pub fn new(optics: &Optics, guns: usize, stroke: &Stroke) -> Self {
-        Self::seen(optics, guns, stroke).unwrap_or_default()
+        Self::from_stroke(optics, guns, stroke).unwrap_or_default()
     }
 
-    fn seen(optics: &Optics, guns: usize, stroke: &Stroke) -> Option<Self> {
+    fn from_stroke(optics: &Optics, guns: usize, stroke: &Stroke) -> Option<Self> {
         let (start, end, _) = optics.beam(stroke)?;
-        let ends = optics.seen(start, end)?;
+        let ends = optics.clipped_to_picture(start, end)?;
         let middle = [0, 1].map(|axis| (ends[0][axis] + ends[1][axis]) / 2.0);
         let anchor = [0, 1].map(|axis| middle[axis].clamp(0.0, (optics.size[axis] - 1) as f64) as usize);
         let track = Track::new(optics, stroke, anchor)?;

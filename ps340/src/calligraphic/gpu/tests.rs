@@ -5,7 +5,7 @@
 use super::Gpu;
 use crate::calligraphic::tests::{difference, jumble};
 use crate::{
-    calligraphic::{Beam, Controls, Display, Drawer, Light, PHOSPHORS, draw},
+    calligraphic::{Beam, Controls, Display, Drawer, ScreenLight, PHOSPHORS, draw},
     traversal::Stroke,
 };
 use std::sync::{Arc, OnceLock};
@@ -37,7 +37,7 @@ fn stroke(start: [f32; 2], end: [f32; 2], intensity: [f32; 2]) -> Stroke {
 }
 
 /// The light that the graphics processor writes.
-fn written(gpu: &Gpu, beam: &Beam, strokes: &[Stroke]) -> Light {
+fn written(gpu: &Gpu, beam: &Beam, strokes: &[Stroke]) -> ScreenLight {
     let mut light = beam.dark(3);
     assert!(gpu.write(&mut light, strokes), "{}", gpu.name());
     light

@@ -2,9 +2,9 @@
 
 use super::{View, view::refresh_row};
 use crate::{
-    console::orders::Orders,
+    console::orders::OperatorCommands,
     machine::Counters,
-    shell::{Asked, Shown},
+    shell::{MirrorRequest, MirrorFrame},
 };
 use egui::Ui;
 
@@ -21,7 +21,7 @@ pub struct CountersView {
 }
 
 impl CountersView {
-    fn measure(&mut self, shown: &Shown) {
+    fn measure(&mut self, shown: &MirrorFrame) {
         let now = &shown.counters;
         let (then, before) = *self.before.get_or_insert((shown.micros, *now));
         let passed = shown.micros.saturating_sub(then);
@@ -43,11 +43,11 @@ impl View for CountersView {
         "counters, rates, and who is attached"
     }
 
-    fn ask(&self, asked: &mut Asked) {
+    fn request(&self, asked: &mut MirrorRequest) {
         asked.refresh = true;
     }
 
-    fn show(&mut self, ui: &mut Ui, shown: &Shown, _orders: &mut Orders) {
+    fn show(&mut self, ui: &mut Ui, shown: &MirrorFrame, _orders: &mut OperatorCommands) {
         self.measure(shown);
         let now = &shown.counters;
         let [updates, firings, bytes] = self.rates;

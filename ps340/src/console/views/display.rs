@@ -3,8 +3,8 @@
 use super::{View, view::refresh_row};
 use crate::{
     calligraphic::{KNOBS, PHOSPHORS, SCREENS},
-    console::{orders::Orders, places},
-    shell::{Asked, Shown},
+    console::{orders::OperatorCommands, places},
+    shell::{MirrorRequest, MirrorFrame},
 };
 use egui::{ComboBox, Slider, Ui, vec2};
 
@@ -20,11 +20,11 @@ impl View for DisplayView {
         "brightness, contrast, focus and phosphor"
     }
 
-    fn ask(&self, asked: &mut Asked) {
+    fn request(&self, asked: &mut MirrorRequest) {
         asked.refresh = true;
     }
 
-    fn show(&mut self, ui: &mut Ui, shown: &Shown, orders: &mut Orders) {
+    fn show(&mut self, ui: &mut Ui, shown: &MirrorFrame, orders: &mut OperatorCommands) {
         let controls = &shown.scene.controls;
         egui::Grid::new("display").num_columns(2).show(ui, |ui| {
             for knob in KNOBS {

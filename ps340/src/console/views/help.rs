@@ -2,11 +2,11 @@
 
 use super::View;
 use crate::{
-    console::orders::Orders,
+    console::orders::OperatorCommands,
     functions,
     functions::page,
     operator,
-    shell::{Asked, Shown},
+    shell::{MirrorRequest, MirrorFrame},
 };
 use egui::{RichText, Ui};
 use protocol::command::reference;
@@ -95,9 +95,9 @@ impl View for HelpView {
         true
     }
 
-    fn ask(&self, _asked: &mut Asked) {}
+    fn request(&self, _asked: &mut MirrorRequest) {}
 
-    fn show(&mut self, ui: &mut Ui, _shown: &Shown, _orders: &mut Orders) {
+    fn show(&mut self, ui: &mut Ui, _shown: &MirrorFrame, _orders: &mut OperatorCommands) {
         if self.pages.is_empty() {
             self.pages = HelpView::pages();
             self.open = Some(0);

@@ -2,9 +2,9 @@
 
 use super::View;
 use crate::{
-    console::orders::Orders,
+    console::orders::OperatorCommands,
     line::LineId,
-    shell::{Asked, Passed, Shown},
+    shell::{MirrorRequest, TrafficEntry, MirrorFrame},
 };
 use egui::Ui;
 use protocol::listing::{Listing, Sender};
@@ -19,7 +19,7 @@ const ROW: usize = 8;
 #[derive(Default)]
 pub struct LineView {
     /// What `text` lists.
-    listed: Option<Arc<Vec<Passed>>>,
+    listed: Option<Arc<Vec<TrafficEntry>>>,
     lines: Vec<String>,
 }
 
@@ -32,11 +32,11 @@ impl View for LineView {
         "the bytes on the host lines, decoded"
     }
 
-    fn ask(&self, asked: &mut Asked) {
+    fn request(&self, asked: &mut MirrorRequest) {
         asked.traffic = true;
     }
 
-    fn show(&mut self, ui: &mut Ui, shown: &Shown, _orders: &mut Orders) {
+    fn show(&mut self, ui: &mut Ui, shown: &MirrorFrame, _orders: &mut OperatorCommands) {
         if self.listed.as_ref().is_none_or(|before| !Arc::ptr_eq(before, &shown.traffic)) {
             self.lines = list(&shown.traffic);
             self.listed = Some(shown.traffic.clone());
@@ -59,7 +59,7 @@ impl View for LineView {
 }
 
 /// The listing, line by line. Older bytes may be gone: each direction begins as if it was the start of its stream.
-fn list(passed: &[Passed]) -> Vec<String> {
+fn list(passed: &[TrafficEntry]) -> Vec<String> {
     let mut listings: BTreeMap<(LineId, bool), Listing> = BTreeMap::new();
     let mut text = String::new();
     for piece in passed {

@@ -2,8 +2,8 @@
 
 use super::View;
 use crate::{
-    console::orders::Orders,
-    shell::{Asked, Shown},
+    console::orders::OperatorCommands,
+    shell::{MirrorRequest, MirrorFrame},
 };
 use egui::Ui;
 
@@ -19,11 +19,11 @@ impl View for MessagesView {
         "what the machine reports"
     }
 
-    fn ask(&self, asked: &mut Asked) {
+    fn request(&self, asked: &mut MirrorRequest) {
         asked.log = true;
     }
 
-    fn show(&mut self, ui: &mut Ui, shown: &Shown, _orders: &mut Orders) {
+    fn show(&mut self, ui: &mut Ui, shown: &MirrorFrame, _orders: &mut OperatorCommands) {
         if shown.log.is_empty() {
             ui.weak("The machine has had nothing to say.");
         }

@@ -2,8 +2,8 @@
 
 use super::View;
 use crate::{
-    console::{orders::Orders, readable::rounded},
-    shell::{Asked, FunctionShown, Shown},
+    console::{orders::OperatorCommands, readable::rounded},
+    shell::{MirrorRequest, FunctionShown, MirrorFrame},
 };
 use egui::{Color32, RichText, Ui};
 use std::collections::HashMap;
@@ -22,7 +22,7 @@ pub struct NetworkView {
 }
 
 impl NetworkView {
-    fn measure(&mut self, shown: &Shown) {
+    fn measure(&mut self, shown: &MirrorFrame) {
         let passed = shown.micros.saturating_sub(self.measured);
         if passed < BETWEEN {
             return;
@@ -47,11 +47,11 @@ impl View for NetworkView {
         "functions with their queues, and how often they fire"
     }
 
-    fn ask(&self, asked: &mut Asked) {
+    fn request(&self, asked: &mut MirrorRequest) {
         asked.network = Some(self.filter.to_ascii_uppercase());
     }
 
-    fn show(&mut self, ui: &mut Ui, shown: &Shown, orders: &mut Orders) {
+    fn show(&mut self, ui: &mut Ui, shown: &MirrorFrame, orders: &mut OperatorCommands) {
         self.measure(shown);
         ui.horizontal(|ui| {
             let label = ui.label("Names with");

@@ -2,8 +2,8 @@
 
 use super::View;
 use crate::{
-    console::{orders::Orders, readable::rounded},
-    shell::{Asked, Shown},
+    console::{orders::OperatorCommands, readable::rounded},
+    shell::{MirrorRequest, MirrorFrame},
 };
 use egui::Ui;
 
@@ -22,11 +22,11 @@ impl View for StructureView {
         "the display structure as a tree"
     }
 
-    fn ask(&self, asked: &mut Asked) {
+    fn request(&self, asked: &mut MirrorRequest) {
         asked.structure = true;
     }
 
-    fn show(&mut self, ui: &mut Ui, shown: &Shown, _orders: &mut Orders) {
+    fn show(&mut self, ui: &mut Ui, shown: &MirrorFrame, _orders: &mut OperatorCommands) {
         ui.horizontal(|ui| {
             let label = ui.label("Lines with");
             ui.text_edit_singleline(&mut self.filter).labelled_by(label.id);

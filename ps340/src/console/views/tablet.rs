@@ -2,8 +2,8 @@
 
 use super::View;
 use crate::{
-    console::{mapping::Mouse, orders::Orders, places, puck::Puck},
-    shell::{Asked, Shown},
+    console::{mapping::Mouse, orders::OperatorCommands, places, puck::Puck},
+    shell::{MirrorRequest, MirrorFrame},
 };
 use egui::{Color32, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, vec2};
 
@@ -33,14 +33,14 @@ impl View for TabletView {
         "the tablet with its puck"
     }
 
-    fn ask(&self, _asked: &mut Asked) {}
+    fn request(&self, _asked: &mut MirrorRequest) {}
 
-    fn show(&mut self, ui: &mut Ui, _shown: &Shown, orders: &mut Orders) {
+    fn show(&mut self, ui: &mut Ui, _shown: &MirrorFrame, orders: &mut OperatorCommands) {
         ui.weak("The mouse is the puck. It stays where you leave it; its buttons are those of the mouse, or these:");
         ui.horizontal(|ui| {
             for code in BUTTONS {
                 let response = ui.button(format!("  {code}  "));
-                if response.clicked() && self.puck.place().is_some() {
+                if response.clicked() && self.puck.position().is_some() {
                     orders.give(format!("puck press {code}"));
                     orders.give("puck release");
                 }
@@ -48,7 +48,7 @@ impl View for TabletView {
             if ui.button("take off").clicked() {
                 self.puck.take_off(orders);
             }
-            let text = self.puck.place().map_or("off the tablet".into(), |[x, y]| format!("{x:+.3} {y:+.3}"));
+            let text = self.puck.position().map_or("off the tablet".into(), |[x, y]| format!("{x:+.3} {y:+.3}"));
             ui.monospace(text);
         });
         let side = ui.available_size().min_elem().max(1.0);
@@ -70,7 +70,7 @@ fn paint(ui: &Ui, area: Rect, puck: &Puck) {
         painter.vline(area.left() + t * area.width(), area.y_range(), stroke);
     }
     painter.rect_stroke(area, 4.0, Stroke::new(1.0, Color32::from_gray(90)), StrokeKind::Inside);
-    let Some([x, y]) = puck.place() else { return };
+    let Some([x, y]) = puck.position() else { return };
     let at = area.center() + vec2(x, -y) * area.size() / 2.0;
     let ink = Color32::from_gray(200);
     // The cross-hair in its ring is what counts; the body lies below it.

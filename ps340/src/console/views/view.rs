@@ -1,8 +1,8 @@
 //! What every view has, and what several show.
 
 use crate::{
-    console::orders::Orders,
-    shell::{Asked, Shown},
+    console::orders::OperatorCommands,
+    shell::{MirrorRequest, MirrorFrame},
 };
 use egui::Ui;
 
@@ -17,13 +17,13 @@ pub trait View {
         false
     }
     /// Asks the mirror for what the view shows.
-    fn ask(&self, asked: &mut Asked);
+    fn request(&self, asked: &mut MirrorRequest);
     /// Shows it.
-    fn show(&mut self, ui: &mut Ui, shown: &Shown, orders: &mut Orders);
+    fn show(&mut self, ui: &mut Ui, shown: &MirrorFrame, orders: &mut OperatorCommands);
 }
 
 /// A row of a grid: how long the beam needs for the picture, and how often it draws it.
-pub(super) fn refresh_row(ui: &mut Ui, shown: &Shown) {
+pub(super) fn refresh_row(ui: &mut Ui, shown: &MirrorFrame) {
     ui.label("refresh");
     ui.monospace(shown.refresh.map_or("...".into(), |refresh| refresh.describe(shown.scene.controls.steady)));
     ui.end_row();

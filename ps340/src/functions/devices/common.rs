@@ -9,7 +9,7 @@ pub(super) const TEXT: &[PortSpec] = &[PortSpec::active(KindSet::STRING, "text")
 pub(super) const TRIGGER: &[PortSpec] = &[PortSpec::active(KindSet::ANY, "trigger")];
 
 /// Asks the machine for an effect.
-pub(super) fn ask(f: &mut Firing, effect: Effect) -> Result<(), Problem> {
+pub(super) fn request(f: &mut Firing, effect: Effect) -> Result<(), Problem> {
     f.effect(effect);
     Ok(())
 }

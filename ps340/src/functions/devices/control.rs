@@ -1,8 +1,8 @@
 //! Dials, keys, buttons, tablet and keyboard: what a person turns, presses and moves.
 
 use super::{
-    super::{Example, Family, FunctionRow, Rule, Source},
-    common::ask,
+    super::{FunctionExample, Family, FunctionRow, Rule, Source},
+    common::request,
 };
 use crate::port::{
     DialSetting, Effect, Firing, KindSet,
@@ -39,8 +39,8 @@ pub static ROWS: &[FunctionRow] = &[
         rule: Rule::Any,
         behaviour: set_dial,
         examples: &[
-            Example::of(&[(1, B(true)), (2, I(8)), (3, I(20)), (4, R(0.5))], &[]).sized(3),
-            Example::of(&[(1, I(2)), (2, I(-1)), (3, I(0)), (3, I(61))], &[]).sized(3).faults(&[6, 6, 6, 6]),
+            FunctionExample::of(&[(1, B(true)), (2, I(8)), (3, I(20)), (4, R(0.5))], &[]).sized(3),
+            FunctionExample::of(&[(1, I(2)), (2, I(-1)), (3, I(0)), (3, I(61))], &[]).sized(3).faults(&[6, 6, 6, 6]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -82,8 +82,8 @@ pub static ROWS: &[FunctionRow] = &[
         )],
         behaviour: command_tablet,
         examples: &[
-            Example::of(&[(1, S("D")), (1, S("PP@"))], &[]),
-            Example::of(&[(1, S("@?")), (1, S(""))], &[]).faults(&[6]),
+            FunctionExample::of(&[(1, S("D")), (1, S("PP@"))], &[]),
+            FunctionExample::of(&[(1, S("@?")), (1, S(""))], &[]).faults(&[6]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -149,5 +149,5 @@ fn command_tablet(f: &mut Firing) -> Result<(), Problem> {
         _ => Err(Problem::Range(1)),
     };
     let commands = f.string(1)?.iter().map(read).collect::<Result<Vec<_>, _>>()?;
-    commands.into_iter().try_for_each(|command| ask(f, Effect::Tablet(command)))
+    commands.into_iter().try_for_each(|command| request(f, Effect::Tablet(command)))
 }

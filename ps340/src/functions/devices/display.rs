@@ -1,8 +1,8 @@
 //! Labels, lights, the message line, the terminal emulator, and the switches of the screen.
 
 use super::{
-    super::{Example, Family, FunctionRow, Source, printing::print},
-    common::{TEXT, TRIGGER, ask},
+    super::{FunctionExample, Family, FunctionRow, Source, printing::print},
+    common::{TEXT, TRIGGER, request},
 };
 use crate::port::{
     Effect, Firing, KindSet, Label,
@@ -39,7 +39,7 @@ pub static ROWS: &[FunctionRow] = &[
         summary: "blanks all labels",
         source: CONFIRMED,
         inputs: TRIGGER,
-        behaviour: |f| ask(f, Effect::ClearLabels),
+        behaviour: |f| request(f, Effect::ClearLabels),
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -67,7 +67,7 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: TEXT,
         behaviour: |f| {
             let text = f.string(1)?.into();
-            ask(f, Effect::Message(text))
+            request(f, Effect::Message(text))
         },
         ..FunctionRow::PLAIN
     },
@@ -78,7 +78,7 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: TEXT,
         behaviour: |f| {
             let text = f.string(1)?.into();
-            ask(f, Effect::Terminal(text))
+            request(f, Effect::Terminal(text))
         },
         ..FunctionRow::PLAIN
     },
@@ -92,8 +92,8 @@ pub static ROWS: &[FunctionRow] = &[
         ],
         behaviour: color,
         examples: &[
-            Example::of(&[(1, R(120.0)), (2, R(0.5)), (1, I(-120))], &[]),
-            Example::of(&[(2, R(1.5)), (1, R(120.0))], &[]).faults(&[6]),
+            FunctionExample::of(&[(1, R(120.0)), (2, R(0.5)), (1, I(-120))], &[]),
+            FunctionExample::of(&[(2, R(1.5)), (1, R(120.0))], &[]).faults(&[6]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -104,9 +104,9 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: &[PortSpec::active(KindSet::BOOLEAN, "whether the text is in colour")],
         behaviour: |f| {
             let on = f.boolean(1)?;
-            ask(f, Effect::TerminalCsm(on))
+            request(f, Effect::TerminalCsm(on))
         },
-        examples: &[Example::of(&[(1, B(false)), (1, B(true))], &[])],
+        examples: &[FunctionExample::of(&[(1, B(false)), (1, B(true))], &[])],
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -114,7 +114,7 @@ pub static ROWS: &[FunctionRow] = &[
         summary: "switches the vector display on again after a static picture",
         source: CONFIRMED,
         inputs: TRIGGER,
-        behaviour: |f| ask(f, Effect::TurnOnDisplay),
+        behaviour: |f| request(f, Effect::TurnOnDisplay),
         ..FunctionRow::PLAIN
     },
     FunctionRow {
@@ -125,23 +125,23 @@ pub static ROWS: &[FunctionRow] = &[
             PortSpec::active(KindSet::ANY, "somebody is there"),
             PortSpec::default(KindSet::NUMBER, I(0), "minutes until the screen is blanked; 0 or less: never"),
         ],
-        behaviour: |f| ask(f, Effect::Activity),
-        examples: &[Example::of(&[(2, I(10)), (1, B(true))], &[])],
+        behaviour: |f| request(f, Effect::Activity),
+        examples: &[FunctionExample::of(&[(2, I(10)), (1, B(true))], &[])],
         ..FunctionRow::PLAIN
     },
 ];
 
-const OUT_OF_RANGE: Example = Example::of(&[(1, I(33)), (1, I(-1)), (1, I(32))], &[]).faults(&[6, 6]);
+const OUT_OF_RANGE: FunctionExample = FunctionExample::of(&[(1, I(33)), (1, I(-1)), (1, I(32))], &[]).faults(&[6, 6]);
 
 fn label(f: &mut Firing, label: Label) -> Result<(), Problem> {
     let mut text = print(f.value(1), false);
     text.truncate(label.width());
-    ask(f, Effect::Label { label, text: text.into() })
+    request(f, Effect::Label { label, text: text.into() })
 }
 
 fn light(f: &mut Firing, on: bool) -> Result<(), Problem> {
     match u8::try_from(f.integer(1)?) {
-        Ok(button @ 0..=32) => ask(f, Effect::Light { button, on }),
+        Ok(button @ 0..=32) => request(f, Effect::Light { button, on }),
         _ => Err(Problem::Range(1)),
     }
 }
@@ -151,5 +151,5 @@ fn color(f: &mut Firing) -> Result<(), Problem> {
     if !(0.0..=1.0).contains(&saturation) {
         return Err(Problem::Range(2));
     }
-    ask(f, Effect::TerminalColor { hue: hue.rem_euclid(360.0), saturation })
+    request(f, Effect::TerminalColor { hue: hue.rem_euclid(360.0), saturation })
 }

@@ -2,7 +2,7 @@
 
 use super::{
     super::{Family, FunctionRow, Source},
-    common::{TEXT, ask},
+    common::{TEXT, request},
 };
 use crate::port::{Effect, Firing, Problem};
 
@@ -31,7 +31,7 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: TEXT,
         behaviour: |f| {
             let bytes = f.string(1)?.into();
-            ask(f, Effect::HostCharacters { object: f.object(), bytes })
+            request(f, Effect::HostCharacters { object: f.object(), bytes })
         },
         ..FunctionRow::PLAIN
     },
@@ -47,5 +47,5 @@ pub static ROWS: &[FunctionRow] = &[
 
 fn host(f: &mut Firing, binary: bool) -> Result<(), Problem> {
     let bytes = f.string(1)?.into();
-    ask(f, Effect::Host { object: f.object(), bytes, binary })
+    request(f, Effect::Host { object: f.object(), bytes, binary })
 }

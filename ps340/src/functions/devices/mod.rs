@@ -22,7 +22,7 @@ pub static FAMILIES: [(&str, &[FunctionRow]); 5] = [
 
 /// A function that exists at start under a name of its own.
 #[derive(Clone, Debug)]
-pub struct Initial {
+pub struct InitialInstance {
     /// The name of the instance, such as `DLABEL3`.
     pub name: String,
     /// What it is.
@@ -37,7 +37,7 @@ pub fn rows() -> impl Iterator<Item = &'static FunctionRow> {
 }
 
 /// The initial instances: each row once, or once a device.
-pub fn initial() -> impl Iterator<Item = Initial> {
+pub fn initial() -> impl Iterator<Item = InitialInstance> {
     // PICK is an instance of a function that a user can make too.
     let pick = super::picking::ROWS.iter().filter(|row| row.name == "PICK");
     rows().chain(pick).flat_map(|function| {
@@ -45,14 +45,14 @@ pub fn initial() -> impl Iterator<Item = Initial> {
             (Family::Device, "FLABEL") => 0..=12,
             (Family::Device, "CHANNEL") => 3..=7,
             (Family::Device, _) => 1..=8,
-            _ => return vec![Initial { name: function.name.into(), function, device: None }],
+            _ => return vec![InitialInstance { name: function.name.into(), function, device: None }],
         };
-        let several = devices.map(|n| Initial { name: format!("{}{n}", function.name), function, device: Some(n) });
+        let several = devices.map(|n| InitialInstance { name: format!("{}{n}", function.name), function, device: Some(n) });
         several.collect()
     })
 }
 
 /// The initial instances of the host line, of which a line may have its own.
-pub fn of_line() -> impl Iterator<Item = Initial> {
+pub fn of_line() -> impl Iterator<Item = InitialInstance> {
     initial().filter(|initial| line::ROWS.iter().any(|row| row.name == initial.function.name))
 }

@@ -1,8 +1,8 @@
 //! SHADINGENVIRONMENT: the settings of shaded pictures.
 
 use super::{
-    super::{Example, FunctionRow, Source},
-    common::ask,
+    super::{FunctionExample, FunctionRow, Source},
+    common::request,
 };
 use crate::{
     hue,
@@ -56,10 +56,10 @@ pub static ROWS: &[FunctionRow] = &[FunctionRow {
     ],
     behaviour: wash,
     examples: &[
-        Example::of(&[(5, I(1)), (9, B(true)), (15, B(true)), (7, I(2))], &[]),
-        Example::of(&[(3, V3([80.0, 0.0, 480.0])), (7, I(0)), (3, V4([0.0, 0.0, 639.0, 479.0])), (7, I(1))], &[]),
-        Example::of(&[(3, M2([[0.0, 639.0], [0.0, 479.0]])), (7, I(0))], &[]),
-        Example::of(&[(7, I(3)), (7, I(-1))], &[]).faults(&[6, 6]),
+        FunctionExample::of(&[(5, I(1)), (9, B(true)), (15, B(true)), (7, I(2))], &[]),
+        FunctionExample::of(&[(3, V3([80.0, 0.0, 480.0])), (7, I(0)), (3, V4([0.0, 0.0, 639.0, 479.0])), (7, I(1))], &[]),
+        FunctionExample::of(&[(3, M2([[0.0, 639.0], [0.0, 479.0]])), (7, I(0))], &[]),
+        FunctionExample::of(&[(7, I(3)), (7, I(-1))], &[]).faults(&[6, 6]),
     ],
     ..FunctionRow::PLAIN
 }];
@@ -161,7 +161,7 @@ fn wash(f: &mut Firing) -> Result<(), Problem> {
     let [hue, saturation, intensity] = settings.background;
     let intensity = intensity.clamp(0.0, 1.0) as f32;
     let color = hue::rgb(hue as f32, saturation as f32).map(|part| (part * intensity * 255.0).round() as u8);
-    ask(f, Effect::WashScreen { color, part: (what < 2).then_some(settings.viewport) })
+    request(f, Effect::WashScreen { color, part: (what < 2).then_some(settings.viewport) })
 }
 
 #[cfg(test)]
@@ -175,7 +175,7 @@ mod tests {
             .inputs
             .iter()
             .map(|spec| match spec.role {
-                crate::port::Role::Default(literal) => Some(literal.value()),
+                crate::port::QueueRole::Default(literal) => Some(literal.value()),
                 _ => None,
             })
             .collect();

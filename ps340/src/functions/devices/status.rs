@@ -1,7 +1,7 @@
 //! The state of the machine: use of memory, and the messages of the machine.
 
 use super::{
-    super::{Example, FunctionRow, Source},
+    super::{FunctionExample, FunctionRow, Source},
     common::TEXT,
 };
 use crate::port::{
@@ -30,7 +30,7 @@ const MESSAGES: FunctionRow = FunctionRow {
     inputs: TEXT,
     outputs: &["string"],
     behaviour: pass,
-    examples: PASSED,
+    examples: PASS_THROUGH_EXAMPLES,
     ..FunctionRow::PLAIN
 };
 
@@ -49,7 +49,7 @@ pub static ROWS: &[FunctionRow] = &[
         memory: 2,
         behaviour: begin_monitor,
         clock: Some(advance_monitor),
-        examples: &[Example::of(&[(3, I(-1)), (3, I(86_401))], &[]).faults(&[6, 6])],
+        examples: &[FunctionExample::of(&[(3, I(-1)), (3, I(86_401))], &[]).faults(&[6, 6])],
         ..FunctionRow::PLAIN
     },
     ALERT,
@@ -76,7 +76,7 @@ pub static ROWS: &[FunctionRow] = &[
     FunctionRow { name: "INFORMATION", summary: "text of every information, for whatever is connected", ..MESSAGES },
 ];
 
-const PASSED: &[Example] = &[Example::of(&[(1, S("E 5 *** text"))], &[(1, S("E 5 *** text"))])];
+const PASS_THROUGH_EXAMPLES: &[FunctionExample] = &[FunctionExample::of(&[(1, S("E 5 *** text"))], &[(1, S("E 5 *** text"))])];
 
 /// Memory: hundredths of a second from line to line; nothing if there is no next one.
 const INTERVAL: u8 = 0;

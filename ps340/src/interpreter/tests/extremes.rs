@@ -1,7 +1,7 @@
 //! Tests of stiff and extreme structures, each with its stated outcome.
 
 use super::{DOT, Desk, MAX_NESTING, told};
-use crate::traversal::{self, Requests, Trouble};
+use crate::traversal::{self, Requests, UpdateFault};
 
 const DEEP: usize = 3000;
 
@@ -54,10 +54,10 @@ fn instances_of_instances_of_instances_are_drawn_and_deleted() {
 fn a_structure_that_contains_itself_is_drawn_once_and_named() {
     let desk = told(&format!("{DOT} A := INSTANCE OF D, B; B := INSTANCE OF A, D; DISPLAY A;"));
     let drawn = update(&desk);
-    assert_eq!(drawn.trouble, Some(Trouble::ContainsItself(desk.id("A"))));
+    assert_eq!(drawn.trouble, Some(UpdateFault::ContainsItself(desk.id("A"))));
     assert_eq!(drawn.strokes.len(), 2);
     let mut desk = told(&format!("{DOT} A := SCALE BY 0.5 APPLIED TO A; DISPLAY A;"));
-    assert!(matches!(update(&desk).trouble, Some(Trouble::ContainsItself(_))));
+    assert!(matches!(update(&desk).trouble, Some(UpdateFault::ContainsItself(_))));
     desk.tell("DELETE A;");
     assert_eq!(update(&desk).trouble, None);
 }

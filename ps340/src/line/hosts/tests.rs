@@ -21,7 +21,7 @@ async fn attach(conditions: &str, room: usize) -> Line {
     tokio::spawn(serve(
         far,
         Host::stream("pipe".into(), address.conditions),
-        Surroundings { events: sender, capture: None },
+        LineContext { events: sender, capture: None },
     ));
     let Some(LineEvent::Attached { writer, .. }) = events.recv().await else { panic!("it attaches first") };
     let (from_machine, to_machine) = tokio::io::split(near);

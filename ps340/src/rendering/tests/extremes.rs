@@ -5,10 +5,10 @@ use super::*;
 fn every_kind(scene: &Scene) {
     for kind in Rendering::ALL {
         match scene.render(kind, &ShadingEnvironment::default()) {
-            Ok(Outcome::Lines(lines)) => {
+            Ok(RenderingResult::Lines(lines)) => {
                 assert!(lines.iter().all(|s| s.ends.iter().all(|end| end.is_finite())), "{kind:?}");
             }
-            Ok(Outcome::Image(image)) => assert_eq!(image.pixels.len(), (image.width * image.height) as usize),
+            Ok(RenderingResult::Image(image)) => assert_eq!(image.pixels.len(), (image.width * image.height) as usize),
             Err(fault) => assert!(!fault.text("R").is_empty()),
         }
     }

@@ -241,7 +241,7 @@ fn work_in_slices_gives_the_same_image() {
         }
     };
     assert!(slices > 3, "{slices}");
-    assert_eq!(sliced, Outcome::Image(whole));
+    assert_eq!(sliced, RenderingResult::Image(whole));
 }
 
 #[test]

@@ -223,7 +223,7 @@ fn work_in_slices_gives_the_same_lines() {
         }
     };
     assert!(slices > 3, "{slices}");
-    assert_eq!(sliced, Outcome::Lines(whole));
+    assert_eq!(sliced, RenderingResult::Lines(whole));
 }
 
 #[test]

@@ -59,20 +59,20 @@ impl Scene {
         Facets::new(&traversal::gather(&structures, 0, rendering), &structures, self.solid, storage)
     }
 
-    fn render(&self, kind: Rendering, environment: &ShadingEnvironment) -> Result<Outcome, RenderingFault> {
+    fn render(&self, kind: Rendering, environment: &ShadingEnvironment) -> Result<RenderingResult, RenderingFault> {
         render(kind, self.facets(STORAGE)?, environment)
     }
 
     fn lines(&self, kind: Rendering) -> Vec<Segment> {
         match self.render(kind, &ShadingEnvironment::default()) {
-            Ok(Outcome::Lines(lines)) => lines,
+            Ok(RenderingResult::Lines(lines)) => lines,
             other => panic!("{other:?}"),
         }
     }
 
     fn image(&self, kind: Rendering, environment: &ShadingEnvironment) -> Image {
         match self.render(kind, environment) {
-            Ok(Outcome::Image(image)) => image,
+            Ok(RenderingResult::Image(image)) => image,
             other => panic!("{other:?}"),
         }
     }

@@ -9,10 +9,10 @@ mod traffic;
 
 pub use network::{ArcShown, FunctionShown, InputShown};
 pub use structure::NodeShown;
-pub use traffic::{Passed, Traffic};
+pub use traffic::{TrafficEntry, Traffic};
 
 use crate::{
-    calligraphic::{Drawer, Refresh, Scene, Screen},
+    calligraphic::{Drawer, Refresh, Scene, SharedDisplay},
     line::LineId,
     machine::{Counters, KeyboardMode, Machine, Panel, time_of_frame},
     raster::FrameBuffer,
@@ -24,7 +24,7 @@ const READ_FRAMES: u64 = 6;
 
 /// What a window shows besides screens and panel.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Asked {
+pub struct MirrorRequest {
     /// The functions whose names hold this text, in capital letters; none if the network is not shown.
     pub network: Option<String>,
     /// Whether the display structure is shown.
@@ -39,7 +39,7 @@ pub struct Asked {
 
 /// What people see of the machine at a frame.
 #[derive(Clone, Debug, Default)]
-pub struct Shown {
+pub struct MirrorFrame {
     /// The frame.
     pub frame: u64,
     /// Its time in microseconds.
@@ -69,15 +69,15 @@ pub struct Shown {
     /// How long the beam needs for the picture, if that is asked.
     pub refresh: Option<Refresh>,
     /// What passed on the host lines lately.
-    pub traffic: Arc<Vec<Passed>>,
+    pub traffic: Arc<Vec<TrafficEntry>>,
 }
 
 /// A copy of what people see, renewed by the machine's thread and read by the window's.
 pub struct Mirror {
-    asked: Mutex<Asked>,
-    shown: Mutex<Arc<Shown>>,
+    asked: Mutex<MirrorRequest>,
+    shown: Mutex<Arc<MirrorFrame>>,
     traffic: Mutex<Traffic>,
-    screen: Arc<Screen>,
+    screen: Arc<SharedDisplay>,
     /// Told after each copy that differs from the one before.
     wake: Box<dyn Fn() + Send + Sync>,
 }
@@ -91,18 +91,18 @@ impl Mirror {
             asked: Mutex::default(),
             shown: Mutex::default(),
             traffic: Mutex::default(),
-            screen: Arc::new(Screen::new(drawer)),
+            screen: Arc::new(SharedDisplay::new(drawer)),
             wake: Box::new(wake),
         }
     }
 
     /// The vector screen, which machine and window share.
-    pub fn screen(&self) -> &Arc<Screen> {
+    pub fn screen(&self) -> &Arc<SharedDisplay> {
         &self.screen
     }
 
     /// Says what is wanted from now on.
-    pub fn ask(&self, asked: &Asked) {
+    pub fn request(&self, asked: &MirrorRequest) {
         let mut now = lock(&self.asked);
         if *now != *asked {
             now.clone_from(asked);
@@ -110,7 +110,7 @@ impl Mirror {
     }
 
     /// The latest copy.
-    pub fn shown(&self) -> Arc<Shown> {
+    pub fn shown(&self) -> Arc<MirrorFrame> {
         lock(&self.shown).clone()
     }
 
@@ -127,7 +127,7 @@ impl Mirror {
     pub(super) fn renew<'a>(&self, machine: &mut Machine, hosts: impl Iterator<Item = &'a str>) {
         let before = self.shown();
         let frame = machine.frame();
-        let mut shown = Shown {
+        let mut shown = MirrorFrame {
             frame,
             micros: time_of_frame(frame),
             panel: machine.panel().clone(),
@@ -137,7 +137,7 @@ impl Mirror {
             tablet_is_read: machine.tablet_is_read(),
             counters: machine.counters(),
             hosts: hosts.map(str::to_owned).collect(),
-            ..Shown::clone(&before)
+            ..MirrorFrame::clone(&before)
         };
         let mut is_new = shown.panel != before.panel
             || shown.mode != before.mode
@@ -160,7 +160,7 @@ impl Mirror {
     }
 
     /// Copies what people read; whether something of it is new.
-    fn renew_texts(&self, shown: &mut Shown, machine: &mut Machine) -> bool {
+    fn renew_texts(&self, shown: &mut MirrorFrame, machine: &mut Machine) -> bool {
         let asked = lock(&self.asked).clone();
         let mut is_new = false;
         if let Some(pattern) = &asked.network {
@@ -186,8 +186,8 @@ impl Mirror {
         let mut traffic = lock(&self.traffic);
         if !asked.traffic {
             traffic.clear();
-        } else if traffic.take_news() {
-            shown.traffic = Arc::new(traffic.passed().cloned().collect());
+        } else if traffic.take_change() {
+            shown.traffic = Arc::new(traffic.entries().cloned().collect());
             is_new = true;
         }
         is_new

@@ -62,7 +62,7 @@ fn only_what_is_asked_for_is_copied() {
     let shown = mirror.shown();
     assert!(shown.network.is_empty() && shown.structure.is_empty() && shown.traffic.is_empty());
     assert_eq!(shown.refresh, None);
-    mirror.ask(&Asked { network: Some("A".into()), structure: true, traffic: true, log: true, refresh: true });
+    mirror.request(&MirrorRequest { network: Some("A".into()), structure: true, traffic: true, log: true, refresh: true });
     mirror.pass(LINE, true, b"SEND 1 TO <1>A;", &machine);
     machine.step([Input::Bytes(LINE, b"SEND 1 TO <1>A;".to_vec())], 0);
     for _ in 0..READ_FRAMES {
@@ -93,13 +93,13 @@ fn what_passes_is_bounded() {
     for _ in 0..10 {
         traffic.record(0, LINE, true, &[b'x'; MAX_TRAFFIC / 4]);
     }
-    assert_eq!(traffic.passed().count(), 4);
+    assert_eq!(traffic.entries().count(), 4);
     for _ in 0..100_000 {
         traffic.record(0, LINE, true, b"y");
     }
-    assert!(traffic.passed().count() <= MAX_TRAFFIC / 16);
+    assert!(traffic.entries().count() <= MAX_TRAFFIC / 16);
     traffic.record(0, LINE, false, &[b'z'; 2 * MAX_TRAFFIC]);
-    assert_eq!(traffic.passed().map(|p| p.bytes.len()).sum::<usize>(), MAX_TRAFFIC);
+    assert_eq!(traffic.entries().map(|p| p.bytes.len()).sum::<usize>(), MAX_TRAFFIC);
 }
 
 #[test]

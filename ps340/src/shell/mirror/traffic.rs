@@ -8,7 +8,7 @@ pub const MAX_TRAFFIC: usize = 64 << 10;
 
 /// Bytes that passed on a line at once.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Passed {
+pub struct TrafficEntry {
     /// The time of the machine in microseconds.
     pub micros: u64,
     /// On which line.
@@ -22,7 +22,7 @@ pub struct Passed {
 /// What passed lately.
 #[derive(Debug, Default)]
 pub struct Traffic {
-    passed: VecDeque<Passed>,
+    passed: VecDeque<TrafficEntry>,
     bytes: usize,
     has_news: bool,
 }
@@ -32,7 +32,7 @@ impl Traffic {
     pub(super) fn record(&mut self, micros: u64, line: LineId, from_host: bool, bytes: &[u8]) {
         let bytes: Arc<[u8]> = bytes[..bytes.len().min(MAX_TRAFFIC)].into();
         self.bytes += bytes.len();
-        self.passed.push_back(Passed { micros, line, from_host, bytes });
+        self.passed.push_back(TrafficEntry { micros, line, from_host, bytes });
         self.has_news = true;
         // Many small pieces count as well: each is an entry of a list on the screen.
         while self.bytes > MAX_TRAFFIC || self.passed.len() > MAX_TRAFFIC / 16 {
@@ -42,12 +42,12 @@ impl Traffic {
     }
 
     /// Whether something has passed since this was asked last.
-    pub(super) fn take_news(&mut self) -> bool {
+    pub(super) fn take_change(&mut self) -> bool {
         std::mem::take(&mut self.has_news)
     }
 
     /// What is kept, oldest first.
-    pub(super) fn passed(&self) -> impl Iterator<Item = &Passed> {
+    pub(super) fn entries(&self) -> impl Iterator<Item = &TrafficEntry> {
         self.passed.iter()
     }
 

@@ -2,12 +2,12 @@
 
 use crate::structure::{
     Labels, NodeFault,
-    value::{count, element, place, wrong_kind},
+    value::{count, element, position, wrong_kind},
 };
 use glam::DVec3;
 use protocol::{
     Value,
-    command::{Input, Label},
+    command::{Input, LabelText},
     value::MAX_STRING,
 };
 
@@ -38,9 +38,9 @@ pub(super) fn accept(block: &mut Labels, input: Input, value: &Value) -> Result<
         }
         Input::Append => {
             let label = match value {
-                Value::Label(label) => (Label { position: label.position, text: label.text.clone() }, label.on),
-                Value::String(text) => (Label { position: DVec3::ZERO, text: text.clone() }, true),
-                _ => (Label { position: place(value, input)?, text: Box::default() }, true),
+                Value::Label(label) => (LabelText { position: label.position, text: label.text.clone() }, label.on),
+                Value::String(text) => (LabelText { position: DVec3::ZERO, text: text.clone() }, true),
+                _ => (LabelText { position: position(value, input)?, text: Box::default() }, true),
             };
             block.labels.push(label);
             return Ok(bytes(&block.labels[block.labels.len() - 1..]));
@@ -60,7 +60,7 @@ pub(super) fn accept(block: &mut Labels, input: Input, value: &Value) -> Result<
                     let before = std::mem::replace(&mut label.text, text.clone());
                     return Ok(text.len() as isize - before.len() as isize);
                 }
-                _ => label.position = place(value, input)?,
+                _ => label.position = position(value, input)?,
             }
         }
     }
@@ -68,6 +68,6 @@ pub(super) fn accept(block: &mut Labels, input: Input, value: &Value) -> Result<
 }
 
 /// What labels take.
-fn bytes(labels: &[(Label, bool)]) -> isize {
-    labels.iter().map(|(label, _)| (size_of::<Label>() + label.text.len()) as isize).sum()
+fn bytes(labels: &[(LabelText, bool)]) -> isize {
+    labels.iter().map(|(label, _)| (size_of::<LabelText>() + label.text.len()) as isize).sum()
 }

@@ -5,7 +5,7 @@ use crate::{
     port::KindSet,
     structure::{
         Node, Operation,
-        value::{FIRST, PLACE, SECOND, THIRD},
+        value::{FIRST, POSITION, SECOND, THIRD},
     },
 };
 use protocol::command::Input;
@@ -17,7 +17,7 @@ impl Node {
             Node::Operate { operation, .. } => operation.takes(input),
             Node::Vectors(_) => vectors(input),
             Node::Characters(_) => match input {
-                Input::Position => PLACE,
+                Input::Position => POSITION,
                 Input::Step => KindSet::VECTOR2,
                 Input::Clear => KindSet::ANY,
                 Input::Delete => KindSet::INTEGER,
@@ -68,7 +68,7 @@ fn vectors(input: Input) -> KindSet {
 }
 
 fn labels(input: Input) -> KindSet {
-    let element = KindSet::LABEL.or(KindSet::STRING).or(PLACE);
+    let element = KindSet::LABEL.or(KindSet::STRING).or(POSITION);
     match input {
         Input::Step => KindSet::VECTOR2,
         Input::Clear => KindSet::ANY,

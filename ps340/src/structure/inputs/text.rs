@@ -2,7 +2,7 @@
 
 use crate::structure::{
     NodeFault,
-    value::{count, place, wrong_kind},
+    value::{count, position, wrong_kind},
 };
 use protocol::{
     Value,
@@ -14,7 +14,7 @@ use protocol::{
 pub(super) fn accept(characters: &mut Characters, input: Input, value: &Value) -> Result<isize, NodeFault> {
     let before = characters.text.len();
     match (input, value) {
-        (Input::Position, _) => characters.position = place(value, input)?,
+        (Input::Position, _) => characters.position = position(value, input)?,
         (Input::Step, Value::Vector2(step)) => characters.step = *step,
         (Input::Clear, _) => characters.text = Box::default(),
         (Input::Delete, _) => {

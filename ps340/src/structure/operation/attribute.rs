@@ -136,8 +136,8 @@ macro_rules! attribute_rows {
         named "SET PICKING LOCATION";
         from Operate::SetPickingLocation { center, size } =>
             Operation::PickLocation { center, size: size.unwrap_or(DEFAULT_PICK_SIZE) };
-        at FIRST takes PLACE, given => *center = given.place()?.truncate();
-        at SECOND takes PLACE, given => *size = given.place()?.truncate().abs();
+        at FIRST takes POSITION, given => *center = given.position()?.truncate();
+        at SECOND takes POSITION, given => *size = given.position()?.truncate().abs();
         below state => state.pick_box = Some([*center, *size]);
         shows rows(&[&center.to_array(), &size.to_array()]);
     }

@@ -3,7 +3,7 @@
 use crate::structure::{
     NodeFault,
     state::MAX_LEVEL,
-    value::{boolean, count, integer, number, place, wrong_kind},
+    value::{boolean, count, integer, number, position, wrong_kind},
 };
 use glam::{DMat2, DMat3, DMat4, DVec3};
 use protocol::{Value, command::Input};
@@ -92,8 +92,8 @@ impl Given<'_> {
     }
 
     /// A place in two or three dimensions; z is 0 in two.
-    pub(super) fn place(&self) -> Result<DVec3, NodeFault> {
-        place(self.value, self.input)
+    pub(super) fn position(&self) -> Result<DVec3, NodeFault> {
+        position(self.value, self.input)
     }
 
     /// The limits in the rows of a 3x3 matrix, or of a 2x2 one without intensity.

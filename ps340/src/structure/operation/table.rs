@@ -43,7 +43,7 @@ use crate::{
     structure::{
         NodeFault,
         state::{ALL_SCOPES, MAX_LEVEL, State, inside},
-        value::{FIRST, FOURTH, PLACE, SECOND, THIRD},
+        value::{FIRST, FOURTH, POSITION, SECOND, THIRD},
     },
 };
 use glam::{DMat2, DMat3, DMat4, DVec2, DVec3};

@@ -10,7 +10,7 @@ macro_rules! transformation_rows {
         from Operate::Scale(factors) => Operation::Linear(DMat3::from_diagonal(factors));
         from Operate::Matrix3(m) => Operation::Linear(m);
         at FIRST takes MATRIX_3, given => *matrix = given.matrix3()?;
-        below state => state.place(DMat4::from_mat3(*matrix));
+        below state => state.transform(DMat4::from_mat3(*matrix));
         shows rows(&[&matrix.x_axis.to_array(), &matrix.y_axis.to_array(), &matrix.z_axis.to_array()]);
     }
 
@@ -18,8 +18,8 @@ macro_rules! transformation_rows {
     Translate(by: DVec3) = {
         named "TRANSLATE";
         from Operate::Translate(by) => Operation::Translate(by);
-        at FIRST takes PLACE, given => *by = given.place()?;
-        below state => state.place(DMat4::from_translation(*by));
+        at FIRST takes POSITION, given => *by = given.position()?;
+        below state => state.transform(DMat4::from_translation(*by));
         shows rows(&[&by.to_array()]);
     }
 
@@ -32,7 +32,7 @@ macro_rules! transformation_rows {
                 .ok_or(Degenerate("LOOK needs FROM and AT apart, and UP across the line of sight"))?,
         );
         at FIRST takes MATRIX_4X3, given => *matrix = given.matrix4x3()?;
-        below state => state.place(*matrix);
+        below state => state.transform(*matrix);
         shows {
             let c = matrix.to_cols_array_2d();
             rows(&[&c[0][..3], &c[1][..3], &c[2][..3], &c[3][..3]])

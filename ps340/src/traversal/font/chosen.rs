@@ -1,6 +1,6 @@
 //! The font of a text: the standard one, or one of the user.
 
-use super::{Point, standard};
+use super::{GlyphPoint, standard};
 use protocol::command::FontCharacter;
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ pub enum Font<'a> {
 
 impl<'a> Font<'a> {
     /// The points of a character; none if the font does not have it.
-    pub fn glyph(self, code: u8) -> &'a [Point] {
+    pub fn glyph(self, code: u8) -> &'a [GlyphPoint] {
         match self {
             Font::Standard => standard::glyph(code),
             Font::User(characters) => characters.get(&code).map_or(&[], |character| character.points.as_slice()),

@@ -5,4 +5,4 @@ mod standard;
 mod chosen;
 
 pub use chosen::Font;
-pub use glyph::{Point, strokes};
+pub use glyph::{GlyphPoint, strokes};

@@ -6,7 +6,7 @@
 //! tenth of the screen they are a third of a pixel off. Characters that are easily taken for one another differ
 //! in more than size: 0 has a stroke through it, 1 a slanted flag and a foot, I two serifs, l a bent foot.
 
-use super::Point;
+use super::GlyphPoint;
 use std::sync::OnceLock;
 
 /// Straight strokes that stand for a parabola.
@@ -19,20 +19,20 @@ const FIRST: u8 = b'!';
 /// The points of a character; none for a space and for codes that the font does not have.
 ///
 /// The first call builds the font, further calls return what is there.
-pub(super) fn glyph(code: u8) -> &'static [Point] {
-    static FONT: OnceLock<Vec<Vec<Point>>> = OnceLock::new();
+pub(super) fn glyph(code: u8) -> &'static [GlyphPoint] {
+    static FONT: OnceLock<Vec<Vec<GlyphPoint>>> = OnceLock::new();
     let font = FONT.get_or_init(|| GLYPHS.iter().map(|row| draw(row)).collect());
     let index = code.checked_sub(FIRST).map(usize::from);
     index.and_then(|index| font.get(index)).map_or(&[], Vec::as_slice)
 }
 
 /// Draws a row of the table.
-fn draw(row: &str) -> Vec<Point> {
-    let mut points: Vec<Point> = Vec::new();
+fn draw(row: &str) -> Vec<GlyphPoint> {
+    let mut points: Vec<GlyphPoint> = Vec::new();
     for polyline in row.split(" / ") {
         let (mut control, mut drawn) = (None, false);
         for word in polyline.split_whitespace() {
-            let point = place(word.trim_matches(['(', ')']));
+            let point = parse_point(word.trim_matches(['(', ')']));
             if word.starts_with('(') {
                 control = Some(point);
                 continue;
@@ -55,7 +55,7 @@ fn parabola(start: [f32; 2], bend: [f32; 2], end: [f32; 2], t: f32) -> [f32; 2] 
 }
 
 /// A point of the grid, `x,y`, in cell units. The table is fixed; a test reads every number of it.
-fn place(text: &str) -> [f32; 2] {
+fn parse_point(text: &str) -> [f32; 2] {
     let (x, y) = text.split_once(',').unwrap_or((text, ""));
     let [x, y] = [x, y].map(|number| number.parse().unwrap_or(f32::NAN));
     [x / GRID[0], y / GRID[1]]

@@ -3,7 +3,7 @@
 use super::*;
 use crate::{hue, structure::Labels};
 use protocol::command::{
-    CharacterOrientation, Comparison, FontCharacter, Fourth, Label, Polygon, PolygonVertex, Rate, VectorClass,
+    CharacterOrientation, Comparison, FontCharacter, Fourth, LabelText, Polygon, PolygonVertex, Rate, VectorClass,
 };
 use std::collections::BTreeMap;
 
@@ -180,7 +180,7 @@ fn polygons_are_drawn_as_closed_outlines_in_their_hue() {
 
 #[test]
 fn labels_share_a_step_and_may_be_hidden() {
-    let label = |y| Label { position: DVec3::new(0.0, y, 0.0), text: (*b"H").into() };
+    let label = |y| LabelText { position: DVec3::new(0.0, y, 0.0), text: (*b"H").into() };
     let block = |shown| Labels { labels: vec![(label(0.0), true), (label(0.5), shown)], step: DVec2::X };
     let small = [Operation::Character(glam::DMat2::from_diagonal(DVec2::splat(0.1)))];
     let both = draw(&small, Node::Labels(Box::new(block(true))));
@@ -242,7 +242,7 @@ fn screen_oriented_text_does_not_turn() {
 
 #[test]
 fn structures_a_thousand_levels_deep_are_drawn_and_deeper_than_the_limit_are_reported() {
-    for (levels, trouble) in [(1000, None), (MAX_DEPTH + 5, Some(Trouble::TooDeep))] {
+    for (levels, trouble) in [(1000, None), (MAX_DEPTH + 5, Some(UpdateFault::TooDeep))] {
         let mut structures = Structures::default();
         structures.define(ObjectId::new(0), point());
         for level in 1..=levels {
@@ -263,7 +263,7 @@ fn a_cycle_is_drawn_once_and_named() {
     structures.define(b, Node::Group(vec![Member::Unnamed(point()), again]));
     structures.display(a);
     let update = update(&structures, 0, &Requests::default());
-    assert_eq!(update.trouble, Some(Trouble::ContainsItself(a)));
+    assert_eq!(update.trouble, Some(UpdateFault::ContainsItself(a)));
     assert_eq!(update.strokes.len(), 2);
 }
 

@@ -5,7 +5,7 @@ mod pairs;
 mod surfaces;
 mod trees;
 
-use super::Case;
+use super::CorpusCase;
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 
@@ -15,12 +15,12 @@ pub struct Class {
     pub name: &'static str,
     /// Number of its cases.
     pub cases: u32,
-    make: fn(&mut Pcg64Mcg) -> Case,
+    make: fn(&mut Pcg64Mcg) -> CorpusCase,
 }
 
 impl Class {
     /// A case; always the same for a number.
-    pub fn case(&self, number: u32) -> Case {
+    pub fn case(&self, number: u32) -> CorpusCase {
         (self.make)(&mut Pcg64Mcg::seed_from_u64(u64::from(number)))
     }
 }

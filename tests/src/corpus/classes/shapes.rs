@@ -1,6 +1,6 @@
 //! What cases are made of: bodies, and where they are put.
 
-use super::super::Case;
+use super::super::CorpusCase;
 use glam::{DAffine3, DVec3};
 use host::mesh::Mesh;
 use host::surface::{Sphere, Tolerance, box_faces, tessellate};
@@ -34,8 +34,8 @@ pub(super) fn joined(meshes: &[Mesh]) -> Mesh {
     all
 }
 
-pub(super) fn pair(one: Mesh, two: Mesh) -> Case {
-    Case::Pair { solids: [one, two], common: None }
+pub(super) fn pair(one: Mesh, two: Mesh) -> CorpusCase {
+    CorpusCase::Pair { solids: [one, two], common: None }
 }
 
 pub(super) fn vector(random: &mut Pcg64Mcg) -> DVec3 {

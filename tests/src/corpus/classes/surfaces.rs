@@ -1,13 +1,13 @@
 //! Surfaces that are not simple.
 
-use super::super::Case;
+use super::super::CorpusCase;
 use super::shapes::{cube, joined, power, shifted, turned, unit, vector};
 use glam::DVec3;
 use host::mesh::Mesh;
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-pub(super) fn self_crossing(random: &mut Pcg64Mcg) -> Case {
+pub(super) fn self_crossing(random: &mut Pcg64Mcg) -> CorpusCase {
     let low = vector(random) * 0.4;
     let size = DVec3::from([0; 3].map(|_| random.random_range(0.1..0.5)));
     let (one, two) = (unit(), cube(low, low + size));
@@ -26,11 +26,11 @@ pub(super) fn self_crossing(random: &mut Pcg64Mcg) -> Case {
         }
     };
     let angle = random.random_range(0.0..3.0);
-    Case::NotSimple { mesh: turned(&mesh, random, angle), volume }
+    CorpusCase::NotSimple { mesh: turned(&mesh, random, angle), volume }
 }
 
 /// A cube and tetrahedra beside it, 1e-16 to 1e-3 thick, of which each may face inwards; the cube too.
-pub(super) fn slivers(random: &mut Pcg64Mcg) -> Case {
+pub(super) fn slivers(random: &mut Pcg64Mcg) -> CorpusCase {
     let turn_some = |mesh: Mesh, random: &mut Pcg64Mcg| if random.random() { mesh.reversed() } else { mesh };
     let (mut parts, mut volume) = (vec![turn_some(unit(), random)], 1.0);
     for place in 0..random.random_range(1..6) {
@@ -47,5 +47,5 @@ pub(super) fn slivers(random: &mut Pcg64Mcg) -> Case {
     if parts.iter().all(|part| part.signed_volume() >= 0.0) {
         parts[last] = parts[last].clone().reversed();
     }
-    Case::NotSimple { mesh: joined(&parts), volume }
+    CorpusCase::NotSimple { mesh: joined(&parts), volume }
 }

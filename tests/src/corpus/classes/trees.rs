@@ -1,6 +1,6 @@
 //! Expressions over several solids, and results that are operands again.
 
-use super::super::Case;
+use super::super::CorpusCase;
 use super::shapes::{ball, cube, direction, moved, power, shifted, turned, unit, vector};
 use glam::{DAffine3, DVec3};
 use host::mesh::{Mesh, bunny};
@@ -9,18 +9,18 @@ use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
 /// Cubes around each other's corners, turned by little or by much.
-pub(super) fn chain(random: &mut Pcg64Mcg) -> Case {
+pub(super) fn chain(random: &mut Pcg64Mcg) -> CorpusCase {
     let angle = power(random, -15.5, 0.0);
     let mut next = || {
         let at = (vector(random)).round() * 0.5;
         let by = random.random_range(-1.0..1.0) * angle;
         shifted(&turned(&unit(), random, by), at)
     };
-    Case::Chain((0..5).map(|_| next()).collect())
+    CorpusCase::Chain((0..5).map(|_| next()).collect())
 }
 
 /// Up to ten boxes of one lattice, all turned at once: faces that coincide but for a rounding, each in its own way.
-pub(super) fn lattice(random: &mut Pcg64Mcg) -> Case {
+pub(super) fn lattice(random: &mut Pcg64Mcg) -> CorpusCase {
     const CELLS: usize = 4;
     let count = random.random_range(2..=10);
     let corners: Vec<[[usize; 3]; 2]> = (0..count)
@@ -41,11 +41,11 @@ pub(super) fn lattice(random: &mut Pcg64Mcg) -> Case {
     };
     let cells = (0..CELLS.pow(3)).filter(|n| is_inside([n % CELLS, n / CELLS % CELLS, n / CELLS / CELLS])).count();
     let volume = Some(cells as f64 * step.powi(3));
-    Case::Tree { solids, expression, volume }
+    CorpusCase::Tree { solids, expression, volume }
 }
 
 /// Trees over boxes and spheres that are anywhere, or nearly where another is.
-pub(super) fn nested(random: &mut Pcg64Mcg) -> Case {
+pub(super) fn nested(random: &mut Pcg64Mcg) -> CorpusCase {
     let count = random.random_range(3..=8);
     let mut solids: Vec<Mesh> = Vec::new();
     for _ in 0..count {
@@ -63,11 +63,11 @@ pub(super) fn nested(random: &mut Pcg64Mcg) -> Case {
             }
         });
     }
-    Case::Tree { expression: expression(random, count), solids, volume: None }
+    CorpusCase::Tree { expression: expression(random, count), solids, volume: None }
 }
 
 /// Plates as thin as 1e-3 to 1e-12, crosswise, nearly in each other, or turned alike.
-pub(super) fn plates(random: &mut Pcg64Mcg) -> Case {
+pub(super) fn plates(random: &mut Pcg64Mcg) -> CorpusCase {
     let count = random.random_range(2..=6);
     let thin = power(random, -12.0, -3.0);
     let angle = if random.random_range(0..2) == 0 { random.random_range(0.0..3.0) } else { power(random, -15.0, -2.0) };
@@ -80,11 +80,11 @@ pub(super) fn plates(random: &mut Pcg64Mcg) -> Case {
         if random.random_range(0..2) == 0 { moved(&flat, DAffine3::from_rotation_x(quarters)) } else { flat }
     };
     let solids = (0..count).map(|_| plate()).collect();
-    Case::Tree { expression: expression(random, count), solids, volume: None }
+    CorpusCase::Tree { expression: expression(random, count), solids, volume: None }
 }
 
 /// Scanned surfaces across each other and across a box or a sphere.
-pub(super) fn scanned(random: &mut Pcg64Mcg) -> Case {
+pub(super) fn scanned(random: &mut Pcg64Mcg) -> CorpusCase {
     let mut solids: Vec<Mesh> = Vec::new();
     for _ in 0..random.random_range(1..=2) {
         let bunny = bunny().expect("it ships").simplified([300, 1000, 3000][random.random_range(0..3)]);
@@ -104,11 +104,11 @@ pub(super) fn scanned(random: &mut Pcg64Mcg) -> Case {
             shifted(&turned(&large, random, turn), by)
         }
     });
-    Case::Tree { expression: expression(random, solids.len()), solids, volume: None }
+    CorpusCase::Tree { expression: expression(random, solids.len()), solids, volume: None }
 }
 
 /// Ten operations, each on the result before.
-pub(super) fn deep(random: &mut Pcg64Mcg) -> Case {
+pub(super) fn deep(random: &mut Pcg64Mcg) -> CorpusCase {
     let angle = power(random, -15.5, 0.0);
     let is_round = random.random_range(0..3) == 0;
     let mut next = || {
@@ -117,18 +117,18 @@ pub(super) fn deep(random: &mut Pcg64Mcg) -> Case {
         let solid = if is_round { ball(DVec3::ZERO, 0.6) } else { unit() };
         shifted(&turned(&solid, random, by), at)
     };
-    Case::Chain((0..11).map(|_| next()).collect())
+    CorpusCase::Chain((0..11).map(|_| next()).collect())
 }
 
 /// Boxes and spheres across each other, by much or by little.
-pub(super) fn single(random: &mut Pcg64Mcg) -> Case {
+pub(super) fn single(random: &mut Pcg64Mcg) -> CorpusCase {
     let angle = if random.random_range(0..2) == 0 { random.random_range(0.0..3.0) } else { power(random, -9.0, -1.0) };
     let mut next = || {
         let solid = if random.random_range(0..2) == 0 { ball(DVec3::ZERO, 0.6) } else { unit() };
         let by = if random.random_range(0..2) == 0 { vector(random) * 0.5 } else { vector(random).round() * 0.5 };
         shifted(&turned(&solid, random, angle), by)
     };
-    Case::Single([next(), next(), next()])
+    CorpusCase::Single([next(), next(), next()])
 }
 
 /// One operation on all, or a tree of operations.
