@@ -250,7 +250,7 @@ impl<W: Write> Rows<'_, W> {
 
     /// A field of a body: its bytes in the stream, or only its meaning if it does not stand there.
     fn body_field(&mut self, body: &Body<'_>, span: Range<usize>, meaning: &str) {
-        match body.seen {
+        match body.positions {
             BytePositions::Decoded => self.note(format_args!("{meaning}")),
             _ => self.field(body.at(span.start), body.raw(span), format_args!("{meaning}")),
         }
@@ -341,7 +341,7 @@ impl<W: Write> Rows<'_, W> {
 struct Body<'a> {
     payload: &'a [u8],
     packet: &'a [u8],
-    seen: BytePositions,
+    positions: BytePositions,
 }
 
 /// Where the bytes of a body stand in its packet.
@@ -369,22 +369,22 @@ impl<'a> Body<'a> {
                 BytePositions::At(places.split_off(1))
             }
         };
-        Body { payload, packet, seen }
+        Body { payload, packet, positions: seen }
     }
 
     /// Bytes outside packets.
     fn plain(text: &'a [u8]) -> Body<'a> {
-        Body { payload: text, packet: text, seen: BytePositions::From(0) }
+        Body { payload: text, packet: text, positions: BytePositions::From(0) }
     }
 
     /// Bytes that do not stand in the stream.
     fn decoded(payload: &'a [u8]) -> Body<'a> {
-        Body { payload, packet: &[], seen: BytePositions::Decoded }
+        Body { payload, packet: &[], positions: BytePositions::Decoded }
     }
 
     /// The place of byte `index` of the data in its packet; that of its end for their number.
     fn at(&self, index: usize) -> usize {
-        match &self.seen {
+        match &self.positions {
             BytePositions::From(start) => start + index,
             BytePositions::At(places) => places.get(index).copied().unwrap_or(self.packet.len()),
             BytePositions::Decoded => 0,

@@ -61,7 +61,7 @@ pub struct PickList {
     /// What kind of data: 1 vectors, 2 curve, 3 characters, 4 labels, 5 polygons.
     pub type_code: i32,
     /// Where it was picked, in coordinate picking.
-    pub place: Option<PickCoordinates>,
+    pub coordinates: Option<PickCoordinates>,
 }
 
 /// Where something was picked.
@@ -255,7 +255,7 @@ impl Value {
             Value::Matrix3(m) => m.is_finite(),
             Value::Matrix4x3(m) | Value::Matrix4(m) | Value::Transform(m) => is_finite(m),
             Value::Pick(pick) => {
-                pick.place.is_none_or(|place| place.point.is_finite() && place.parameter.is_none_or(f64::is_finite))
+                pick.coordinates.is_none_or(|place| place.point.is_finite() && place.parameter.is_none_or(f64::is_finite))
             }
             Value::Label(label) => label.position.is_finite(),
             Value::Vectors(vectors) => vectors.ends.iter().all(|end| end.point.is_finite()),
@@ -324,9 +324,9 @@ mod tests {
     fn what_holds_a_number_that_is_not_finite_is_not_finite() {
         let nan = DVec3::new(0.0, f64::NAN, 0.0);
         let place = Some(PickCoordinates { point: DVec3::ZERO, dimension: 3, parameter: Some(f64::INFINITY) });
-        let pick = PickList { index: 1, identifiers: Vec::new(), node: None, type_code: 1, place };
+        let pick = PickList { index: 1, identifiers: Vec::new(), node: None, type_code: 1, coordinates: place };
         assert!(!Value::Pick(Box::new(pick.clone())).is_finite());
-        assert!(Value::Pick(Box::new(PickList { place: None, ..pick })).is_finite());
+        assert!(Value::Pick(Box::new(PickList { coordinates: None, ..pick })).is_finite());
         assert!(!Value::Label(Box::new(Label { position: nan, text: [].into(), on: true })).is_finite());
         let vectors = TransformedVectors { ends: vec![VectorEnd { line: true, point: nan }] };
         assert!(!Value::Vectors(Arc::new(vectors)).is_finite());

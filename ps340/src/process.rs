@@ -119,7 +119,7 @@ pub fn main() -> ExitCode {
         return ExitCode::from(1);
     }
     let listen = arguments.listen;
-    let stdio_lines = listen.iter().filter(|line| line.place == Endpoint::Stdio).count();
+    let stdio_lines = listen.iter().filter(|line| line.endpoint == Endpoint::Stdio).count();
     let operator = match arguments.operator.as_deref() {
         None if std::io::stdin().is_terminal() && stdio_lines == 0 => Operator::Stdio,
         None | Some("none") => Operator::None,
@@ -156,7 +156,7 @@ pub fn main() -> ExitCode {
         capture: arguments.capture,
         operator,
         clock: arguments.clock,
-        replayed_orders: arguments.orders,
+        replays_operator: arguments.orders,
         files: arguments.files,
         public: arguments.public,
         settings,

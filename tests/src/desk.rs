@@ -84,7 +84,7 @@ impl Display {
 #[derive(Debug)]
 pub struct WindowedMachine {
     display: Display,
-    places: Arc<Mutex<HashMap<String, [i32; 2]>>>,
+    positions: Arc<Mutex<HashMap<String, [i32; 2]>>>,
     operator: BufReader<TcpStream>,
     host: Option<TcpStream>,
     /// Where hosts attach, as `HOST:PORT`.
@@ -129,7 +129,7 @@ impl WindowedMachine {
             stream
         };
         let operator = BufReader::new(connect(&operator));
-        let mut desk = WindowedMachine { host: None, line, display, places, operator, window: String::new(), _machine: machine };
+        let mut desk = WindowedMachine { host: None, line, display, positions: places, operator, window: String::new(), _machine: machine };
         assert_eq!(desk.operator_command(&format!("token {TOKEN}")), "ok");
         desk.position_of("vector screen");
         // Without a window manager nobody gives the window the keyboard; it is there a moment after its first picture.
@@ -180,7 +180,7 @@ impl WindowedMachine {
         let begin = Instant::now();
         let mut before = None;
         loop {
-            let now = self.places.lock().unwrap().get(device).copied();
+            let now = self.positions.lock().unwrap().get(device).copied();
             match now {
                 Some(at) if now == before => return at,
                 _ => before = now,

@@ -32,7 +32,7 @@ pub const TIMEOUT: Duration = Duration::from_secs(60);
 #[derive(Debug)]
 pub struct Machine {
     child: Child,
-    orders: Option<ChildStdin>,
+    operator_input: Option<ChildStdin>,
     errors: Option<JoinHandle<String>>,
     replies: mpsc::Receiver<String>,
     /// Where its host line is, as `HOST:PORT`.
@@ -67,7 +67,7 @@ impl Machine {
                 }
             }
         });
-        let mut machine = Machine { child, orders, errors, replies, line: String::new(), more_lines: Vec::new() };
+        let mut machine = Machine { child, operator_input: orders, errors, replies, line: String::new(), more_lines: Vec::new() };
         loop {
             let line = machine.replies.recv_timeout(TIMEOUT).expect("the machine gets ready");
             match line.strip_prefix("ready line ") {
@@ -83,7 +83,7 @@ impl Machine {
 
     /// Gives an order without waiting for the reply.
     pub fn give(&mut self, order: &str) {
-        let orders = self.orders.as_mut().expect("the operator line is open");
+        let orders = self.operator_input.as_mut().expect("the operator line is open");
         writeln!(orders, "{order}").expect("the machine takes orders");
     }
 
@@ -107,7 +107,7 @@ impl Machine {
 
     /// Closes the operator line, so that the machine ends.
     pub fn close_operator(&mut self) {
-        self.orders = None;
+        self.operator_input = None;
     }
 
     /// Kills the process at once.

@@ -88,7 +88,7 @@ fn play_at<'c>(
 }
 
 fn target(place: Endpoint, way: Transport, cut: Option<u64>) -> Target {
-    Target { place, way, cut, patience: Duration::from_secs(5), any_fault: false, reboots: false }
+    Target { endpoint: place, transport: way, cut, timeout: Duration::from_secs(5), any_fault: false, reboots: false }
 }
 
 fn assert_passed(report: &Report, what: &str) {
@@ -161,7 +161,7 @@ fn strokes_come_over_the_host_line_where_nobody_is_at_the_machine() {
 fn a_machine_that_answers_nothing_ends_the_run_at_once() {
     let silent = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let place = format!("tcp:{}", silent.local_addr().unwrap()).parse().unwrap();
-    let target = Target { patience: Duration::from_millis(300), ..target(place, Transport::default(), None) };
+    let target = Target { timeout: Duration::from_millis(300), ..target(place, Transport::default(), None) };
     let error = conformance::run(&target, None, &all(), |_| {}).unwrap_err();
     assert_eq!(error.to_string(), "expected an answer of the machine, found nothing for 300ms, after: nothing");
 }

@@ -233,7 +233,7 @@ fn saved_elsewhere(name: &OsStr, problem: Problem, content: &dyn Fn(&mut Writer<
         Some(fs::canonicalize(&free).unwrap_or(free))
     };
     match [std::env::temp_dir(), PathBuf::from(".")].iter().find_map(|folder| keep(folder)) {
-        Some(kept) => Problem::Elsewhere { kept, why: Box::new(problem) },
+        Some(kept) => Problem::Elsewhere { saved_as: kept, why: Box::new(problem) },
         None => problem,
     }
 }
@@ -388,7 +388,7 @@ mod tests {
         fs::remove_dir(&inner).expect("removed");
         let [first, second] = [b"one", b"two"].map(|bytes| {
             let error = destination.write_or_save_elsewhere(|file| file.write_all(bytes)).expect_err("no folder");
-            let Problem::Elsewhere { kept, .. } = error.problem else { panic!("{error}") };
+            let Problem::Elsewhere { saved_as: kept, .. } = error.problem else { panic!("{error}") };
             kept
         });
         assert_ne!(first, second);
@@ -439,7 +439,7 @@ mod tests {
         let name = format!("kept-in-folder-{}", std::process::id());
         fs::create_dir(folder.path().join(&name)).expect("a folder");
         let error = folder.write_or_save_elsewhere(&name, |file| file.write_all(b"two")).expect_err("a folder has the name");
-        let Problem::Elsewhere { kept, why } = error.problem else { panic!("{error}") };
+        let Problem::Elsewhere { saved_as: kept, why } = error.problem else { panic!("{error}") };
         assert!(matches!(*why, Problem::IsAFolder));
         assert_eq!(fs::read(&kept).expect("there"), b"two");
         fs::remove_file(kept).expect("removed");

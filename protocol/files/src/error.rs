@@ -48,10 +48,10 @@ pub enum Problem {
     #[error("{0}")]
     System(#[source] io::Error),
     /// The writing failed, and the whole content is elsewhere.
-    #[error("{why}; the whole file is kept as {}", kept.display())]
+    #[error("{why}; the whole file is kept as {}", saved_as.display())]
     Elsewhere {
         /// Where it is.
-        kept: PathBuf,
+        saved_as: PathBuf,
         /// Why it is not in its place.
         why: Box<Problem>,
     },

@@ -20,7 +20,7 @@ const DEFAULT_BAUD: u32 = 9600;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LineAddress {
     /// Where it is.
-    pub place: Endpoint,
+    pub endpoint: Endpoint,
     /// How it behaves.
     pub conditions: Conditions,
 }
@@ -190,7 +190,7 @@ impl FromStr for LineAddress {
                 _ => return Err(wrong()),
             }
         }
-        Ok(LineAddress { place, conditions })
+        Ok(LineAddress { endpoint: place, conditions })
     }
 }
 
@@ -222,7 +222,7 @@ fn serial(text: &str) -> Result<Serial, (&str, &'static str)> {
 
 impl fmt::Display for LineAddress {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.place)?;
+        write!(f, "{}", self.endpoint)?;
         let Conditions { speed, flow, seven_bits } = self.conditions;
         if let Some(speed) = speed {
             write!(f, ",speed={speed}")?;

@@ -62,7 +62,7 @@ pub struct CommandReader {
     start: usize,
     /// How far its end was looked for.
     scanned: usize,
-    place: LexicalState,
+    lexical_state: LexicalState,
     /// Where it ends (its `;`), once that was found, and how far it was parsed.
     complete: Option<usize>,
     parsed: usize,
@@ -70,7 +70,7 @@ pub struct CommandReader {
     /// The byte before the buffer.
     before: u8,
     /// Bytes of the stream before the buffer.
-    passed: u64,
+    consumed: u64,
     /// Where in the stream the latest packet ends.
     packet_end: u64,
     /// Where in the stream the text or the comment begins that `place` is in.
@@ -87,12 +87,12 @@ impl Default for CommandReader {
             buffer: Vec::new(),
             start: 0,
             scanned: 0,
-            place: LexicalState::Code,
+            lexical_state: LexicalState::Code,
             complete: None,
             parsed: 0,
             last: 0..0,
             before: b'\n',
-            passed: 0,
+            consumed: 0,
             packet_end: 0,
             opened: 0,
             counted: 0,
@@ -110,7 +110,7 @@ impl CommandReader {
             self.count_lines_to(self.start);
             self.buffer.drain(..self.start);
             self.counted = 0;
-            self.passed += self.start as u64;
+            self.consumed += self.start as u64;
             self.scanned -= self.start;
             self.complete = self.complete.map(|end| end - self.start);
             self.start = 0;
@@ -131,13 +131,13 @@ impl CommandReader {
     /// Whether the stream has come to a text in quotes that was begun outside packets. A packet cannot begin there: its
     /// start byte is a character of the text.
     pub fn is_quoting(&self) -> bool {
-        self.place == LexicalState::Text && self.opened >= self.packet_end
+        self.lexical_state == LexicalState::Text && self.opened >= self.packet_end
     }
 
     /// Whether a statement has begun and its `;` is still to come.
     pub fn is_unfinished(&self) -> bool {
         let rest = &self.buffer[self.start..];
-        self.place != LexicalState::Code || blanks(rest, 0).map_or(true, |at| at < rest.len())
+        self.lexical_state != LexicalState::Code || blanks(rest, 0).map_or(true, |at| at < rest.len())
     }
 
     /// What has come of a statement whose `;` is still to come.
@@ -148,7 +148,7 @@ impl CommandReader {
     /// The text or the comment that was begun and has not ended, and where in the stream it begins; none if there is
     /// none.
     pub fn open(&self) -> Option<(Problem, u64)> {
-        match self.place {
+        match self.lexical_state {
             LexicalState::Text => Some((Problem::OpenString, self.opened)),
             LexicalState::Comment | LexicalState::FirstComment => Some((Problem::OpenComment, self.opened)),
             LexicalState::Code | LexicalState::Dropped => None,
@@ -168,28 +168,28 @@ impl CommandReader {
 
     /// Where [`statement`](Self::statement) begins in the stream, in bytes; the end of the last one if it is empty.
     pub fn position(&self) -> u64 {
-        self.passed + self.last.start as u64
+        self.consumed + self.last.start as u64
     }
 
     /// Bytes of the stream so far.
     pub fn pushed(&self) -> u64 {
-        self.passed + self.buffer.len() as u64
+        self.consumed + self.buffer.len() as u64
     }
 
     /// Where in the stream the statement begins that has no `;` yet, or the next one.
     pub fn unfinished_position(&self) -> u64 {
-        self.passed + self.start as u64
+        self.consumed + self.start as u64
     }
 
     /// Looks for the `;` of the current statement. False if it is not there yet.
     fn find_end(&mut self) -> bool {
         loop {
-            if self.scanned == self.start && self.place == LexicalState::Code {
+            if self.scanned == self.start && self.lexical_state == LexicalState::Code {
                 self.start += self.buffer[self.start..].iter().take_while(|b| **b <= b' ').count();
                 self.scanned = self.start;
             }
             let rest = &self.buffer[self.scanned..];
-            let (found, dropping) = match self.place {
+            let (found, dropping) = match self.lexical_state {
                 LexicalState::Code => (find(rest, [b';', b'\'', b'{', b'!']), false),
                 LexicalState::Text => (find(rest, [b'\'', b'!', b'!', b'!']), false),
                 LexicalState::Comment => (find(rest, [b'}', b'!', b'!', b'!']), false),
@@ -209,7 +209,7 @@ impl CommandReader {
                     Some(true) => {
                         self.start = at;
                         self.scanned = at + RESET.len();
-                        self.place = LexicalState::Code;
+                        self.lexical_state = LexicalState::Code;
                     }
                     Some(false) => {}
                     None => {
@@ -220,10 +220,10 @@ impl CommandReader {
                 }
                 continue;
             }
-            if self.place == LexicalState::Code {
-                self.opened = self.passed + at as u64;
+            if self.lexical_state == LexicalState::Code {
+                self.opened = self.consumed + at as u64;
             }
-            self.place = match (self.place, self.buffer[at]) {
+            self.lexical_state = match (self.lexical_state, self.buffer[at]) {
                 (LexicalState::Code, b'\'') => LexicalState::Text,
                 (LexicalState::Code, b'{') if at == self.start => LexicalState::FirstComment,
                 (LexicalState::Code, b'{') => LexicalState::Comment,
@@ -239,7 +239,7 @@ impl CommandReader {
 
     /// Whether the `!` at an offset is a `!RESET` that counts; none if more of the stream must come to tell.
     fn reset_at(&self, at: usize) -> Option<bool> {
-        let counts = self.place == LexicalState::Code || matches!(self.byte_before(at), b'\n' | b'\r');
+        let counts = self.lexical_state == LexicalState::Code || matches!(self.byte_before(at), b'\n' | b'\r');
         let text = &self.buffer[at..self.buffer.len().min(at + RESET.len())];
         if !counts || !text.eq_ignore_ascii_case(&RESET[..text.len()]) {
             return Some(false);
@@ -275,7 +275,7 @@ impl CommandReader {
         self.last = 0..0;
         self.start += MAX_STATEMENT;
         self.scanned = self.start;
-        self.place = LexicalState::Dropped;
+        self.lexical_state = LexicalState::Dropped;
         self.complete = None;
         error
     }

@@ -63,7 +63,7 @@ struct Written {
     /// Frames from there to the next.
     period: u64,
     /// Frames for which nothing has changed.
-    stood: u64,
+    unchanged_frames: u64,
 }
 
 impl Display {
@@ -138,7 +138,7 @@ impl Display {
             self.drawer.write(&mut self.light, &mut self.bins, strokes);
             let period = self.period(strokes);
             self.glow(1, f64::INFINITY, period, 0);
-            self.written = Some(Written { version, frame, refreshed: frame, period, stood: u64::MAX / 2 });
+            self.written = Some(Written { version, frame, refreshed: frame, period, unchanged_frames: u64::MAX / 2 });
             self.expose(true);
             return;
         };
@@ -163,7 +163,7 @@ impl Display {
                 self.glow(last - written.frame, (refreshes - 1) as f64, written.period, written.period);
                 self.drawer.write(&mut self.light, &mut self.bins, strokes);
                 self.glow(since, 1.0, 1, since);
-                written = Written { version, period: self.period(strokes), stood: 0, ..written };
+                written = Written { version, period: self.period(strokes), unchanged_frames: 0, ..written };
                 self.stale = false;
             } else {
                 self.glow(elapsed, refreshes as f64, written.period, since);
@@ -174,12 +174,12 @@ impl Display {
             self.glow(elapsed, 0.0, 1, 0);
             if changed && elapsed == 0 && written.refreshed == written.frame {
                 self.drawer.write(&mut self.light, &mut self.bins, strokes);
-                written = Written { version, period: self.period(strokes), stood: 0, ..written };
+                written = Written { version, period: self.period(strokes), unchanged_frames: 0, ..written };
                 self.stale = false;
             }
         }
         written.frame += elapsed;
-        written.stood = written.stood.saturating_add(elapsed);
+        written.unchanged_frames = written.unchanged_frames.saturating_add(elapsed);
         self.written = Some(written);
         if self.is_steady(&written) {
             // Nothing is left to wait for: the glow is that of a picture that stands still.
@@ -198,7 +198,7 @@ impl Display {
         light.write(bins, &[]);
         give(&mut |strokes| light.add(bins, strokes));
         self.glow(1, f64::INFINITY, 1, 0);
-        self.written = Some(Written { version: u64::MAX, frame: 0, refreshed: 0, period: 1, stood: u64::MAX / 2 });
+        self.written = Some(Written { version: u64::MAX, frame: 0, refreshed: 0, period: 1, unchanged_frames: u64::MAX / 2 });
         self.expose(true);
     }
 
@@ -236,7 +236,7 @@ impl Display {
     /// Whether the picture is refreshed in every frame, and the phosphor glows as it will for ever.
     fn is_steady(&self, written: &Written) -> bool {
         let steady = self.controls.steady || written.period == 1;
-        steady && self.emission.slow.iter().all(|slow| f64::from(slow.keep).powf(written.stood as f64) < UNSEEN)
+        steady && self.emission.slow.iter().all(|slow| f64::from(slow.remaining).powf(written.unchanged_frames as f64) < UNSEEN)
     }
 
     /// Whether a refresh is seen in the frame that is shown.
@@ -254,7 +254,7 @@ impl Display {
         // For each component: its gun, what is left of its light, and what comes of the light that is written.
         let gains: Vec<(usize, f32, f32)> = (self.emission.slow.iter())
             .map(|slow| {
-                let q = f64::from(slow.keep);
+                let q = f64::from(slow.remaining);
                 let cycle = period as f64;
                 let left = if refreshes.is_infinite() { 0.0 } else { q.powf(elapsed as f64) };
                 let series = (1.0 - q.powf(cycle * refreshes)) / (1.0 - q.powf(cycle));
@@ -278,8 +278,8 @@ impl Display {
         rgba.par_chunks_mut(4 * width * TILE_HEIGHT).zip(tiles.par_chunks_mut(columns)).for_each(|(pixels, tiles)| {
             for (column, tile) in tiles.iter_mut().enumerate() {
                 let seen = (tile.lit && refreshed) || tile.glowing;
-                if seen || tile.seen {
-                    tile.seen = seen;
+                if seen || tile.visible {
+                    tile.visible = seen;
                     let source = Source { tile, display: self, refreshed };
                     let put = Bytes { pixels, width, left: column * TILE_WIDTH };
                     widest::run(Exposing { source, exposure, put });

@@ -99,7 +99,7 @@ fn afterglow_ends_in_darkness_and_then_nothing_is_awaited() {
     }
     assert!(!display.awaits(2, 121) && light(&display) == 0.0);
     assert!(display.frame().chunks_exact(4).all(|pixel| pixel == [0, 0, 0, 255]));
-    assert!(display.light().tiles.iter().all(|tile| !tile.seen && !tile.glowing && !tile.lit));
+    assert!(display.light().tiles.iter().all(|tile| !tile.visible && !tile.glowing && !tile.lit));
 }
 
 #[test]

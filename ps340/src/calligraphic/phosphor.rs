@@ -139,7 +139,7 @@ impl Phosphor {
             let color = color.map(|channel| (channel * component.part) as f32);
             let keep = component.remaining();
             if keep > VISIBLE_REMAINDER {
-                emission.slow.push(Slow { gun: component.gun, color, keep: keep as f32 });
+                emission.slow.push(Slow { gun: component.gun, color, remaining: keep as f32 });
             } else {
                 let sum = &mut emission.prompt[component.gun];
                 *sum = [0, 1, 2].map(|channel| sum[channel] + color[channel]);
@@ -186,7 +186,7 @@ pub(super) struct Slow {
     /// Linear sRGB of all its light, times its part.
     pub color: [f32; 3],
     /// What is left after a frame.
-    pub keep: f32,
+    pub remaining: f32,
 }
 
 /// Linear sRGB of a chromaticity with luminance 1; may have negative channels.

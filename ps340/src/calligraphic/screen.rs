@@ -41,7 +41,7 @@ impl Scene {
 #[derive(Debug, Default)]
 pub struct SharedDisplay {
     drawer: Drawer,
-    standing: Mutex<Option<DisplayState>>,
+    state: Mutex<Option<DisplayState>>,
 }
 
 /// The display, once somebody has looked.
@@ -60,13 +60,13 @@ pub struct DisplayLook<'a> {
     /// Another number for other pixels.
     pub shown: u64,
     /// Whether the next frame looks different though the strokes stay.
-    pub goes_on: bool,
+    pub is_animated: bool,
 }
 
 impl SharedDisplay {
     /// A screen that nobody has looked at yet.
     pub fn new(drawer: Drawer) -> Self {
-        Self { drawer, standing: Mutex::default() }
+        Self { drawer, state: Mutex::default() }
     }
 
     /// Who writes its light.
@@ -76,7 +76,7 @@ impl SharedDisplay {
 
     /// Width and height in pixels, once somebody has looked.
     pub fn size(&self) -> Option<[u32; 2]> {
-        self.lock().as_ref().map(|standing| standing.display.size())
+        self.lock().as_ref().map(|state| state.display.size())
     }
 
     /// Brings the display to a scene, unless it is past it, and lets `see` look at it.
@@ -103,19 +103,19 @@ impl SharedDisplay {
             *shown += 1;
         }
         let goes_on = latest.controls.remembers() && display.awaits(latest.version, latest.frame + 1);
-        see(DisplayLook { display, shown: *shown, goes_on })
+        see(DisplayLook { display, shown: *shown, is_animated: goes_on })
     }
 
     /// Gives back the room that the display keeps for pictures as large as those before.
     pub fn shrink(&self) {
-        if let Some(standing) = &mut *self.lock() {
-            standing.display.shrink();
+        if let Some(state) = &mut *self.lock() {
+            state.display.shrink();
         }
     }
 
     /// A thread that panicked with the lock leaves a display that can be shown again.
     fn lock(&self) -> MutexGuard<'_, Option<DisplayState>> {
-        self.standing.lock().unwrap_or_else(PoisonError::into_inner)
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -163,7 +163,7 @@ mod tests {
     fn other_pixels_have_another_number() {
         let screen = SharedDisplay::default();
         let mut plain = Scene { controls: Controls::default(), ..scene(0, 1, 0.0) };
-        let number = |scene: &Scene| screen.with_display(scene, Some([9, 9]), |seen| (seen.shown, seen.goes_on));
+        let number = |scene: &Scene| screen.with_display(scene, Some([9, 9]), |seen| (seen.shown, seen.is_animated));
         let first = number(&plain);
         assert!(!first.1);
         plain.frame = 7;

@@ -23,7 +23,7 @@ pub(super) struct Tile {
     /// Whether a slow component is seen.
     pub glowing: bool,
     /// Whether the exposed picture is other than black here.
-    pub seen: bool,
+    pub visible: bool,
 }
 
 /// Columns and rows of tiles of a picture.

@@ -29,7 +29,7 @@ pub(super) struct Track {
     /// u at the centre of the tile's first pixel.
     pub u: f32,
     /// Distance from there to the end.
-    pub rest: f32,
+    pub to_end: f32,
     /// v there.
     pub v: f32,
     /// Growth of u for one pixel to the right and one downwards: the direction over the spot.
@@ -89,7 +89,7 @@ impl Track {
         let color = |gun: usize| lesser(greater(stroke.color[gun], 0.0), super::STRONGEST);
         Some(Self {
             u: u as f32,
-            rest: (length - u) as f32,
+            to_end: (length - u) as f32,
             v: v as f32,
             step: [step[0] as f32, step[1] as f32],
             length: length as f32,
@@ -101,44 +101,44 @@ impl Track {
 
     /// Notes the pixels that light can reach.
     #[inline(always)]
-    pub fn find(&self, room: &mut Scratch) {
-        self.compute_rows(&mut room.rows);
-        room.count = self.list(&room.rows, &mut room.places);
+    pub fn find(&self, scratch: &mut Scratch) {
+        self.compute_rows(&mut scratch.rows);
+        scratch.count = self.list(&scratch.rows, &mut scratch.groups);
     }
 
     /// Adds the light to the planes of a tile, one, or three for red, green and blue, after [`Track::find`].
     #[inline(always)]
-    pub fn write(&self, room: &Scratch, planes: &mut [f32]) {
+    pub fn write(&self, scratch: &Scratch, planes: &mut [f32]) {
         let (planes, _) = planes.as_chunks_mut();
         if let [plane] = planes {
-            self.draw(room, std::array::from_mut(plane));
+            self.draw(scratch, std::array::from_mut(plane));
         } else if let Some(planes) = planes.first_chunk_mut::<3>() {
-            self.draw(room, planes);
+            self.draw(scratch, planes);
         }
     }
 
     #[inline(always)]
-    fn draw<const GUNS: usize>(&self, room: &Scratch, planes: &mut [[f32; PLANE]; GUNS]) {
+    fn draw<const GUNS: usize>(&self, scratch: &Scratch, planes: &mut [[f32; PLANE]; GUNS]) {
         match self.current {
-            Current::Point(terms) => self.fill(room, planes, Point { terms }),
-            Current::Both(current, 0.0) => self.fill(room, planes, EvenBetween { current }),
-            Current::Both(current, gain) => self.fill(room, planes, Between { current, gain }),
-            Current::Nearer(current, 0.0) => self.fill(room, planes, EvenLong { current }),
-            Current::Nearer(current, gain) => self.fill(room, planes, Long { current, gain }),
+            Current::Point(terms) => self.fill(scratch, planes, Point { terms }),
+            Current::Both(current, 0.0) => self.fill(scratch, planes, EvenBetween { current }),
+            Current::Both(current, gain) => self.fill(scratch, planes, Between { current, gain }),
+            Current::Nearer(current, 0.0) => self.fill(scratch, planes, EvenLong { current }),
+            Current::Nearer(current, gain) => self.fill(scratch, planes, Long { current, gain }),
         }
     }
 
     #[inline(always)]
     fn fill<const GUNS: usize>(
         &self,
-        Scratch { rows, places, count }: &Scratch,
+        Scratch { rows, groups: places, count }: &Scratch,
         planes: &mut [[f32; PLANE]; GUNS],
         profile: impl Profile,
     ) {
         let (together, _) = places[..count.next_multiple_of(TOGETHER)].as_chunks::<TOGETHER>();
-        for places in together {
+        for groups in together {
             let [mut u, mut rest, mut v] = [[[0.0; LANES]; TOGETHER]; 3];
-            for (eight, packed) in places.iter().enumerate() {
+            for (eight, packed) in groups.iter().enumerate() {
                 // The remainders change nothing and spare the checks of what follows.
                 let (y, column) = (usize::from(packed / ROW) % ROWS, usize::from(packed % ROW) % TILE_WIDTH);
                 let (row_u, row_rest, row_v) = (rows.u[y], rows.rest[y], rows.v[y]);
@@ -153,7 +153,7 @@ impl Track {
             for (light, ((u, rest), v)) in light.as_flattened_mut().iter_mut().zip(distances) {
                 *light = profile.light(*u, *rest, *v);
             }
-            for (packed, light) in places.iter().zip(&light) {
+            for (packed, light) in groups.iter().zip(&light) {
                 let (y, column) = (usize::from(packed / ROW) % TILE_HEIGHT, usize::from(packed % ROW) % TILE_WIDTH);
                 let place = y * STRIDE + column;
                 for (plane, color) in planes.iter_mut().zip(self.color) {
@@ -172,21 +172,21 @@ impl Track {
     ///
     /// A list, because the processor can foresee the way through it, and not where in each row the light ends.
     #[inline(always)]
-    fn list(&self, rows: &Rows, places: &mut [u16; MAX_GROUPS]) -> usize {
+    fn list(&self, rows: &Rows, groups: &mut [u16; MAX_GROUPS]) -> usize {
         let mut count = 0;
         let range = self.rows[0]..self.rows[1] + 1;
         for (first, eights) in rows.first[range.clone()].iter().zip(&rows.eights[range]) {
             // Two are noted always, and counted if they are there.
-            let Some([one, other]) = places[count..].first_chunk_mut() else { break };
+            let Some([one, other]) = groups[count..].first_chunk_mut() else { break };
             (*one, *other) = (*first as u16, *first as u16 + LANES as u16);
             let eights = *eights as usize;
             for eight in 2..eights {
-                places[count + eight] = *first as u16 + (eight * LANES) as u16;
+                groups[count + eight] = *first as u16 + (eight * LANES) as u16;
             }
             count += eights;
         }
         // What is missing in the last of those reckoned together lies where no light is.
-        if let Some(rest) = places[count..].first_chunk_mut::<{ TOGETHER - 1 }>() {
+        if let Some(rest) = groups[count..].first_chunk_mut::<{ TOGETHER - 1 }>() {
             *rest = [(ROWS as u16 - 1) * ROW; TOGETHER - 1];
         }
         count
@@ -217,7 +217,7 @@ impl Track {
                 firsts[lane] = y * i32::from(ROW) + begin;
                 counts[lane] = if eights > 0 { eights } else { 0 };
                 us[lane] = u;
-                rests[lane] = down.mul_add(-self.step[1], self.rest);
+                rests[lane] = down.mul_add(-self.step[1], self.to_end);
                 vs[lane] = v;
             }
             rows.first[top..top + BLOCK].copy_from_slice(&firsts);
@@ -243,7 +243,7 @@ const COLUMNS: [f32; STRIDE] = {
 /// What is noted of a stroke before it is written; what was noted before does not matter.
 pub(super) struct Scratch {
     rows: Rows,
-    places: [u16; MAX_GROUPS],
+    groups: [u16; MAX_GROUPS],
     /// How many of them count.
     count: usize,
 }
@@ -252,7 +252,7 @@ impl Scratch {
     /// Nothing noted.
     pub const fn new() -> Self {
         let rows = Rows { first: [0; ROWS], eights: [0; ROWS], u: [0.0; ROWS], rest: [0.0; ROWS], v: [ENDLESS; ROWS] };
-        Self { rows, places: [0; MAX_GROUPS], count: 0 }
+        Self { rows, groups: [0; MAX_GROUPS], count: 0 }
     }
 }
 

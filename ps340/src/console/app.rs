@@ -31,19 +31,19 @@ const VIEW_WIDTH: f32 = 460.0;
 /// The window.
 pub struct App {
     mirror: Arc<Mirror>,
-    orders: OperatorCommands,
+    commands: OperatorCommands,
     mapping: Mapping,
     vector: VectorScreen,
     raster: RasterScreen,
     /// Whether something was ever on the raster screen: then it comes into view by itself.
-    raster_seen: bool,
+    raster_visible: bool,
     split: Split,
     dials: DialPanel,
     pad: Pad,
     row: Row,
     views: Vec<Box<dyn View>>,
     choices: Choices,
-    guests: AttachedHosts,
+    hosts: AttachedHosts,
     /// Where hosts attach.
     lines: Arc<Mutex<Vec<String>>>,
     /// What draws the window, in words.
@@ -55,7 +55,7 @@ pub struct App {
 impl App {
     /// The window of a machine.
     pub(super) fn new(creation: &eframe::CreationContext<'_>, link: Link, appearance: Appearance) -> App {
-        let Link { mirror, orders, lines } = link;
+        let Link { mirror, operator_commands: orders, lines } = link;
         let context = &creation.egui_ctx;
         context.set_visuals(egui::Visuals::dark());
         if let Some(scale) = appearance.scale {
@@ -70,18 +70,18 @@ impl App {
         };
         tracing::info!("the window is drawn by {drawn_by}");
         App {
-            orders: OperatorCommands::new(orders),
+            commands: OperatorCommands::new(orders),
             vector: VectorScreen::new(context.clone(), mirror.screen().clone(), appearance.mapping.mouse()),
             mirror,
             raster: RasterScreen::default(),
-            raster_seen: false,
+            raster_visible: false,
             split: Split::default(),
             dials: DialPanel::default(),
             pad: Pad::new(context),
             row: Row::default(),
             views: views::all(appearance.mapping.mouse()),
             choices: Choices { raster: RasterPlacement::default(), devices: true, view: None, role: None },
-            guests: AttachedHosts::default(),
+            hosts: AttachedHosts::default(),
             lines,
             enlargement: appearance.scale.is_none().then_some(1.0),
             drawn_by,
@@ -108,13 +108,13 @@ impl App {
 
     /// What went wrong last, until somebody clicks it away.
     fn show_failure(&mut self, ui: &mut Ui) {
-        let Some(failure) = self.orders.failure.clone() else { return };
+        let Some(failure) = self.commands.failure.clone() else { return };
         Panel::bottom("failure").show(ui, |ui| {
             ui.horizontal(|ui| {
                 let is_read = ui.small_button("\u{d7}").on_hover_text("away with it").clicked();
                 ui.add(egui::Label::new(RichText::new(failure).color(Color32::from_rgb(255, 120, 100))).truncate());
                 if is_read {
-                    self.orders.failure = None;
+                    self.commands.failure = None;
                 }
             });
         });
@@ -133,7 +133,7 @@ impl App {
         };
         let lines = self.lines.lock().unwrap_or_else(PoisonError::into_inner).clone();
         ui.scope_builder(UiBuilder::new().max_rect(vector), |ui| {
-            let App { vector, mapping, dials, orders, guests, .. } = self;
+            let App { vector, mapping, dials, commands: orders, hosts: guests, .. } = self;
             let screen = vector.show(ui, shown, mapping, orders, (role == MouseRole::Dials).then_some(dials));
             welcome::show(ui, screen, shown, guests, &lines, orders);
         });
@@ -166,16 +166,16 @@ impl App {
 
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
-        self.orders.take_replies();
+        self.commands.take_replies();
         self.enlarge(ui.ctx());
         let shown = self.mirror.shown();
-        if !self.raster_seen && !shown.raster.is_blank() {
-            self.raster_seen = true;
+        if !self.raster_visible && !shown.raster.is_blank() {
+            self.raster_visible = true;
             if self.choices.raster == RasterPlacement::Hidden {
                 self.choices.raster = RasterPlacement::Beside;
             }
         }
-        self.guests.note(&shown);
+        self.hosts.note(&shown);
         if shown.hosts.is_empty() {
             // How long ago the last one left is told.
             ui.ctx().request_repaint_after(Duration::from_secs(1));
@@ -185,12 +185,12 @@ impl eframe::App for App {
         let drawn_by =
             format!("the window is drawn by {}, the vector screen by {}", self.drawn_by, self.mirror.screen().drawer());
         Panel::top("bar").show(ui, |ui| {
-            let App { guests, choices, views, orders, .. } = self;
-            Bar { shown: &shown, guests, views, role, drawn_by: &drawn_by }.show(ui, choices, orders);
+            let App { hosts: guests, choices, views, commands: orders, .. } = self;
+            Bar { shown: &shown, hosts: guests, views, role, drawn_by: &drawn_by }.show(ui, choices, orders);
         });
         if self.choices.devices {
             Panel::bottom("devices").show(ui, |ui| {
-                devices::show(ui, &shown.panel, &mut self.dials, &mut self.row, &mut self.orders);
+                devices::show(ui, &shown.panel, &mut self.dials, &mut self.row, &mut self.commands);
             });
         }
         self.show_failure(ui);
@@ -198,7 +198,7 @@ impl eframe::App for App {
         if let Some(view) = self.choices.view.and_then(|index| self.views.get_mut(index)) {
             let (usual, most) = (VIEW_WIDTH.min(width * 0.45), width * 0.7);
             Panel::right("view").resizable(true).default_size(usual).max_size(most).show(ui, |ui| {
-                view.show(ui, &shown, &mut self.orders);
+                view.show(ui, &shown, &mut self.commands);
             });
         }
         self.request_views();
@@ -208,7 +208,7 @@ impl eframe::App for App {
             self.show_raster_window(ui, &shown);
         }
         let seconds = f64::from(ui.input(|input| input.stable_dt));
-        self.pad.act(seconds, &self.mapping, &mut self.dials, &mut self.orders, ui.ctx());
-        self.dials.give(&mut self.orders);
+        self.pad.act(seconds, &self.mapping, &mut self.dials, &mut self.commands, ui.ctx());
+        self.dials.give(&mut self.commands);
     }
 }

@@ -32,7 +32,7 @@ pub struct Bar<'a> {
     /// What is to be seen of the machine.
     pub shown: &'a MirrorFrame,
     /// Who is attached.
-    pub guests: &'a AttachedHosts,
+    pub hosts: &'a AttachedHosts,
     /// What can be opened beside the screens.
     pub views: &'a [Box<dyn View>],
     /// What the mouse does over the vector screen.
@@ -47,10 +47,10 @@ impl Bar<'_> {
         let is_wide = ui.available_width() >= WIDE;
         ui.horizontal(|ui| {
             ui.label(RichText::new("PS 340").strong()).on_hover_text(self.drawn_by);
-            let (state, ink) = self.guests.state(self.shown.micros);
+            let (state, ink) = self.hosts.state(self.shown.micros);
             let (light, _) = ui.allocate_exact_size(vec2(9.0, 9.0), Sense::hover());
             ui.painter().circle_filled(light.center(), 4.0, ink);
-            let state = ui.label(RichText::new(state).color(ink)).on_hover_text(self.guests.names());
+            let state = ui.label(RichText::new(state).color(ink)).on_hover_text(self.hosts.names());
             places::note(ui, "hosts", state.rect.center());
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 show_help(ui, choices, self.views);

@@ -30,7 +30,7 @@ pub struct DialPanel {
     /// What is turned but was not ordered yet.
     pending: [f64; 8],
     /// Where the mouse was when the dial that it holds was turned last.
-    grip: Option<(u8, Pos2)>,
+    drag: Option<(u8, Pos2)>,
 }
 
 impl DialPanel {
@@ -103,11 +103,11 @@ impl DialPanel {
                 Event::PointerButton { pos, button: PointerButton::Primary, pressed, .. } => (*pos, *pressed),
                 _ => continue,
             };
-            if let Some((dial, from)) = self.grip {
+            if let Some((dial, from)) = self.drag {
                 turned.push((dial, f64::from((at.x - from.x) - (at.y - from.y)) / POINTS_PER_TURN));
-                self.grip = is_down.then_some((dial, at));
+                self.drag = is_down.then_some((dial, at));
             } else if is_down && matches!(event, Event::PointerButton { .. }) {
-                self.grip = (1..).zip(knobs).find(|(_, knob)| knob.contains(at)).map(|(dial, _)| (dial, at));
+                self.drag = (1..).zip(knobs).find(|(_, knob)| knob.contains(at)).map(|(dial, _)| (dial, at));
             }
         }
         turned

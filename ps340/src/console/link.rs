@@ -12,7 +12,7 @@ pub(super) struct Link {
     /// What is to be seen of the machine.
     pub(super) mirror: Arc<Mirror>,
     /// Where orders go.
-    pub(super) orders: mpsc::Sender<OperatorLine>,
+    pub(super) operator_commands: mpsc::Sender<OperatorLine>,
     /// Where hosts attach, as soon as that is known.
     pub(super) lines: Arc<Mutex<Vec<String>>>,
 }

@@ -20,7 +20,7 @@ struct HeldModifiers {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Chord {
     key: Key,
-    held: HeldModifiers,
+    modifiers: HeldModifiers,
 }
 
 /// A dial, and by how many turns it is turned.
@@ -156,7 +156,7 @@ impl Mapping {
 
     /// The order of a key.
     pub fn key(&self, key: Key, held: Modifiers) -> Option<&str> {
-        self.keys.get(&Chord { key, held: held.into() }).map(String::as_str)
+        self.keys.get(&Chord { key, modifiers: held.into() }).map(String::as_str)
     }
 
     /// What the mouse does.
@@ -258,7 +258,7 @@ impl HeldModifiers {
 impl Chord {
     fn named(name: &str) -> Option<Chord> {
         let (held, rest) = HeldModifiers::before(name);
-        Some(Chord { key: Key::from_name(rest)?, held })
+        Some(Chord { key: Key::from_name(rest)?, modifiers: held })
     }
 }
 

@@ -79,14 +79,14 @@ impl Pad {
         seconds: f64,
         mapping: &Mapping,
         dials: &mut DialPanel,
-        orders: &mut OperatorCommands,
+        commands: &mut OperatorCommands,
         context: &egui::Context,
     ) {
         for event in self.events.try_iter() {
             match event {
                 PadEvent::Press(button) => {
                     if let Some(order) = mapping.button(button) {
-                        orders.give(order);
+                        commands.give(order);
                     }
                 }
                 PadEvent::Move(axis, place) if place.abs() > DEAD => drop(self.axes.insert(axis, place)),

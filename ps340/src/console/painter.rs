@@ -23,7 +23,7 @@ impl DrawRequest {
 /// What the two threads share.
 #[derive(Default)]
 struct PainterState {
-    wanted: Option<DrawRequest>,
+    request: Option<DrawRequest>,
     painted: Option<Arc<ColorImage>>,
     /// Whether what is seen depends on what was seen before.
     remembers: bool,
@@ -32,8 +32,8 @@ struct PainterState {
 
 /// Draws what was wanted last, as often as it can.
 pub struct Painter {
-    easel: Arc<(Mutex<PainterState>, Condvar)>,
-    asked: Option<DrawRequest>,
+    state: Arc<(Mutex<PainterState>, Condvar)>,
+    last_request: Option<DrawRequest>,
 }
 
 impl Painter {
@@ -42,33 +42,33 @@ impl Painter {
         let easel = Arc::new((Mutex::new(PainterState::default()), Condvar::new()));
         let shared = easel.clone();
         std::thread::spawn(move || paint(&shared, &context, &screen));
-        Painter { easel, asked: None }
+        Painter { state: easel, last_request: None }
     }
 
     /// Says what is to be seen. A picture that is drawn already, or being drawn, is not drawn again.
     pub fn want(&mut self, wanted: DrawRequest) {
-        let same = self.asked.as_ref().is_some_and(|asked| asked.is(&wanted));
+        let same = self.last_request.as_ref().is_some_and(|asked| asked.is(&wanted));
         // A display that remembers goes along with every frame.
-        let goes_on = lock(&self.easel.0).remembers
-            && self.asked.as_ref().is_none_or(|asked| asked.scene.frame != wanted.scene.frame);
+        let goes_on = lock(&self.state.0).remembers
+            && self.last_request.as_ref().is_none_or(|asked| asked.scene.frame != wanted.scene.frame);
         if same && !goes_on {
             return;
         }
-        self.asked = Some(wanted.clone());
-        let (easel, changed) = &*self.easel;
-        lock(easel).wanted = Some(wanted);
+        self.last_request = Some(wanted.clone());
+        let (easel, changed) = &*self.state;
+        lock(easel).request = Some(wanted);
         changed.notify_one();
     }
 
     /// The latest picture, if it was not taken before.
     pub fn take(&self) -> Option<Arc<ColorImage>> {
-        lock(&self.easel.0).painted.take()
+        lock(&self.state.0).painted.take()
     }
 }
 
 impl Drop for Painter {
     fn drop(&mut self) {
-        let (easel, changed) = &*self.easel;
+        let (easel, changed) = &*self.state;
         lock(easel).closed = true;
         changed.notify_one();
     }
@@ -83,7 +83,7 @@ fn paint((easel, changed): &(Mutex<PainterState>, Condvar), context: &egui::Cont
             if guard.closed {
                 return;
             }
-            if let Some(wanted) = guard.wanted.take() {
+            if let Some(wanted) = guard.request.take() {
                 break wanted;
             }
             guard = changed.wait(guard).unwrap_or_else(|poisoned| poisoned.into_inner());
@@ -93,7 +93,7 @@ fn paint((easel, changed): &(Mutex<PainterState>, Condvar), context: &egui::Cont
             let is_new = latest.replace(seen.shown) != Some(seen.shown);
             let size = seen.display.size().map(|pixels| pixels as usize);
             let image = || Arc::new(ColorImage::from_rgba_unmultiplied(size, seen.display.frame()));
-            (is_new.then(image), seen.goes_on)
+            (is_new.then(image), seen.is_animated)
         });
         let again = remembers || image.is_some();
         let mut guard = lock(easel);

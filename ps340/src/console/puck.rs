@@ -19,7 +19,7 @@ pub struct Puck {
     /// Steps of the wheel that are not whole yet.
     wheel: f32,
     /// Where it is, if it is on the tablet.
-    place: Option<[f32; 2]>,
+    position: Option<[f32; 2]>,
     /// The codes of the buttons that are down.
     pressed: u8,
     /// Whether it lies where the mouse leaves it.
@@ -49,14 +49,14 @@ impl Puck {
 
     /// Takes it off the tablet.
     pub fn take_off(&mut self, orders: &mut OperatorCommands) {
-        if self.place.take().is_some() {
+        if self.position.take().is_some() {
             orders.give("puck away");
         }
     }
 
     /// Where it is, -1..=1, if it is on the tablet.
     pub fn position(&self) -> Option<[f32; 2]> {
-        self.place
+        self.position
     }
 
     /// Sum of the codes of the buttons that are down.
@@ -86,7 +86,7 @@ impl Puck {
                         self.go(Some(*pos), area, &mut orders);
                     }
                 }
-                Event::MouseWheel { unit, delta, .. } if self.place.is_some() => {
+                Event::MouseWheel { unit, delta, .. } if self.position.is_some() => {
                     let steps = if *unit == MouseWheelUnit::Point { delta.y / POINTS_PER_STEP } else { delta.y };
                     self.roll(steps, &mut orders);
                 }
@@ -100,11 +100,11 @@ impl Puck {
         let is_drawing = self.pressed != 0;
         let place = match at {
             Some(at) if is_drawing || area.contains(at) => Some(position_in(at, area)),
-            _ if is_drawing || self.stays => self.place,
+            _ if is_drawing || self.stays => self.position,
             _ => None,
         };
-        if place != self.place {
-            self.place = place;
+        if place != self.position {
+            self.position = place;
             orders.push(match place {
                 Some([x, y]) => format!("puck move {x} {y}"),
                 None => "puck away".into(),

@@ -48,7 +48,7 @@ impl VectorScreen {
         ui: &mut Ui,
         shown: &MirrorFrame,
         mapping: &Mapping,
-        orders: &mut OperatorCommands,
+        commands: &mut OperatorCommands,
         dials: Option<&mut DialPanel>,
     ) -> Rect {
         let side = ui.available_size().min_elem().max(1.0);
@@ -64,16 +64,16 @@ impl VectorScreen {
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "vector screen"));
         places::note(ui, "vector screen", area.center());
         places::note(ui, "vector screen's corner", area.right_top());
-        self.keyboard(ui, &response, mapping, orders);
+        self.keyboard(ui, &response, mapping, commands);
         match dials {
             Some(dials) => {
-                self.puck.take_off(orders);
+                self.puck.take_off(commands);
                 self.steering.follow(ui, &response, mapping.mouse(), dials);
                 if !self.steering.is_known() && response.hovered() && !shown.scene.strokes.is_empty() {
                     hint(ui, area);
                 }
             }
-            None => self.puck.follow(ui, &response, orders),
+            None => self.puck.follow(ui, &response, commands),
         }
         area
     }

@@ -12,7 +12,7 @@ const ZOOM_PER_STEP: f64 = 1.1;
 #[derive(Debug, Default)]
 pub struct Steering {
     /// The button that is down since it was pressed over the screen, what is held beside it, and where the mouse was last.
-    grip: Option<(PointerButton, Modifiers, Pos2)>,
+    drag: Option<(PointerButton, Modifiers, Pos2)>,
     /// Whether it was ever used.
     is_known: bool,
 }
@@ -43,12 +43,12 @@ impl Steering {
             match event {
                 Event::PointerMoved(at) => self.go(*at, area, mouse, &mut turned),
                 Event::PointerButton { pos, button, pressed: true, modifiers } => {
-                    let is_here = is_over && area.contains(*pos) && self.grip.is_none();
-                    self.grip = if is_here { Some((*button, *modifiers, *pos)) } else { self.grip };
+                    let is_here = is_over && area.contains(*pos) && self.drag.is_none();
+                    self.drag = if is_here { Some((*button, *modifiers, *pos)) } else { self.drag };
                 }
                 Event::PointerButton { pos, button, pressed: false, .. } => {
                     self.go(*pos, area, mouse, &mut turned);
-                    self.grip = self.grip.filter(|(held, ..)| held != button);
+                    self.drag = self.drag.filter(|(held, ..)| held != button);
                 }
                 Event::MouseWheel { unit, delta, .. } if is_over => {
                     let steps = if *unit == MouseWheelUnit::Point { delta.y / POINTS_PER_STEP } else { delta.y };
@@ -64,7 +64,7 @@ impl Steering {
     }
 
     fn go(&mut self, at: Pos2, area: Rect, mouse: &Mouse, turned: &mut Vec<(u8, f64)>) {
-        if let Some((button, held, from)) = &mut self.grip {
+        if let Some((button, held, from)) = &mut self.drag {
             let way = [at.x - from.x, from.y - at.y].map(|points| f64::from(points / area.width()));
             *from = at;
             turned.extend(mouse.dragged(*button, *held, way));

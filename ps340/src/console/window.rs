@@ -39,7 +39,7 @@ pub fn open(options: &Options, appearance: Appearance, ready: impl FnMut(&str) +
         tell(text);
     };
     let (sender, orders) = mpsc::channel();
-    let window = Window { mirror: mirror.clone(), orders };
+    let window = Window { mirror: mirror.clone(), operator_lines: orders };
     let (opened, opening) = mpsc::channel();
     std::thread::scope(|scope| {
         let closing = context.clone();
@@ -53,7 +53,7 @@ pub fn open(options: &Options, appearance: Appearance, ready: impl FnMut(&str) +
             }
             end
         });
-        let shown = show(context, Link { mirror, orders: sender, lines }, appearance, opened);
+        let shown = show(context, Link { mirror, operator_commands: sender, lines }, appearance, opened);
         // The other end of the orders is gone: the machine ends if it has not yet.
         let end = machine.join().unwrap_or_else(|_| Err(io::Error::other("the machine's thread failed")));
         shown?;

@@ -349,13 +349,13 @@ fn add_in_place(message: &mut Value, constant: &Value, _: QueuePosition) -> bool
     real_in_place(message, constant, |m, c| m + c)
 }
 
-fn subtract_in_place(message: &mut Value, constant: &Value, order: QueuePosition) -> bool {
-    real_in_place(message, constant, |m, c| if order == QueuePosition::MessageFirst { m - c } else { c - m })
+fn subtract_in_place(message: &mut Value, constant: &Value, queue_position: QueuePosition) -> bool {
+    real_in_place(message, constant, |m, c| if queue_position == QueuePosition::MessageFirst { m - c } else { c - m })
 }
 
-fn multiply_in_place(message: &mut Value, constant: &Value, order: QueuePosition) -> bool {
+fn multiply_in_place(message: &mut Value, constant: &Value, queue_position: QueuePosition) -> bool {
     if let (Value::Matrix4(message), Value::Matrix4(constant)) = (&mut *message, constant) {
-        let product = match order {
+        let product = match queue_position {
             QueuePosition::MessageFirst => matrix_product(message, constant),
             QueuePosition::ConstantFirst => matrix_product(constant, message),
         };

@@ -115,7 +115,7 @@ fn pick(f: &mut Firing) -> Result<(), Problem> {
 
 fn take_apart(f: &mut Firing) -> Result<(), Problem> {
     let Value::Pick(pick) = f.take(1) else { return Err(Problem::Kind(1)) };
-    let PickList { index, identifiers, node, type_code, place } = *pick;
+    let PickList { index, identifiers, node, type_code, coordinates: place } = *pick;
     let depth = usize::try_from(f.integer(2)?).map_err(|_| Problem::Range(2))?;
     let (near, far) = identifiers.split_at(depth.min(identifiers.len()));
     f.emit(1, Value::Integer(index.try_into().unwrap_or(i32::MAX)))?;

@@ -12,7 +12,7 @@ pub type Behaviour = fn(&mut Firing) -> Result<(), Problem>;
 /// What a behaviour with two inputs and one result does with the commonest values, worked out where the message lies.
 ///
 /// Returns false, and changes nothing, if the values are others or the result is not finite.
-pub type InPlace = fn(message: &mut Value, constant: &Value, order: QueuePosition) -> bool;
+pub type InPlace = fn(message: &mut Value, constant: &Value, position: QueuePosition) -> bool;
 
 /// Which of two inputs is the queue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -49,8 +49,8 @@ impl Capture {
     }
 
     /// Writes down that the operator did something now.
-    pub fn record_operator_command(&self, order: &str) {
-        self.record(LineId(0), Event::OperatorCommand(order.into()));
+    pub fn record_operator_command(&self, command: &str) {
+        self.record(LineId(0), Event::OperatorCommand(command.into()));
     }
 
     /// Writes down what happened on a line now.

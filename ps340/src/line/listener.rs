@@ -92,16 +92,16 @@ impl Listener {
     ///
     /// # Errors
     /// Those of the system, e.g. the address is in use.
-    pub async fn bind(address: &Address, visitors: AllowedPeers) -> io::Result<Listener> {
+    pub async fn bind(address: &Address, allowed: AllowedPeers) -> io::Result<Listener> {
         match address {
             Address::Tcp(at) => Ok(Listener::Tcp(TcpListener::bind(at.as_str()).await?)),
             Address::Unix(path) => {
                 let bound = bind_unix(path).await?;
                 let file = SocketFile::new(path);
-                if visitors == AllowedPeers::Owner {
+                if allowed == AllowedPeers::Owner {
                     std::fs::set_permissions(path, Permissions::from_mode(0o600))?;
                 }
-                Ok(Listener::Unix(bound, file, visitors))
+                Ok(Listener::Unix(bound, file, allowed))
             }
         }
     }

@@ -25,14 +25,14 @@ const MAX_REJECTIONS: usize = 64;
 /// What is known of a visitor who is there, shared by those who serve them and those who want the place.
 #[derive(Debug, Default)]
 pub(super) struct Presence {
-    has_spoken: AtomicBool,
+    has_sent: AtomicBool,
     leave: Notify,
 }
 
 impl Presence {
     /// The visitor has said something that counts: nobody takes the place.
     pub(super) fn note_sent(&self) {
-        self.has_spoken.store(true, Ordering::Relaxed);
+        self.has_sent.store(true, Ordering::Relaxed);
     }
 
     /// Waits until the place is wanted by somebody else.
@@ -52,11 +52,11 @@ pub(super) struct ConnectionSlot {
 #[derive(Debug)]
 pub(super) struct ConnectionSlots {
     free: Arc<Semaphore>,
-    farewells: Arc<Semaphore>,
+    rejections: Arc<Semaphore>,
     /// What one who is turned away reads.
     full: Arc<str>,
     /// Who came, the first first; some have gone.
-    visitors: VecDeque<Weak<Presence>>,
+    peers: VecDeque<Weak<Presence>>,
 }
 
 impl ConnectionSlots {
@@ -64,7 +64,7 @@ impl ConnectionSlots {
     /// - `full`: what one more reads.
     pub(super) fn new(count: usize, full: &str) -> ConnectionSlots {
         let farewells = Arc::new(Semaphore::new(MAX_REJECTIONS));
-        ConnectionSlots { free: Arc::new(Semaphore::new(count)), farewells, full: full.into(), visitors: VecDeque::new() }
+        ConnectionSlots { free: Arc::new(Semaphore::new(count)), rejections: farewells, full: full.into(), peers: VecDeque::new() }
     }
 
     /// Lets a newcomer in, if there is a place; else tells them why not, and closes the connection.
@@ -73,7 +73,7 @@ impl ConnectionSlots {
             return Some((stream, place));
         }
         tracing::warn!("{peer} was turned away: {}", self.full.trim_end());
-        if let Ok(farewell) = self.farewells.clone().try_acquire_owned() {
+        if let Ok(farewell) = self.rejections.clone().try_acquire_owned() {
             tokio::spawn(reject(stream, self.full.clone(), farewell));
         }
         None
@@ -81,18 +81,18 @@ impl ConnectionSlots {
 
     /// A place for a newcomer, if need be that of the visitor who has been silent for longest. None if all have spoken.
     async fn take(&mut self) -> Option<ConnectionSlot> {
-        self.visitors.retain(|visitor| visitor.strong_count() > 0);
+        self.peers.retain(|visitor| visitor.strong_count() > 0);
         let taken = match self.free.clone().try_acquire_owned() {
             Ok(taken) => taken,
             Err(_) => {
-                let silent = |visitor: &Arc<Presence>| !visitor.has_spoken.load(Ordering::Relaxed);
-                let visitor = self.visitors.iter().filter_map(Weak::upgrade).find(silent)?;
+                let silent = |visitor: &Arc<Presence>| !visitor.has_sent.load(Ordering::Relaxed);
+                let visitor = self.peers.iter().filter_map(Weak::upgrade).find(silent)?;
                 visitor.leave.notify_one();
                 timeout(LEAVING_TIME, self.free.clone().acquire_owned()).await.ok()?.ok()?
             }
         };
         let presence = Arc::<Presence>::default();
-        self.visitors.push_back(Arc::downgrade(&presence));
+        self.peers.push_back(Arc::downgrade(&presence));
         Some(ConnectionSlot { presence, _taken: taken })
     }
 }

@@ -49,7 +49,7 @@ impl HostEndpoint {
     /// # Errors
     /// Those of the system, e.g. the address is in use, or the file does not exist.
     pub async fn open(address: &LineAddress) -> io::Result<HostEndpoint> {
-        let kind = match &address.place {
+        let kind = match &address.endpoint {
             Endpoint::Socket(at) => Kind::Sockets(Listener::bind(at, AllowedPeers::All).await?, Interface::Stream),
             Endpoint::Parallel(at) => {
                 let listener = Listener::bind(&Address::Tcp(at.clone()), AllowedPeers::All).await?;
@@ -82,7 +82,7 @@ impl HostEndpoint {
             Kind::Stdio => Endpoint::Stdio,
             Kind::File { path, timed, .. } => Endpoint::File { path: path.clone(), timed: *timed },
         };
-        Ok(LineAddress { place, conditions: self.conditions })
+        Ok(LineAddress { endpoint: place, conditions: self.conditions })
     }
 
     /// Whether other computers may reach it.

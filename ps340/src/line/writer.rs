@@ -22,7 +22,7 @@ pub struct Writer {
 pub(super) struct OutputQueue {
     shared: Arc<Shared>,
     /// Memory of the block that was given out last: it counts until the next is asked for.
-    given: usize,
+    lent_bytes: usize,
 }
 
 #[derive(Debug, Default)]
@@ -50,7 +50,7 @@ impl Writer {
     /// A way to a host, and its other end.
     pub(super) fn new() -> (Writer, OutputQueue) {
         let shared = Arc::<Shared>::default();
-        (Writer { shared: shared.clone() }, OutputQueue { shared, given: 0 })
+        (Writer { shared: shared.clone() }, OutputQueue { shared, lent_bytes: 0 })
     }
 
     /// Lets bytes wait for the host; returns false if they are dropped, because the host does not read.
@@ -100,9 +100,9 @@ impl OutputQueue {
         loop {
             {
                 let mut blocks = self.shared.lock();
-                blocks.memory -= std::mem::take(&mut self.given);
+                blocks.memory -= std::mem::take(&mut self.lent_bytes);
                 if let Some(block) = blocks.blocks.pop_front() {
-                    self.given = block.capacity() + size_of::<Vec<u8>>();
+                    self.lent_bytes = block.capacity() + size_of::<Vec<u8>>();
                     return Some(block);
                 }
                 if blocks.closed {

@@ -221,7 +221,7 @@ impl<'p> Flow<'p> {
             let text =
                 format!("{}<{}> sends {sent}, but {}{} takes {accepted}", arc.source, arc.output, arc.input, arc.to);
             findings.clashes.insert(format!("{}{}", arc.input, arc.to));
-            findings.notes.push(Note { place: arc.place, level: Level::Error, text });
+            findings.notes.push(Note { location: arc.location, level: Level::Error, text });
         }
     }
 
@@ -229,7 +229,7 @@ impl<'p> Flow<'p> {
     fn functions(&self, findings: &mut Findings) {
         for (name, instance) in &self.instances {
             let Some(definition) = self.program.definitions.get(*name) else { continue };
-            let mut note = |level, text| findings.notes.push(Note { place: definition.place, level, text });
+            let mut note = |level, text| findings.notes.push(Note { location: definition.location, level, text });
             match &instance.trials {
                 None => {
                     if let Some(text) = self.why_silent(name, instance) {
@@ -274,7 +274,7 @@ impl<'p> Flow<'p> {
                  SEND gives it; {hint}",
                 row.name
             );
-            findings.notes.push(Note { place: definition.place, level: Level::Warning, text });
+            findings.notes.push(Note { location: definition.location, level: Level::Warning, text });
         }
     }
 

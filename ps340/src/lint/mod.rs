@@ -60,7 +60,7 @@ impl std::fmt::Display for Finding {
 /// A finding before its place is looked up.
 #[derive(Clone, Debug)]
 struct Note {
-    place: source::Location,
+    location: source::Location,
     level: Level,
     text: String,
 }

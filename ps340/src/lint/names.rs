@@ -21,14 +21,14 @@ pub(super) fn check(
         let meant = nearest(function.as_str(), functions::all().map(|row| row.name));
         let hint = meant.map_or("'ps340 functions' lists them".into(), |meant| format!("did you mean F:{meant}?"));
         notes.push(Note {
-            place: *place,
+            location: *place,
             level: Level::Error,
             text: format!("there is no function F:{function}; {hint}"),
         });
     }
     for (name, place, before) in &program.again {
         let text = format!("{name} is defined again, it was defined {}", line_of(*before));
-        notes.push(Note { place: *place, level: Level::Warning, text });
+        notes.push(Note { location: *place, level: Level::Warning, text });
     }
     let objects = &machine.memory().objects;
     let is_system = |name: &Name| objects.find(name.as_str()).is_some_and(|id| objects.is_system(id));
@@ -40,7 +40,7 @@ pub(super) fn check(
         let hint =
             meant(program, machine, &used.name).map_or(String::new(), |meant| format!("; did you mean {meant}?"));
         let text = format!("{} is used by {} and never defined{hint}", used.name, used.by);
-        notes.push(Note { place: used.place, level: Level::Error, text });
+        notes.push(Note { location: used.location, level: Level::Error, text });
     }
     notes
 }

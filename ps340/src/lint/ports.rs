@@ -22,16 +22,16 @@ pub(super) fn check(program: &Program, machine: &Machine) -> Vec<Note> {
 
 fn source(arc: &Arc, program: &Program, machine: &Machine) -> Option<Note> {
     let name = program.target(&arc.source);
-    let (row, outputs) = match program.definitions.get(name).map(|d| &d.what) {
+    let (row, outputs) = match program.definitions.get(name).map(|d| &d.kind) {
         Some(DefinitionKind::Function(function)) => (function.row, function.shape.outputs),
         Some(DefinitionKind::Structure) => {
             let text = format!("{name} is a structure; it sends no messages");
-            return Some(Note { place: arc.place, level: Level::Error, text });
+            return Some(Note { location: arc.location, level: Level::Error, text });
         }
         Some(DefinitionKind::Node) => {
             let node = node(name, machine).filter(|node| !node.has_output())?;
             let text = format!("{name} is a {}; it sends no messages", node.word());
-            return Some(Note { place: arc.place, level: Level::Error, text });
+            return Some(Note { location: arc.location, level: Level::Error, text });
         }
         Some(_) => return None,
         None => system(name, machine).map(|row| (row, row.outputs.len() as u16))?,
@@ -45,12 +45,12 @@ fn source(arc: &Arc, program: &Program, machine: &Machine) -> Option<Note> {
         arc.output,
         numbered("output", outputs)
     );
-    Some(Note { place: arc.place, level: Level::Error, text })
+    Some(Note { location: arc.location, level: Level::Error, text })
 }
 
 fn destination(arc: &Arc, program: &Program, machine: &Machine) -> Option<Note> {
     let name = program.target(&arc.to);
-    let error = |text| Some(Note { place: arc.to_place, level: Level::Error, text });
+    let error = |text| Some(Note { location: arc.to_location, level: Level::Error, text });
     let no_input = |row: &FunctionRow, inputs: u16| {
         let exists = matches!(arc.input, Input::Number(n) if (1..=u32::from(inputs)).contains(&n));
         if exists {
@@ -63,7 +63,7 @@ fn destination(arc: &Arc, program: &Program, machine: &Machine) -> Option<Note> 
             numbered("input", inputs)
         ))
     };
-    match program.definitions.get(name).map(|d| &d.what) {
+    match program.definitions.get(name).map(|d| &d.kind) {
         Some(DefinitionKind::Function(function)) => no_input(function.row, function.shape.inputs),
         Some(DefinitionKind::Structure) => error(format!("{name} takes no messages{}", inside(program, name))),
         Some(DefinitionKind::Node) => match accepted(arc, program, machine)? {
@@ -88,7 +88,7 @@ pub(super) fn accepted(arc: &Arc, program: &Program, machine: &Machine) -> Optio
         Input::Number(n) => u16::try_from(n).ok(),
         _ => None,
     };
-    match program.definitions.get(name).map(|d| &d.what) {
+    match program.definitions.get(name).map(|d| &d.kind) {
         Some(DefinitionKind::Function(function)) => function.row.input(function.shape, input?).map(|spec| spec.kinds),
         Some(DefinitionKind::Node) => Some(node(name, machine)?.takes(arc.input).unwrap_or(KindSet::NONE)),
         Some(_) => None,
@@ -119,7 +119,7 @@ fn numbered(what: &str, count: u16) -> String {
 /// A hint which nodes of a structure may be meant.
 fn inside(program: &Program, name: &Name) -> String {
     let prefix = format!("{name}.");
-    let nodes = program.definitions.iter().filter(|(n, d)| n.as_str().starts_with(&prefix) && d.what == DefinitionKind::Node);
+    let nodes = program.definitions.iter().filter(|(n, d)| n.as_str().starts_with(&prefix) && d.kind == DefinitionKind::Node);
     let nodes: Vec<String> = nodes.take(NAMED).map(|(n, _)| n.to_string()).collect();
     if nodes.is_empty() {
         "; name a node inside it".into()

@@ -34,8 +34,8 @@ pub(super) struct Program {
 /// What a name stands for.
 #[derive(Clone, Debug)]
 pub(super) struct Definition {
-    pub(super) place: Location,
-    pub(super) what: DefinitionKind,
+    pub(super) location: Location,
+    pub(super) kind: DefinitionKind,
 }
 
 /// Kinds of definition.
@@ -75,7 +75,7 @@ pub(super) struct Use {
     pub(super) scope: Option<Name>,
     /// By what: `INSTANCE OF`.
     pub(super) by: &'static str,
-    pub(super) place: Location,
+    pub(super) location: Location,
 }
 
 /// A connection.
@@ -85,9 +85,9 @@ pub(super) struct Arc {
     pub(super) output: u16,
     pub(super) to: Name,
     pub(super) input: Input,
-    pub(super) place: Location,
+    pub(super) location: Location,
     /// Of the destination.
-    pub(super) to_place: Location,
+    pub(super) to_location: Location,
 }
 
 /// A message that a command sends.
@@ -103,12 +103,12 @@ impl Program {
     /// Takes a command in.
     ///
     /// - `text`: the command as it stands in the file, and where that begins.
-    pub(super) fn add(&mut self, command: &Command, text: &[u8], place: Location) {
-        let at = |offset: usize| Location { at: place.at + offset, ..place };
+    pub(super) fn add(&mut self, command: &Command, text: &[u8], location: Location) {
+        let at = |offset: usize| Location { at: location.at + offset, ..location };
         let first = |name: &Name| at(first_offset(text, name.as_str()));
         let last = |name: &Name| at(last_offset(text, name.as_str()));
         match command {
-            Command::Define { name, object } => self.define(name.as_ref(), object, text, place),
+            Command::Define { name, object } => self.define(name.as_ref(), object, text, location),
             Command::EndStructure => {
                 self.open.pop();
             }
@@ -116,24 +116,24 @@ impl Program {
             Command::Include { name, into } => {
                 self.used(name, "INCLUDE", first(name));
                 let what = DefinitionKind::Structure;
-                self.definitions.entry(into.clone()).or_insert(Definition { place: last(into), what });
+                self.definitions.entry(into.clone()).or_insert(Definition { location: last(into), kind: what });
             }
             Command::Prefix { name, operate } => {
                 self.used(name, "PREFIX", first(name));
-                self.operate(operate, text, place);
+                self.operate(operate, text, location);
             }
             Command::Follow { name, operate } => {
                 self.used(name, "FOLLOW", first(name));
-                self.operate(operate, text, place);
+                self.operate(operate, text, location);
             }
             Command::PatternWith { name, pattern } => {
                 self.used(name, "PATTERN", first(name));
                 self.used(pattern, "PATTERN WITH", last(pattern));
             }
-            Command::Connect(arc) => self.connect(&arc.source, arc.output, &arc.destination, text, place),
+            Command::Connect(arc) => self.connect(&arc.source, arc.output, &arc.destination, text, location),
             Command::ConnectSeveral { source, output, destinations } => {
                 for destination in destinations {
-                    self.connect(source, *output, destination, text, place);
+                    self.connect(source, *output, destination, text, location);
                 }
             }
             Command::Send { value, destination } => {
@@ -154,7 +154,7 @@ impl Program {
             }
             Command::Variable(names) => {
                 for name in names {
-                    self.set(name.clone(), Definition { place: first(name), what: DefinitionKind::Node });
+                    self.set(name.clone(), Definition { location: first(name), kind: DefinitionKind::Node });
                 }
             }
             _ => {}
@@ -162,12 +162,12 @@ impl Program {
     }
 
     /// Takes in a statement that cannot be read: what it would define is not held against those who use it.
-    pub(super) fn fail(&mut self, text: &[u8], place: Location) {
+    pub(super) fn fail(&mut self, text: &[u8], location: Location) {
         let mut lexer = Lexer::new(text, 0);
         let (first, second) = (lexer.token(), lexer.token());
         let name = (second.kind == TokenKind::Assign).then(|| Name::new(&text[first.span()]).ok()).flatten();
         if let Some(full) = name.and_then(|name| self.full(&name)) {
-            self.definitions.entry(full).or_insert(Definition { place, what: DefinitionKind::NoFunction });
+            self.definitions.entry(full).or_insert(Definition { location, kind: DefinitionKind::NoFunction });
         }
     }
 
@@ -186,7 +186,7 @@ impl Program {
         let mut name = name;
         // A circle of names has no end.
         for _ in 0..self.definitions.len() {
-            match self.definitions.get(name).map(|d| &d.what) {
+            match self.definitions.get(name).map(|d| &d.kind) {
                 Some(DefinitionKind::Alias(next)) => name = next,
                 _ => break,
             }
@@ -196,7 +196,7 @@ impl Program {
 
     /// The function of a name, if the files define one.
     pub(super) fn function(&self, name: &Name) -> Option<&Function> {
-        match self.definitions.get(name).map(|d| &d.what) {
+        match self.definitions.get(name).map(|d| &d.kind) {
             Some(DefinitionKind::Function(function)) => Some(function),
             _ => None,
         }
@@ -204,19 +204,19 @@ impl Program {
 
     /// Whether a name is that of a function that could not be made.
     pub(super) fn is_undefined(&self, name: &str) -> bool {
-        self.definitions.get(name).is_some_and(|definition| definition.what == DefinitionKind::NoFunction)
+        self.definitions.get(name).is_some_and(|definition| definition.kind == DefinitionKind::NoFunction)
     }
 
-    fn define(&mut self, name: Option<&Name>, object: &Object, text: &[u8], place: Location) {
-        let at = |offset: usize| Location { at: place.at + offset, ..place };
+    fn define(&mut self, name: Option<&Name>, object: &Object, text: &[u8], location: Location) {
+        let at = |offset: usize| Location { at: location.at + offset, ..location };
         let last = |name: &Name| at(last_offset(text, name.as_str()));
         let what = match object {
             Object::BeginStructure => {
                 let outer = self.open.last().map(|(path, _)| path.clone());
                 let path = name.and_then(|n| self.full(n)).or(outer);
-                self.open.extend(path.map(|path| (path, place)));
+                self.open.extend(path.map(|path| (path, location)));
                 if let (Some(_), Some((path, _))) = (name, self.open.last().cloned()) {
-                    self.set(path, Definition { place, what: DefinitionKind::Structure });
+                    self.set(path, Definition { location, kind: DefinitionKind::Structure });
                 }
                 return;
             }
@@ -225,7 +225,7 @@ impl Program {
                 DefinitionKind::Structure
             }
             Object::Operate { operate, applied_to } => {
-                self.operate(operate, text, place);
+                self.operate(operate, text, location);
                 if let Some(below) = applied_to {
                     self.used(below, "APPLIED TO", last(below));
                 }
@@ -252,32 +252,32 @@ impl Program {
                 self.arcs.retain(|arc| arc.source != *name);
                 self.sends.retain(|sent| sent.to != *name);
                 self.set_up.retain(|(to, _)| to != name);
-                return self.set(name.clone(), Definition { place, what });
+                return self.set(name.clone(), Definition { location, kind: what });
             }
             _ => DefinitionKind::Node,
         };
         if let Some(full) = name.and_then(|n| self.full(n)) {
-            self.set(full, Definition { place, what });
+            self.set(full, Definition { location, kind: what });
         }
     }
 
-    fn function_of(&mut self, function: &Name, size: Option<u16>, place: Location) -> DefinitionKind {
+    fn function_of(&mut self, function: &Name, size: Option<u16>, location: Location) -> DefinitionKind {
         let Some(row) = functions::find(function.as_str()) else {
-            self.no_functions.push((function.clone(), place));
+            self.no_functions.push((function.clone(), location));
             return DefinitionKind::NoFunction;
         };
         // A wrong size is what the machine says itself.
         row.shape(size).map_or(DefinitionKind::NoFunction, |shape| DefinitionKind::Function(Function { row, size, shape }))
     }
 
-    fn operate(&mut self, operate: &Operate, text: &[u8], place: Location) {
+    fn operate(&mut self, operate: &Operate, text: &[u8], location: Location) {
         if let Some(name) = Operation::named_in(operate) {
-            self.used(name, operate.kind().name(), Location { at: place.at + last_offset(text, name.as_str()), ..place });
+            self.used(name, operate.kind().name(), Location { at: location.at + last_offset(text, name.as_str()), ..location });
         }
     }
 
-    fn connect(&mut self, source: &Name, output: u16, destination: &Destination, text: &[u8], place: Location) {
-        let at = |offset: usize| Location { at: place.at + offset, ..place };
+    fn connect(&mut self, source: &Name, output: u16, destination: &Destination, text: &[u8], location: Location) {
+        let at = |offset: usize| Location { at: location.at + offset, ..location };
         let to_place = at(last_offset(text, destination.name.as_str()));
         let from_place = at(first_offset(text, source.as_str()));
         self.used(source, "CONNECT", from_place);
@@ -287,21 +287,21 @@ impl Program {
             output,
             to: destination.name.clone(),
             input: destination.input,
-            place: from_place,
-            to_place,
+            location: from_place,
+            to_location: to_place,
         });
     }
 
-    fn sent(&mut self, destination: &Destination, value: Option<Value>, place: Location) {
-        self.used(&destination.name, "SEND", place);
+    fn sent(&mut self, destination: &Destination, value: Option<Value>, location: Location) {
+        self.used(&destination.name, "SEND", location);
         self.sends.push(SentMessage { to: destination.name.clone(), input: destination.input, value });
     }
 
-    fn used(&mut self, name: &Name, by: &'static str, place: Location) {
+    fn used(&mut self, name: &Name, by: &'static str, location: Location) {
         // Commands about messages use full names also while a structure is open.
         let messages = matches!(by, "SEND" | "CONNECT" | "SEND VALUE" | "SEND VL" | "SETUP CNESS");
         let scope = self.open.last().filter(|_| !messages).map(|(path, _)| path.clone());
-        self.uses.push(Use { name: name.clone(), scope, by, place });
+        self.uses.push(Use { name: name.clone(), scope, by, location });
     }
 
     fn full(&self, name: &Name) -> Option<Name> {
@@ -312,9 +312,9 @@ impl Program {
     }
 
     fn set(&mut self, name: Name, definition: Definition) {
-        let place = definition.place;
+        let place = definition.location;
         if let Some(before) = self.definitions.insert(name.clone(), definition) {
-            self.again.push((name, place, before.place));
+            self.again.push((name, place, before.location));
         }
     }
 }

@@ -25,9 +25,9 @@ pub fn lint(files: &[(String, Vec<u8>)]) -> Vec<Finding> {
     let mut reading = Reading {
         sources: &sources,
         machine: machine(),
-        said: 0,
+        message_count: 0,
         program: Program::default(),
-        said_by: Vec::new(),
+        messages: Vec::new(),
         latest: None,
         notes: Vec::new(),
     };
@@ -36,11 +36,11 @@ pub fn lint(files: &[(String, Vec<u8>)]) -> Vec<Finding> {
     }
     reading.end_of_program();
     let mut notes = reading.notes;
-    notes.sort_by_key(|note| (note.place, note.level));
-    notes.dedup_by(|a, b| a.place == b.place && a.text == b.text);
+    notes.sort_by_key(|note| (note.location, note.level));
+    notes.dedup_by(|a, b| a.location == b.location && a.text == b.text);
     let finding = |note: Note| {
-        let source = &sources[note.place.file];
-        let (line, column) = source.line_and_column(note.place.at);
+        let source = &sources[note.location.file];
+        let (line, column) = source.line_and_column(note.location.at);
         Finding { file: source.name.clone(), line, column, level: note.level, text: note.text }
     };
     notes.into_iter().map(finding).collect()
@@ -57,10 +57,10 @@ struct Reading<'s> {
     /// Carries every command out.
     machine: Machine,
     /// Messages that it has said.
-    said: u64,
+    message_count: u64,
     program: Program,
     /// What the machine said to the commands of this program.
-    said_by: Vec<MachineMessage>,
+    messages: Vec<MachineMessage>,
     /// The command that was read last.
     latest: Option<Location>,
     notes: Vec<Note>,
@@ -68,7 +68,7 @@ struct Reading<'s> {
 
 /// A message of the machine.
 struct MachineMessage {
-    place: Location,
+    location: Location,
     text: String,
     /// Whether the command is a CONNECT or a definition, about which more is known at the end.
     known: bool,
@@ -92,14 +92,14 @@ impl Reading<'_> {
                     for warning in &spanned.warnings {
                         self.note(Location { file, at: begin + warning.span.start }, Level::Warning, warning.message());
                     }
-                    let place = Location { file, at: begin + spanned.span.start };
-                    let text = &source.text[place.at..(begin + spanned.span.end).min(source.text.len())];
-                    self.command(&spanned.command, text, place);
+                    let location = Location { file, at: begin + spanned.span.start };
+                    let text = &source.text[location.at..(begin + spanned.span.end).min(source.text.len())];
+                    self.command(&spanned.command, text, location);
                 }
                 Err(error) => {
                     self.program.fail(reader.statement(), Location { file, at: begin });
-                    let place = Location { file, at: begin + error.span.start };
-                    self.note(place, Level::Error, error.message());
+                    let location = Location { file, at: begin + error.span.start };
+                    self.note(location, Level::Error, error.message());
                 }
             }
         }
@@ -116,12 +116,12 @@ impl Reading<'_> {
         }
     }
 
-    fn command(&mut self, command: &Command, text: &[u8], place: Location) {
+    fn command(&mut self, command: &Command, text: &[u8], location: Location) {
         if matches!(command, Command::Initialize(Initialize::All | Initialize::Names)) {
             self.end_of_program();
         }
-        self.latest = Some(place);
-        self.program.add(command, text, place);
+        self.latest = Some(location);
+        self.program.add(command, text, location);
         let known = match command {
             Command::Connect(_) | Command::ConnectSeveral { .. } => true,
             Command::Define { object: Object::Function { function, .. }, .. } => {
@@ -137,7 +137,7 @@ impl Reading<'_> {
             _ => None,
         };
         for text in self.send_command(command) {
-            self.said_by.push(MachineMessage { place, text, known, sent_to: sent_to.clone() });
+            self.messages.push(MachineMessage { location, text, known, sent_to: sent_to.clone() });
         }
     }
 
@@ -153,8 +153,8 @@ impl Reading<'_> {
     fn send_text(&mut self, text: Vec<u8>) -> Vec<String> {
         self.machine.step([Input::Bytes(LINE, text)], 0);
         let said = self.machine.counters().messages;
-        let new = usize::try_from(said - self.said).unwrap_or(usize::MAX);
-        self.said = said;
+        let new = usize::try_from(said - self.message_count).unwrap_or(usize::MAX);
+        self.message_count = said;
         let kept = self.machine.log().count();
         self.machine.log().skip(kept.saturating_sub(new)).map(str::to_owned).collect()
     }
@@ -165,20 +165,20 @@ impl Reading<'_> {
         self.machine.renew_picture();
         let shown = self.send_text(Vec::new());
         for text in shown.into_iter().filter(|text| text.starts_with('E')) {
-            if let Some(place) = self.latest {
-                self.note(place, Level::Error, format!("up to here, when it is displayed: {text}"));
+            if let Some(location) = self.latest {
+                self.note(location, Level::Error, format!("up to here, when it is displayed: {text}"));
             }
         }
         let program = std::mem::take(&mut self.program);
         let sources = self.sources;
-        let line_of = |place: Location| {
-            let source = &sources[place.file];
-            format!("at {}:{}", source.name, source.line_and_column(place.at).0)
+        let line_of = |location: Location| {
+            let source = &sources[location.file];
+            format!("at {}:{}", source.name, source.line_and_column(location.at).0)
         };
         let mut notes = names::check(&program, &self.machine, line_of);
         notes.extend(ports::check(&program, &self.machine));
         let flow = flow::check(&program, &self.machine);
-        for said in std::mem::take(&mut self.said_by) {
+        for said in std::mem::take(&mut self.messages) {
             let (text, _) = said.text.split_once("; did you mean ").unwrap_or((&said.text, ""));
             let undefined =
                 notes.iter().any(|note| note.text.contains("never defined") && text.ends_with(note_name(note)));
@@ -196,14 +196,14 @@ impl Reading<'_> {
                 [b'E', ..] => Level::Error,
                 _ => Level::Warning,
             };
-            notes.push(Note { place: said.place, level, text: readable(&said.text) });
+            notes.push(Note { location: said.location, level, text: readable(&said.text) });
         }
         notes.extend(flow.notes);
         self.notes.extend(notes);
     }
 
-    fn note(&mut self, place: Location, level: Level, text: String) {
-        self.notes.push(Note { place, level, text });
+    fn note(&mut self, location: Location, level: Level, text: String) {
+        self.notes.push(Note { location, level, text });
     }
 }
 

@@ -29,20 +29,20 @@ impl Machine {
             }
             Effect::RequestTransform { function, node, destination, first, count } => {
                 let request = TransformRequest { function, node, destination, first, count };
-                let room = self.drawn.waiting.add_transform(request);
+                let room = self.latest.pending.add_transform(request);
                 self.lose_without(room, function, "XFORMDATA");
             }
             Effect::RequestPick { function, at, coordinates, frames } => {
-                let room = self.drawn.waiting.add_pick(Pick { function, at, coordinates, frames });
+                let room = self.latest.pending.add_pick(Pick { function, at, coordinates, frames });
                 self.lose_without(room, function, "PICK");
             }
             Effect::ForgetRequests => {
-                self.drawn.waiting = PendingRequests::default();
+                self.latest.pending = PendingRequests::default();
                 self.renderings = Renderings::default();
                 // The identities of objects are given out again: trouble with a new object is no old trouble.
-                self.drawn.update.trouble = None;
+                self.latest.update.fault = None;
             }
-            Effect::RequestWriteBack { node } => self.drawn.waiting.add_write_back(node),
+            Effect::RequestWriteBack { node } => self.latest.pending.add_write_back(node),
             Effect::Fetch { function, name } => self.fetch(function, &name),
             Effect::ExtractLabel { function, name, index } => self.extract_label(function, name, index),
             Effect::SendTo { name, input, value } => match self.memory.target(&name) {

@@ -10,5 +10,5 @@ pub(super) struct LatestUpdate {
     /// Version of the structure that `update` shows; none before the first.
     pub(super) version: Option<u64>,
     /// What functions want of the next update.
-    pub(super) waiting: PendingRequests,
+    pub(super) pending: PendingRequests,
 }

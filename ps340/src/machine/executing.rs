@@ -35,7 +35,7 @@ impl Machine {
     pub(super) fn execute(&mut self, interpreter: &mut Interpreter, command: Command) {
         self.counters.commands += 1;
         let rested = self.network_idle;
-        self.memory.set_speaker(self.lines.speaking);
+        self.memory.set_speaker(self.lines.reporting_to);
         interpreter.execute(command, &mut self.memory, &mut self.reports.pending);
         self.memory.set_speaker(None);
         self.network_idle = false;
@@ -46,7 +46,7 @@ impl Machine {
     /// A message from an initial instance of the host line, or the one of the line that speaks, and what it causes.
     pub(super) fn emit_from_line(&mut self, instance: &str, value: Value) {
         let rested = self.network_idle;
-        self.memory.set_speaker(self.lines.speaking);
+        self.memory.set_speaker(self.lines.reporting_to);
         let object = self.memory.objects.find(instance).map(|id| self.memory.resolve(id));
         self.memory.set_speaker(None);
         if let Some(object) = object {
@@ -61,10 +61,10 @@ impl Machine {
     /// Lets the network work. What functions report while they work is told to the line that speaks only if the network
     /// had come to rest before: otherwise nobody knows whose doing it is.
     fn settle_after(&mut self, rested: bool) {
-        let speaking = self.lines.speaking.filter(|_| rested);
-        let speaking = std::mem::replace(&mut self.lines.speaking, speaking);
+        let speaking = self.lines.reporting_to.filter(|_| rested);
+        let speaking = std::mem::replace(&mut self.lines.reporting_to, speaking);
         self.settle();
-        self.lines.speaking = speaking;
+        self.lines.reporting_to = speaking;
     }
 }
 

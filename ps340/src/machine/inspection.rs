@@ -26,7 +26,7 @@ impl Machine {
 
     /// The latest update.
     pub fn latest_update(&self) -> &Update {
-        &self.drawn.update
+        &self.latest.update
     }
 
     /// The terminal emulator: its text, cursor and modes.
@@ -62,7 +62,7 @@ impl Machine {
             frame: self.frame,
             objects: self.memory.objects.len() as u64,
             bytes: self.memory.bytes() as u64,
-            vectors: self.drawn.update.vectors,
+            vectors: self.latest.update.vectors,
             refresh_micros: refresh.micros as u64,
             refresh_frames: refresh.frames,
             ..self.counters

@@ -72,7 +72,7 @@ impl Machine {
             reader = StreamReader::default();
         }
         // The commands that a function gives are nobody's, whoever caused them.
-        let speaking = self.lines.speaking.take();
+        let speaking = self.lines.reporting_to.take();
         self.streams.busy = true;
         let completed = match piece.stream {
             StreamKind::Text => self.interpret_text(&mut reader, &piece.bytes),
@@ -80,7 +80,7 @@ impl Machine {
             StreamKind::Raster => raster_records(&piece.bytes, self),
         };
         self.streams.busy = false;
-        self.lines.speaking = speaking;
+        self.lines.reporting_to = speaking;
         self.streams.interpreters.insert(piece.function, reader);
         self.reply(piece.function, 1, Value::Integer(i32::try_from(completed).unwrap_or(i32::MAX)));
         true

@@ -17,7 +17,7 @@ pub(super) struct Lines {
     /// How messages go to each host that sends a stream.
     pub(super) writers: BTreeMap<LineId, MessageWriter>,
     /// The line whose commands are carried out, if it asked for messages of its own.
-    pub(super) speaking: Option<LineId>,
+    pub(super) reporting_to: Option<LineId>,
 }
 
 impl Lines {
@@ -44,7 +44,7 @@ impl Lines {
     /// told.
     pub(super) fn report_to(&mut self, line: LineId) {
         let own = |writer: &MessageWriter| writer.form() == MessageForm::Own;
-        self.speaking = self.writers.get(&line).is_some_and(own).then_some(line);
+        self.reporting_to = self.writers.get(&line).is_some_and(own).then_some(line);
     }
 
     /// The lines with a writer that hear what an instance of the host line sends.

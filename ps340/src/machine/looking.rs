@@ -20,25 +20,25 @@ impl Machine {
     ///
     /// - `is_watched`: whether its other owner looks at it in every frame.
     pub fn share_screen(&mut self, screen: Arc<SharedDisplay>, is_watched: bool) {
-        self.sight.screen = screen;
-        self.sight.is_watched = is_watched;
+        self.vector_display.screen = screen;
+        self.vector_display.is_watched = is_watched;
     }
 
     /// The screen that shows the picture.
     pub fn screen(&self) -> &SharedDisplay {
-        &self.sight.screen
+        &self.vector_display.screen
     }
 
     /// Knobs, phosphor, and which screen is looked at.
     pub fn controls(&self) -> &Controls {
-        &self.sight.controls
+        &self.vector_display.controls
     }
 
     /// Sets them.
     pub fn set_controls(&mut self, controls: Controls) {
-        let other_screen = controls.screen != self.sight.controls.screen;
-        self.sight.controls = controls;
-        self.sight.settings += 1;
+        let other_screen = controls.screen != self.vector_display.controls.screen;
+        self.vector_display.controls = controls;
+        self.vector_display.settings += 1;
         if other_screen {
             self.tube.forget_overlay();
             self.update_overlay();
@@ -48,16 +48,16 @@ impl Machine {
     /// How long the beam needs for the picture, on all screens together: that of now, or the latest that was drawn.
     pub fn refresh(&self) -> Refresh {
         let key = self.picture_version();
-        if let Some((of, refresh)) = self.sight.refresh.get()
-            && (of == key || self.drawn.update.is_counted_only)
+        if let Some((of, refresh)) = self.vector_display.refresh.get()
+            && (of == key || self.latest.update.is_counted_only)
         {
             return refresh;
         }
         let tube = &self.tube;
-        let structure = if tube.graphics { self.drawn.update.strokes.as_slice() } else { &[] };
+        let structure = if tube.graphics { self.latest.update.strokes.as_slice() } else { &[] };
         let strokes = structure.iter().chain(self.overlay()).filter(|_| !tube.blanked);
         let refresh = Refresh::of(strokes);
-        self.sight.refresh.set(Some((key, refresh)));
+        self.vector_display.refresh.set(Some((key, refresh)));
         refresh
     }
 
@@ -67,20 +67,20 @@ impl Machine {
             overlay: self.tube.overlay_version(),
             graphics: self.tube.graphics,
             blanked: self.tube.blanked,
-            screen: self.sight.controls.screen,
+            screen: self.vector_display.controls.screen,
         }
     }
 
     /// What the vector screen is to show now.
     pub fn scene(&mut self) -> &Scene {
         let key = self.picture_version();
-        if self.sight.of != Some(key) {
+        if self.vector_display.of != Some(key) {
             let strokes = Arc::new(self.visible_strokes().into_owned());
-            self.sight.of = Some(key);
-            self.sight.scene.version += 1;
-            self.sight.scene.strokes = strokes;
+            self.vector_display.of = Some(key);
+            self.vector_display.scene.version += 1;
+            self.vector_display.scene.strokes = strokes;
         }
-        let VectorDisplay { scene, settings, controls, .. } = &mut self.sight;
+        let VectorDisplay { scene, settings, controls, .. } = &mut self.vector_display;
         (scene.frame, scene.settings, scene.controls) = (self.frame, *settings, *controls);
         scene
     }
@@ -100,15 +100,15 @@ impl Machine {
     pub fn vector_picture(&mut self, size: Option<[u32; 2]>) -> Picture {
         if !self.is_followed() {
             self.update_display();
-            if self.drawn.update.is_counted_only {
+            if self.latest.update.is_counted_only {
                 return self.large_picture(size);
             }
         }
         self.renew_picture();
-        let standing = self.sight.screen.size();
-        if let Some(size) = size.filter(|size| standing.is_some_and(|standing| standing != *size)) {
-            let drawer = self.sight.screen.drawer().clone();
-            let mut display = Display::drawn_by(drawer, self.sight.controls, size);
+        let current_size = self.vector_display.screen.size();
+        if let Some(size) = size.filter(|size| current_size.is_some_and(|standing| standing != *size)) {
+            let drawer = self.vector_display.screen.drawer().clone();
+            let mut display = Display::drawn_by(drawer, self.vector_display.controls, size);
             display.show(&self.visible_strokes(), 0, self.frame);
             return display.picture();
         }
@@ -117,7 +117,7 @@ impl Machine {
 
     /// A picture of so many vectors that their strokes are written as they are made, and not kept.
     fn large_picture(&self, size: Option<[u32; 2]>) -> Picture {
-        let VectorDisplay { screen, controls, .. } = &self.sight;
+        let VectorDisplay { screen, controls, .. } = &self.vector_display;
         let size = size.or(screen.size()).unwrap_or(DISPLAY_SIZE);
         let mut display = Display::drawn_by(screen.drawer().clone(), *controls, size);
         display.show_parts(|take| {
@@ -133,33 +133,33 @@ impl Machine {
 
     /// Whether each frame is looked at: by a window, or since the display glows on or flickers.
     pub(super) fn is_followed(&self) -> bool {
-        self.sight.is_watched || self.sight.controls.remembers()
+        self.vector_display.is_watched || self.vector_display.controls.remembers()
     }
 
     /// Lets nothing refer to strokes of before, and gives the room of them back.
     pub(super) fn shrink_display(&mut self) {
-        match self.sight.screen.size() {
+        match self.vector_display.screen.size() {
             Some(_) => self.with_display(None, |_| ()),
             None => drop(self.scene()),
         }
-        self.sight.screen.shrink();
+        self.vector_display.screen.shrink();
     }
 
     /// How many strokes the latest scene has.
     #[cfg(test)]
     pub(super) fn display_strokes(&self) -> usize {
-        self.sight.scene.strokes.len()
+        self.vector_display.scene.strokes.len()
     }
 
     /// Looks at the display with the scene of now.
     fn with_display<T>(&mut self, size: Option<[u32; 2]>, see: impl FnOnce(&Display) -> T) -> T {
         self.scene();
-        self.sight.screen.with_display(&self.sight.scene, size, |seen| see(seen.display))
+        self.vector_display.screen.with_display(&self.vector_display.scene, size, |seen| see(seen.display))
     }
 
     /// Lets a display that remembers go along with the frame.
     pub(super) fn follow_frame(&mut self) {
-        if self.sight.controls.remembers() && !self.sight.is_watched {
+        if self.vector_display.controls.remembers() && !self.vector_display.is_watched {
             self.with_display(None, |_| ());
         }
     }

@@ -30,10 +30,10 @@ impl Machine {
         match (*blanked, *graphics) {
             (true, _) => Cow::Borrowed(&[]),
             (false, false) => Cow::Borrowed(overlay),
-            (false, true) if overlay.is_empty() && self.drawn.update.scopes.is_empty() => {
-                Cow::Borrowed(&self.drawn.update.strokes)
+            (false, true) if overlay.is_empty() && self.latest.update.scopes.is_empty() => {
+                Cow::Borrowed(&self.latest.update.strokes)
             }
-            (false, true) => self.drawn.update.on_screen(self.controls().screen).chain(overlay).copied().collect(),
+            (false, true) => self.latest.update.on_screen(self.controls().screen).chain(overlay).copied().collect(),
         }
     }
 
@@ -68,7 +68,7 @@ impl Machine {
             self.update_cursor();
         }
         let screen = self.controls().screen;
-        let Tube { words, cursor, overlay, overlay_version, .. } = &mut self.tube;
+        let Tube { text_strokes: words, cursor, overlay, overlay_version, .. } = &mut self.tube;
         overlay.clear();
         overlay.extend(words.strokes.iter().chain(cursor.on_screen(screen)));
         *overlay_version += 1;
@@ -76,7 +76,7 @@ impl Machine {
 
     fn update_words(&mut self) {
         let key = self.words_key();
-        let TextStrokes { strokes, blinking } = &mut self.tube.words;
+        let TextStrokes { strokes, blinking } = &mut self.tube.text_strokes;
         *strokes = text_line(MESSAGE_ROW, self.panel.message(), self.terminal.ink());
         *blinking = key.terminal.is_some() && self.terminal.blinks();
         if let Some((_, cursor)) = key.terminal {
@@ -84,29 +84,29 @@ impl Machine {
         }
         self.tube.message = self.panel.message().to_vec();
         // Whether something blinks may just have changed, and with it whether it is lit: then the next frame draws it.
-        self.tube.words_of = Some(key);
+        self.tube.text_key = Some(key);
     }
 
     fn update_cursor(&mut self) {
         let key = self.cursor_key();
-        let before = self.tube.cursor.trouble;
-        self.tube.cursor_of = key;
+        let before = self.tube.cursor.fault;
+        self.tube.cursor_key = key;
         self.tube.cursor = match (key, self.memory.objects.find("CURSOR")) {
             (Some(key), Some(cursor)) => {
-                let [x, y] = key.place;
+                let [x, y] = key.position;
                 let ctm = DMat4::from_translation(DVec3::new(x, y, 0.0));
                 traversal::alone(&self.memory.structures, self.frame, cursor, State { ctm, ..State::default() })
             }
             _ => Update::default(),
         };
         // What was said of the cursor before is not said again.
-        if let Some(trouble) = self.tube.cursor.trouble.filter(|trouble| before != Some(*trouble)) {
+        if let Some(trouble) = self.tube.cursor.fault.filter(|trouble| before != Some(*trouble)) {
             self.report(Message::Update(trouble));
         }
     }
 
     fn words_are_current(&self) -> bool {
-        self.tube.words_of == Some(self.words_key()) && self.tube.message == self.panel.message()
+        self.tube.text_key == Some(self.words_key()) && self.tube.message == self.panel.message()
     }
 
     fn words_key(&self) -> TextKey {
@@ -114,7 +114,7 @@ impl Machine {
         let mark = self.keyboard.mode() != KeyboardMode::Interactive;
         TextKey {
             terminal: self.tube.text.then(|| (self.terminal.version(), mark)),
-            lit: !self.tube.words.blinking || (self.frame / BLINK_FRAMES).is_multiple_of(2),
+            lit: !self.tube.text_strokes.blinking || (self.frame / BLINK_FRAMES).is_multiple_of(2),
             ink: *self.terminal.ink(),
         }
     }
@@ -122,11 +122,11 @@ impl Machine {
     /// A cursor may also change by itself, at a rate.
     fn cursor_is_current(&self) -> bool {
         let stays = self.tube.cursor.next_change.is_none_or(|change| self.frame < change);
-        self.tube.cursor_of == self.cursor_key() && stays
+        self.tube.cursor_key == self.cursor_key() && stays
     }
 
     fn cursor_key(&self) -> Option<CursorKey> {
         let place = self.devices.pointer()?;
-        Some(CursorKey { structure: self.memory.structures.version(), place })
+        Some(CursorKey { structure: self.memory.structures.version(), position: place })
     }
 }

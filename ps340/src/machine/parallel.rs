@@ -269,9 +269,9 @@ fn done(command: CommandWord, out: &mut Vec<u8>) {
     write_word(command.word() | DONE, out);
 }
 
-fn fail(word: u16, trouble: ParallelError, out: &mut Vec<u8>) {
+fn fail(word: u16, error: ParallelError, out: &mut Vec<u8>) {
     write_word(word | ERROR, out);
-    write_word(trouble as u16, out);
+    write_word(error as u16, out);
 }
 
 #[cfg(test)]

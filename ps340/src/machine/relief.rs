@@ -44,7 +44,7 @@ mod tests {
             machine.renew_picture();
             machine.next_frame();
             let shown = machine.vector_frame([64, 64]).chunks_exact(4).any(|pixel| pixel[1] > 0);
-            (machine.was_relieved(), shown, machine.drawn.update.strokes.capacity(), machine.display_strokes())
+            (machine.was_relieved(), shown, machine.latest.update.strokes.capacity(), machine.display_strokes())
         };
         let vectors = "-1,0 1,0 ".repeat(200_000);
         let (relieved, shown, room, seen) = tell(&format!("A := VECTOR_LIST {vectors}; DISPLAY A;"));

@@ -23,7 +23,7 @@ pub(super) struct Reports {
     /// for these.
     reported: u64,
     emitted: u64,
-    unheard: u64,
+    unreported: u64,
 }
 
 impl Reports {
@@ -55,14 +55,14 @@ impl Reports {
     /// Whether one more reaches ERROR, WARNING or INFORMATION, which it counts.
     pub(super) fn admits_one(&mut self) -> bool {
         let heard = self.emitted < REPORTS_PER_FRAME;
-        *if heard { &mut self.emitted } else { &mut self.unheard } += 1;
+        *if heard { &mut self.emitted } else { &mut self.unreported } += 1;
         heard
     }
 
     /// Begins another frame: how many messages were too many for the log of the process since the latest, and how many
     /// reached neither ERROR nor WARNING.
     pub(super) fn begin_frame(&mut self) -> (u64, u64) {
-        let [reported, unheard] = [&mut self.reported, &mut self.unheard].map(std::mem::take);
+        let [reported, unheard] = [&mut self.reported, &mut self.unreported].map(std::mem::take);
         self.emitted = 0;
         (reported.saturating_sub(LOGGED_PER_FRAME), unheard)
     }

@@ -80,7 +80,7 @@ impl Machine {
         if self.reports.log_text(&text) {
             self.show_message(&text);
         }
-        if let Some(line) = self.lines.speaking {
+        if let Some(line) = self.lines.reporting_to {
             let mut bytes = Vec::new();
             let written = self.lines.writers.get(&line).map(|writer| writer.write_report(&text, &mut bytes));
             if written.is_some_and(|written| written.is_ok()) {

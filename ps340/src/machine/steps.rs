@@ -85,13 +85,13 @@ impl Machine {
     pub fn is_idle(&self) -> bool {
         self.network_rests()
             && self.devices.is_quiet()
-            && self.drawn.version == Some(self.memory.structures.version())
+            && self.latest.version == Some(self.memory.structures.version())
             && self.overlay_is_current()
     }
 
     /// Whether no function is ready to fire.
     pub fn network_rests(&self) -> bool {
-        self.network_idle && self.drawn.waiting.is_empty() && self.renderings.are_done() && self.streams.are_empty()
+        self.network_idle && self.latest.pending.is_empty() && self.renderings.are_done() && self.streams.are_empty()
     }
 
     /// Makes the picture of now, with all its strokes.
@@ -131,7 +131,7 @@ impl Machine {
             self.lines.parallels.insert(line, parallel);
             self.answer(line, answer);
         }
-        self.lines.speaking = None;
+        self.lines.reporting_to = None;
     }
 
     /// Does something with every host on the parallel interface, and sends what it answers.
@@ -159,7 +159,7 @@ impl Machine {
         if let Some(open) = host.or(parallel) {
             self.report(Message::Structure(format!("the line closed while {open} was open")));
         }
-        self.lines.speaking = None;
+        self.lines.reporting_to = None;
         self.lines.writers.remove(&line);
         self.memory.close_line(line);
     }
@@ -212,28 +212,28 @@ impl Machine {
         self.devices = Devices::default();
         self.panel = Panel::default();
         self.frame_buffer = FrameBuffer::default();
-        self.drawn = LatestUpdate::default();
+        self.latest = LatestUpdate::default();
         self.renderings = Renderings::default();
         self.streams = Streams::default();
         self.keyboard = Keyboard::default();
         self.terminal = Terminal::default();
         self.tube = self.tube.restarted();
-        self.watch = Monitor::default();
+        self.monitor = Monitor::default();
         self.switch_keyboard(self.settings.keyboard);
         self.reports.push(Message::Information("the machine was started again".into()));
     }
 
     /// Gives back the room of what has gone, if that is much.
     fn relieve(&mut self) {
-        if self.relief.is_needed(self.memory.bytes() + size_of_val(self.drawn.update.strokes.as_slice())) {
+        if self.memory_release.is_needed(self.memory.bytes() + size_of_val(self.latest.update.strokes.as_slice())) {
             self.memory.shrink();
-            self.drawn.update.strokes.shrink_to_fit();
+            self.latest.update.strokes.shrink_to_fit();
             self.shrink_display();
         }
     }
 
     /// Whether much memory was freed since this was asked last, so that the process may give it back to the system.
     pub fn was_relieved(&mut self) -> bool {
-        self.relief.take_due()
+        self.memory_release.take_due()
     }
 }

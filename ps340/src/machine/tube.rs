@@ -14,11 +14,11 @@ pub(super) struct Tube {
     pub(super) text: bool,
     /// Whether nothing is seen, since nobody is there.
     pub(super) blanked: bool,
-    pub(super) words: TextStrokes,
-    pub(super) words_of: Option<TextKey>,
+    pub(super) text_strokes: TextStrokes,
+    pub(super) text_key: Option<TextKey>,
     pub(super) message: Vec<u8>,
     pub(super) cursor: Update,
-    pub(super) cursor_of: Option<CursorKey>,
+    pub(super) cursor_key: Option<CursorKey>,
     /// The strokes of words and cursor.
     pub(super) overlay: Vec<Stroke>,
     /// Changes with them.
@@ -46,7 +46,7 @@ pub(super) struct TextKey {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct CursorKey {
     pub(super) structure: u64,
-    pub(super) place: [f64; 2],
+    pub(super) position: [f64; 2],
 }
 
 impl Default for Tube {
@@ -55,11 +55,11 @@ impl Default for Tube {
             graphics: true,
             text: true,
             blanked: false,
-            words: TextStrokes::default(),
-            words_of: None,
+            text_strokes: TextStrokes::default(),
+            text_key: None,
             message: Vec::new(),
             cursor: Update::default(),
-            cursor_of: None,
+            cursor_key: None,
             overlay: Vec::new(),
             overlay_version: 0,
         }
@@ -79,7 +79,7 @@ impl Tube {
 
     /// Lets the strokes over the picture be made anew.
     pub(super) fn forget_overlay(&mut self) {
-        self.words_of = None;
-        self.cursor_of = None;
+        self.text_key = None;
+        self.cursor_key = None;
     }
 }

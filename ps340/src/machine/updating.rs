@@ -32,7 +32,7 @@ impl Machine {
     /// A picture that stands still costs nothing. One of many vectors is drawn when somebody looks; till then its vectors
     /// are counted, so that frames pass and orders are answered in time.
     pub(super) fn update_picture(&mut self) {
-        let is_looked_at = self.is_followed() || self.drawn.waiting.need_strokes();
+        let is_looked_at = self.is_followed() || self.latest.pending.need_strokes();
         self.update_picture_of(if is_looked_at { MAX_STORED_VECTORS } else { ALWAYS_DRAWN });
     }
 
@@ -53,12 +53,12 @@ impl Machine {
             self.report(Message::Range { of, text: format!("the pattern is given up: {fault}") });
         }
         let version = self.memory.structures.version();
-        let stays = self.drawn.update.next_change.is_none_or(|change| self.frame < change);
-        let is_there = !self.drawn.update.is_counted_only || most < MAX_STORED_VECTORS;
-        if self.drawn.version == Some(version) && self.drawn.waiting.is_empty() && stays && is_there {
+        let stays = self.latest.update.next_change.is_none_or(|change| self.frame < change);
+        let is_there = !self.latest.update.is_counted_only || most < MAX_STORED_VECTORS;
+        if self.latest.version == Some(version) && self.latest.pending.is_empty() && stays && is_there {
             return;
         }
-        let waiting = std::mem::take(&mut self.drawn.waiting);
+        let waiting = std::mem::take(&mut self.latest.pending);
         let find = |name: &Name| self.memory.target(name);
         let mut picks = waiting.picks.into_iter();
         let mut pick = picks.next();
@@ -67,7 +67,7 @@ impl Machine {
             write_back: waiting.write_backs.iter().copied().flatten().collect(),
             pick: pick.as_ref().map(|pick| self.pick_request(pick)),
         };
-        let room = std::mem::take(&mut self.drawn.update.strokes);
+        let room = std::mem::take(&mut self.latest.update.strokes);
         let update = traversal::update_into(&self.memory.structures, self.frame, &requests, room, most);
         self.counters.updates += 1;
         if !update.is_counted_only {
@@ -90,18 +90,18 @@ impl Machine {
             let picked = update.picked;
             self.answer_pick(pick, picked.as_ref());
         }
-        self.drawn.update = update;
-        self.drawn.version = Some(version);
+        self.latest.update = update;
+        self.latest.version = Some(version);
     }
 
     /// Reports what an update left out, unless it was said of the update before.
     fn report_fault(&mut self, update: &Update) {
-        match update.trouble.filter(|trouble| self.drawn.update.trouble != Some(*trouble)) {
+        match update.fault.filter(|fault| self.latest.update.fault != Some(*fault)) {
             Some(UpdateFault::ContainsItself(id)) => {
                 let name = self.memory.title(id);
                 self.report(Message::Structure(format!("{name} contains itself; it is drawn once")));
             }
-            Some(trouble) => self.report(Message::Update(trouble)),
+            Some(fault) => self.report(Message::Update(fault)),
             None => {}
         }
     }
@@ -162,7 +162,7 @@ impl Machine {
         }
         let Some(hit) = hit else {
             if pick.frames > 1 {
-                self.drawn.waiting.add_pick(Pick { frames: pick.frames - 1, ..pick });
+                self.latest.pending.add_pick(Pick { frames: pick.frames - 1, ..pick });
             } else {
                 self.memory.network.emit(pick.function, 2, Value::Boolean(false), &mut self.memory.effects);
             }
@@ -173,7 +173,7 @@ impl Machine {
             identifiers: hit.identifiers.clone(),
             node: hit.node.and_then(|id| Name::new(self.memory.objects.name(id)).ok()),
             type_code: hit.kind.code(),
-            place: hit.place,
+            coordinates: hit.coordinates,
         };
         self.memory.network.emit(pick.function, 1, Value::Pick(Box::new(list)), &mut self.memory.effects);
     }

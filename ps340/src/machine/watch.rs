@@ -19,8 +19,8 @@ impl Monitor {
     ///
     /// - `place`: which of the alarms.
     /// - `percent`: of the memory that is in use.
-    pub(super) fn alarms(&mut self, place: usize, percent: f64, limit: f64) -> bool {
-        let alerted = &mut self.alerted[place];
+    pub(super) fn alarms(&mut self, alarm: usize, percent: f64, limit: f64) -> bool {
+        let alerted = &mut self.alerted[alarm];
         if percent < limit - HYSTERESIS || alerted.is_some_and(|before| before != limit) {
             *alerted = None;
         }

@@ -17,7 +17,7 @@ impl Machine {
 
     /// Somebody does something: the screen saver waits again.
     pub(super) fn activity(&mut self) {
-        self.watch.note_activity(self.frame);
+        self.monitor.note_activity(self.frame);
         self.tube.blanked = false;
     }
 
@@ -26,13 +26,13 @@ impl Machine {
         let percent = self.memory.bytes() as f64 / MASS_MEMORY as f64 * 100.0;
         for (place, name) in ALERTS.into_iter().enumerate() {
             let Some(limit) = self.constant(name, 1) else { continue };
-            if self.watch.alarms(place, percent, limit) {
+            if self.monitor.alarms(place, percent, limit) {
                 let text = Value::string(self.memory_line());
                 self.emit(vec![(name, 1, text)]);
             }
         }
         let minutes = self.constant("SCREENSAVE", 2).unwrap_or(0.0);
-        let idle = self.watch.idle_minutes(self.frame);
+        let idle = self.monitor.idle_minutes(self.frame);
         self.tube.blanked |= minutes > 0.0 && idle >= minutes;
     }
 

@@ -19,20 +19,20 @@ pub struct Destination {
 #[derive(Debug, Default)]
 pub(super) struct OutputArcs {
     first: Option<Destination>,
-    more: Vec<Destination>,
+    others: Vec<Destination>,
 }
 
 impl OutputArcs {
     /// How many arcs leave the output.
     #[inline]
     pub(super) fn len(&self) -> usize {
-        usize::from(self.first.is_some()) + self.more.len()
+        usize::from(self.first.is_some()) + self.others.len()
     }
 
     /// The only arc, if there is exactly one.
     #[inline]
     pub(super) fn sole(&self) -> Option<Destination> {
-        self.first.filter(|_| self.more.is_empty())
+        self.first.filter(|_| self.others.is_empty())
     }
 
     /// Arc `index`, from 0.
@@ -40,13 +40,13 @@ impl OutputArcs {
     pub(super) fn get(&self, index: usize) -> Option<Destination> {
         match index {
             0 => self.first,
-            _ => self.more.get(index - 1).copied(),
+            _ => self.others.get(index - 1).copied(),
         }
     }
 
     /// The arcs.
     pub(super) fn iter(&self) -> impl Iterator<Item = Destination> {
-        self.first.into_iter().chain(self.more.iter().copied())
+        self.first.into_iter().chain(self.others.iter().copied())
     }
 
     /// Adds an arc; one that exists stays as it is.
@@ -60,19 +60,19 @@ impl OutputArcs {
             self.first = Some(to);
             return true;
         }
-        if self.more.len() + 1 >= MAX_ARCS {
+        if self.others.len() + 1 >= MAX_ARCS {
             return false;
         }
-        self.more.push(to);
+        self.others.push(to);
         true
     }
 
     /// Keeps the arcs for which `keep` is true.
     pub(super) fn retain(&mut self, mut keep: impl FnMut(Destination) -> bool) {
         self.first = self.first.filter(|&arc| keep(arc));
-        self.more.retain(|&arc| keep(arc));
-        if self.first.is_none() && !self.more.is_empty() {
-            self.first = Some(self.more.remove(0));
+        self.others.retain(|&arc| keep(arc));
+        if self.first.is_none() && !self.others.is_empty() {
+            self.first = Some(self.others.remove(0));
         }
     }
 }

@@ -258,7 +258,7 @@ impl Network {
     /// Notes in a function where the only arc from output 1 ends, after its arcs have changed.
     pub(super) fn note_sole_arc(&mut self, id: ObjectId) {
         if let Some(instance) = self.instances.get_mut(id.index()) {
-            instance.sole = self.outputs.get(instance.outputs).first().and_then(OutputArcs::sole);
+            instance.only_arc = self.outputs.get(instance.outputs).first().and_then(OutputArcs::sole);
         }
     }
 

@@ -43,7 +43,7 @@ impl Network {
         while fired < budget && matches!(end, End::LongWay) {
             let Some(object) = ready.first() else { break };
             let Some(source) = instances.get(object.index()) else { break };
-            let (Some(order), Some(arc), Some(row)) = (source.in_place, source.sole, source.row) else { break };
+            let (Some(order), Some(arc), Some(row)) = (source.in_place, source.only_arc, source.row) else { break };
             let (Some(in_place), true) = (row.in_place, source.is_ready()) else { break };
             let inputs = source.ports.range().start;
             let (message, constant) = match order {

@@ -24,7 +24,7 @@ pub(super) struct Instance {
     pub(super) ports: Run,
     pub(super) outputs: Run,
     /// Where the only arc from output 1 ends, if there is exactly one: most functions have no other.
-    pub(super) sole: Option<Destination>,
+    pub(super) only_arc: Option<Destination>,
     /// Number of inputs among the ports.
     pub(super) inputs: u16,
     /// Number of inputs up to the last active one.
@@ -49,7 +49,7 @@ impl Instance {
         row: None,
         ports: Run::EMPTY,
         outputs: Run::EMPTY,
-        sole: None,
+        only_arc: None,
         inputs: 0,
         active: 0,
         in_place: None,

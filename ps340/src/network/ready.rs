@@ -7,7 +7,7 @@ use crate::port::ObjectId;
 /// It does what the queue of the standard library does, in half the steps: the number of places is a power of two.
 #[derive(Debug, Default)]
 pub(super) struct Ready {
-    places: Vec<ObjectId>,
+    slots: Vec<ObjectId>,
     first: usize,
     length: usize,
 }
@@ -15,7 +15,7 @@ pub(super) struct Ready {
 impl Ready {
     /// An empty list.
     pub(super) const fn new() -> Ready {
-        Ready { places: Vec::new(), first: 0, length: 0 }
+        Ready { slots: Vec::new(), first: 0, length: 0 }
     }
 
     /// Whether nobody stands here.
@@ -26,34 +26,34 @@ impl Ready {
     /// Adds one at the end.
     #[inline(always)]
     pub(super) fn push_back(&mut self, object: ObjectId) {
-        if self.length == self.places.len() {
+        if self.length == self.slots.len() {
             self.grow();
         }
-        let last = (self.first + self.length) & (self.places.len() - 1);
-        self.places[last] = object;
+        let last = (self.first + self.length) & (self.slots.len() - 1);
+        self.slots[last] = object;
         self.length += 1;
     }
 
     /// Puts one that was taken back to the front.
     pub(super) fn put_back(&mut self, object: ObjectId) {
-        if self.length == self.places.len() {
+        if self.length == self.slots.len() {
             self.grow();
         }
-        self.first = self.first.wrapping_sub(1) & (self.places.len() - 1);
-        self.places[self.first] = object;
+        self.first = self.first.wrapping_sub(1) & (self.slots.len() - 1);
+        self.slots[self.first] = object;
         self.length += 1;
     }
 
     /// The first.
     #[inline(always)]
     pub(super) fn first(&self) -> Option<ObjectId> {
-        if self.length == 0 { None } else { self.places.get(self.first).copied() }
+        if self.length == 0 { None } else { self.slots.get(self.first).copied() }
     }
 
     /// Drops the first, which must be there.
     #[inline(always)]
     pub(super) fn drop_first(&mut self) {
-        self.first = (self.first + 1) & (self.places.len() - 1);
+        self.first = (self.first + 1) & (self.slots.len() - 1);
         self.length -= 1;
     }
 
@@ -63,23 +63,23 @@ impl Ready {
         if self.length == 0 {
             return None;
         }
-        let object = self.places[self.first];
-        self.first = (self.first + 1) & (self.places.len() - 1);
+        let object = self.slots[self.first];
+        self.first = (self.first + 1) & (self.slots.len() - 1);
         self.length -= 1;
         Some(object)
     }
 
     /// All, the first first.
     pub(super) fn iter(&self) -> impl Iterator<Item = ObjectId> {
-        (0..self.length).map(|index| self.places[(self.first + index) & (self.places.len() - 1)])
+        (0..self.length).map(|index| self.slots[(self.first + index) & (self.slots.len() - 1)])
     }
 
     /// Doubles the places of a list that is full.
     #[cold]
     fn grow(&mut self) {
-        self.places.rotate_left(self.first);
+        self.slots.rotate_left(self.first);
         self.first = 0;
-        self.places.resize((2 * self.length).max(16), ObjectId(u32::MAX));
+        self.slots.resize((2 * self.length).max(16), ObjectId(u32::MAX));
     }
 }
 

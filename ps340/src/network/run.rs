@@ -259,7 +259,7 @@ impl Network {
         let from = ArcSource { object, output: *output };
         // The common case first: one result, along one arc.
         if let (1, Some(arc), false, false) =
-            (*output, self.instances[object.index()].sole, has_more, matches!(message, Value::String(_)))
+            (*output, self.instances[object.index()].only_arc, has_more, matches!(message, Value::String(_)))
         {
             self.deliver(Some(from), arc, message, effects, observer);
             outbox.note_delivery();

@@ -384,7 +384,7 @@ fn what_a_function_takes_out_before_it_fails_is_counted_no_more() {
     let mut bench = Bench::default();
     bench.define("P:=F:PICKINFO").send(I(-1), 2, "P");
     let identifiers = vec![Name::new("LINES").unwrap()];
-    let pick = PickList { index: 1, identifiers, node: None, type_code: 1, place: None };
+    let pick = PickList { index: 1, identifiers, node: None, type_code: 1, coordinates: None };
     let p = bench.id("P");
     bench.network.send(p, Input::Number(1), Value::Pick(Box::new(pick)), &mut bench.effects);
     assert!(bench.network.string_bytes > 0);

@@ -49,12 +49,12 @@ impl Wait {
 /// Carries out an order.
 ///
 /// - `files`: the folder below which it writes. Without one, orders that reach out ([`Order::reaches_out`]) are refused.
-pub fn perform(order: &OperatorCommand, machine: &mut Machine, files: Option<&Sandbox>) -> CommandOutcome {
-    if order.reaches_out() && files.is_none() {
+pub fn perform(command: &OperatorCommand, machine: &mut Machine, files: Option<&Sandbox>) -> CommandOutcome {
+    if command.reaches_out() && files.is_none() {
         return CommandOutcome::Done(Err(REFUSED.into()));
     }
     let frame = machine.frame();
-    let event = match order {
+    let event = match command {
         OperatorCommand::Dial { dial, turns } => Event::Dial { dial: *dial, turns: *turns },
         OperatorCommand::Key(key) => Event::Key(*key),
         OperatorCommand::Press(key) => Event::Press(*key),

@@ -74,11 +74,11 @@ pub enum PlayEnd {
 #[derive(Debug)]
 pub struct Player {
     machine: Machine,
-    patience: PlayOptions,
+    options: PlayOptions,
     /// The folder below which orders write; none if they may not.
     files: Option<Sandbox>,
     /// Messages of the machine that were taken from its log.
-    seen: u64,
+    checked_messages: u64,
     /// Messages of the machine that no step has expected yet, with the line during which they came.
     waiting: VecDeque<Failure>,
     /// The file and line that is played.
@@ -96,14 +96,14 @@ impl Player {
     /// A machine as after its start, with a host on its line.
     ///
     /// - `files`: the folder below which orders write; without one, those that write files or end the machine fail.
-    pub fn new(settings: Settings, patience: PlayOptions, files: Option<Sandbox>) -> Player {
+    pub fn new(settings: Settings, options: PlayOptions, files: Option<Sandbox>) -> Player {
         let mut machine = Machine::new(settings);
         machine.step([Input::Attach(LINE)], 0);
         Player {
             machine,
-            patience,
+            options,
             files,
-            seen: 0,
+            checked_messages: 0,
             waiting: VecDeque::new(),
             file: String::new(),
             line: 0,
@@ -144,11 +144,11 @@ impl Player {
                 Step::Expect { expected, within } => {
                     watcher.log('@', format!("expect {expected}").as_bytes());
                     self.steps += 1;
-                    self.expect(expected, within.unwrap_or(self.patience.frames), watcher)
+                    self.expect(expected, within.unwrap_or(self.options.frames), watcher)
                 }
             };
             match end {
-                Some(PlayEnd::Failed) if self.patience.keep_going => {}
+                Some(PlayEnd::Failed) if self.options.keep_going => {}
                 Some(end) => return end,
                 None => {}
             }
@@ -176,7 +176,7 @@ impl Player {
     pub fn take_failures(&mut self) -> Vec<Failure> {
         let mut failures = std::mem::take(&mut self.failures);
         let unexpected = std::mem::take(&mut self.waiting).into_iter().filter(|message| message.text.starts_with('E'));
-        if !self.patience.keep_going {
+        if !self.options.keep_going {
             // Errors come first: they are why a step failed.
             failures.splice(0..0, unexpected.map(|m| Failure { text: format!("unexpected: {}", m.text), ..m }));
         }
@@ -278,8 +278,8 @@ impl Player {
         }
         self.partial.drain(..end);
         let said = self.machine.counters().messages;
-        let new = usize::try_from(said - self.seen).unwrap_or(usize::MAX);
-        self.seen = said;
+        let new = usize::try_from(said - self.checked_messages).unwrap_or(usize::MAX);
+        self.checked_messages = said;
         let kept = self.machine.log().count();
         let place = |text: &str| Failure { file: self.file.clone(), line: self.line, text: text.into() };
         for text in self.machine.log().skip(kept.saturating_sub(new)) {

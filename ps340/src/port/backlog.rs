@@ -27,7 +27,7 @@ pub(super) struct QueueHandle(u32);
 #[derive(Debug, Default)]
 struct Ring {
     /// As many as a power of two, or none.
-    places: Vec<Value>,
+    slots: Vec<Value>,
     first: usize,
     length: usize,
 }
@@ -104,7 +104,7 @@ impl Backlog {
     #[inline(never)]
     pub(super) fn take_back(&mut self, lent: &mut QueueHandle) {
         if let Some(ring) = self.queues.get_mut(lent.0 as usize) {
-            if ring.length > 0 || ring.places.len() > RETAINED_SLOTS {
+            if ring.length > 0 || ring.slots.len() > RETAINED_SLOTS {
                 *ring = Ring::default();
             }
             self.free.push(lent.0);
@@ -124,37 +124,37 @@ impl Backlog {
 impl Ring {
     #[inline(always)]
     fn push(&mut self, message: &mut Value) {
-        if self.length == self.places.len() {
+        if self.length == self.slots.len() {
             self.grow();
         }
-        let last = (self.first + self.length) & (self.places.len() - 1);
-        place::shift(message, &mut self.places[last]);
+        let last = (self.first + self.length) & (self.slots.len() - 1);
+        place::shift(message, &mut self.slots[last]);
         self.length += 1;
     }
 
     /// Moves the first message, which must be there, to a place.
     #[inline(always)]
     fn pop(&mut self, to: &mut Value) {
-        place::shift(&mut self.places[self.first], to);
-        self.first = (self.first + 1) & (self.places.len() - 1);
+        place::shift(&mut self.slots[self.first], to);
+        self.first = (self.first + 1) & (self.slots.len() - 1);
         self.length -= 1;
     }
 
     fn last(&mut self) -> Option<&mut Value> {
-        let last = (self.first + self.length.checked_sub(1)?) & (self.places.len() - 1);
-        Some(&mut self.places[last])
+        let last = (self.first + self.length.checked_sub(1)?) & (self.slots.len() - 1);
+        Some(&mut self.slots[last])
     }
 
     fn messages(&self) -> impl Iterator<Item = &Value> {
-        (0..self.length).map(|index| &self.places[(self.first + index) & (self.places.len() - 1)])
+        (0..self.length).map(|index| &self.slots[(self.first + index) & (self.slots.len() - 1)])
     }
 
     /// Doubles the places of a ring that is full.
     #[cold]
     fn grow(&mut self) {
-        self.places.rotate_left(self.first);
+        self.slots.rotate_left(self.first);
         self.first = 0;
-        self.places.resize_with((2 * self.length).max(4), || PLACEHOLDER);
+        self.slots.resize_with((2 * self.length).max(4), || PLACEHOLDER);
     }
 }
 

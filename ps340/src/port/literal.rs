@@ -68,7 +68,7 @@ impl PickLiteral {
             identifiers: self.identifiers.iter().filter_map(|name| Name::new(name).ok()).collect(),
             node: Name::new(self.node).ok(),
             type_code: self.type_code,
-            place: self.point.map(place),
+            coordinates: self.point.map(place),
         }
     }
 }

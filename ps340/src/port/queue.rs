@@ -14,7 +14,7 @@ use protocol::{Kind, Value};
 #[derive(Debug)]
 pub struct Port {
     value: Value,
-    rest: QueueHandle,
+    tail: QueueHandle,
     /// The kinds that the input accepts, and flags: one word, since all of it is asked at each arrival.
     state: u32,
 }
@@ -41,7 +41,7 @@ pub enum Arrival {
 
 impl Port {
     /// An empty port without a function.
-    pub const UNUSED: Port = Port { value: PLACEHOLDER, rest: QueueHandle::NOTHING, state: 0 };
+    pub const UNUSED: Port = Port { value: PLACEHOLDER, tail: QueueHandle::NOTHING, state: 0 };
 
     /// An input as a new instance has it.
     pub fn new(spec: &PortSpec) -> Port {
@@ -51,7 +51,7 @@ impl Port {
             QueueRole::Optional => (PLACEHOLDER, 0),
             QueueRole::Default(literal) => (Literal::value(literal), FILLED),
         };
-        Port { value, rest: QueueHandle::NOTHING, state: flags | spec.kinds.bits() }
+        Port { value, tail: QueueHandle::NOTHING, state: flags | spec.kinds.bits() }
     }
 
     /// Whether the input accepts a kind of message.
@@ -86,12 +86,12 @@ impl Port {
 
     /// The messages that wait here, the first first; or the constant.
     pub fn messages<'a>(&'a self, backlog: &'a Backlog) -> impl Iterator<Item = &'a Value> {
-        self.first().into_iter().chain(backlog.messages(self.rest))
+        self.first().into_iter().chain(backlog.messages(self.tail))
     }
 
     /// How many messages wait here.
     pub fn len(&self, backlog: &Backlog) -> usize {
-        usize::from(!self.is_empty()) + backlog.length(self.rest)
+        usize::from(!self.is_empty()) + backlog.length(self.tail)
     }
 
     /// Bytes of the strings that wait here.
@@ -109,7 +109,7 @@ impl Port {
     pub fn arrive(&mut self, message: &mut Value, backlog: &mut Backlog) -> Arrival {
         let state = self.state;
         if state & (ACTIVE | FILLED) == ACTIVE | FILLED {
-            return if backlog.push(&mut self.rest, message) { Arrival::Queued } else { Arrival::Lost };
+            return if backlog.push(&mut self.tail, message) { Arrival::Queued } else { Arrival::Lost };
         }
         place::shift(message, &mut self.value);
         self.state = state | FILLED | FRESH;
@@ -121,7 +121,7 @@ impl Port {
     /// - Returns whether the queue is empty now.
     #[inline(always)]
     pub fn consume(&mut self, backlog: &mut Backlog) -> bool {
-        if self.rest != QueueHandle::NOTHING && backlog.pop(&mut self.rest, &mut self.value) {
+        if self.tail != QueueHandle::NOTHING && backlog.pop(&mut self.tail, &mut self.value) {
             return false;
         }
         place::clear(&mut self.value);
@@ -138,13 +138,13 @@ impl Port {
     ///
     /// - `required`: whether the function waits for a value here.
     pub fn make_constant(&mut self, required: bool, backlog: &mut Backlog) {
-        backlog.pop_last(&mut self.rest, &mut self.value);
+        backlog.pop_last(&mut self.tail, &mut self.value);
         self.state = self.state & !(ACTIVE | REQUIRED) | if required { REQUIRED } else { 0 };
     }
 
     /// Gives back the queue, with the messages in it, before the port itself goes.
     pub fn abandon(&mut self, backlog: &mut Backlog) {
-        backlog.take_back(&mut self.rest);
+        backlog.take_back(&mut self.tail);
     }
 
     /// The first message or the constant; a husk if there is none.

@@ -186,7 +186,7 @@ impl Facets {
         let facets = Facets { solid, plane: gathered.plane, color: node.hue_saturation, lights, ..Facets::default() };
         let mut builder = Builder { facets, ..Builder::default() };
         for block in &gathered.blocks {
-            builder.block(block.polygons, &block.state, &block.sight, structures);
+            builder.block(block.polygons, &block.state, &block.factors, structures);
         }
         Ok(builder.facets)
     }
@@ -216,14 +216,14 @@ struct Builder {
     facets: Facets,
     points: HashMap<[u64; 4], u32>,
     edges: HashMap<[u32; 2], u32>,
-    looks: HashMap<(Option<ObjectId>, [u64; 2]), [u32; 2]>,
+    surface_numbers: HashMap<(Option<ObjectId>, [u64; 2]), [u32; 2]>,
 }
 
 impl Builder {
-    fn block(&mut self, polygons: &Polygons, state: &State, sight: &MatrixFactors, structures: &Structures) {
-        let Some(local) = sight.local else { return };
-        let view = self.view(state, sight);
-        let frame = Frame::new(sight.eye, local, state.ctm);
+    fn block(&mut self, polygons: &Polygons, state: &State, factors: &MatrixFactors, structures: &Structures) {
+        let Some(local) = factors.local else { return };
+        let view = self.view(state, factors);
+        let frame = Frame::new(factors.eye, local, state.ctm);
         let mut color = state.hue_saturation;
         let mut open = false;
         for (polygon, attributes) in polygons.polygons.iter().zip(&polygons.attributes) {
@@ -295,10 +295,10 @@ impl Builder {
         });
     }
 
-    fn view(&mut self, state: &State, sight: &MatrixFactors) -> u32 {
+    fn view(&mut self, state: &State, factors: &MatrixFactors) -> u32 {
         let view = BlockView {
-            matrix: sight.view,
-            eye: eye_point(&sight.view),
+            matrix: factors.view,
+            eye: eye_point(&factors.view),
             horizontal: state.horizontal,
             vertical: state.vertical,
             depth_clipping: state.depth_clipping,
@@ -337,7 +337,7 @@ impl Builder {
 
     fn surfaces_of(&mut self, attributes: Option<ObjectId>, color: [f64; 2], structures: &Structures) -> [u32; 2] {
         let surfaces = &mut self.facets.surfaces;
-        *self.looks.entry((attributes, color.map(f64::to_bits))).or_insert_with(|| {
+        *self.surface_numbers.entry((attributes, color.map(f64::to_bits))).or_insert_with(|| {
             let node = attributes.and_then(|id| structures.node(structures.follow(id)));
             let [front, back] = match node {
                 Some(Node::Attributes(attributes)) => [attributes.front, attributes.back.unwrap_or(attributes.front)],

@@ -68,7 +68,7 @@ struct ScreenEdge {
     names: [u32; 2],
     faces: [Option<u32>; 2],
     /// Its ends in the coordinates of the node and their w.
-    places: [(glam::DVec4, f64); 2],
+    endpoints: [(glam::DVec4, f64); 2],
     color: [f64; 2],
 }
 
@@ -89,7 +89,7 @@ struct Occluder {
 /// Triangles by the cells of the screen that they may touch.
 #[derive(Debug)]
 struct Grid {
-    hiders: Vec<Occluder>,
+    occluders: Vec<Occluder>,
     /// Cells across, as a power of two.
     cells: u32,
     /// Where the list of each cell begins.
@@ -104,7 +104,7 @@ impl HiddenLine {
         let edges = drawn(facets, &sides);
         let projected = project(facets, &edges);
         let closed = facets.solid && !projected.opened;
-        let spots: Vec<GridPoint> = projected.spots.iter().map(GridPoint::new).collect();
+        let spots: Vec<GridPoint> = projected.points.iter().map(GridPoint::new).collect();
         let seen = |edge: &Edge| !closed || sides.get(&edge.ends).is_none_or(|side| side.toward > 0);
         let lines = projected.lines.iter().filter(|line| seen(&edges[line.edge]));
         let edges = lines.map(|line| ScreenEdge::new(line, &edges[line.edge], &spots)).collect();
@@ -193,9 +193,9 @@ fn occluders(facets: &Facets, projected: &Projected, spots: &[GridPoint], closed
 impl GridPoint {
     fn new(spot: &super::project::ScreenPoint) -> GridPoint {
         GridPoint {
-            x: (spot.place.x * STEPS).round().clamp(-STEPS, STEPS),
-            y: (spot.place.y * STEPS).round().clamp(-STEPS, STEPS),
-            nearness: spot.nearness,
+            x: (spot.position.x * STEPS).round().clamp(-STEPS, STEPS),
+            y: (spot.position.y * STEPS).round().clamp(-STEPS, STEPS),
+            nearness: spot.depth_key,
         }
     }
 
@@ -275,33 +275,33 @@ impl Grid {
     fn new(hiders: Vec<Occluder>) -> Grid {
         let mut cells = (hiders.len().max(1).ilog2() / 2 + 1).min(MOST_CELLS);
         let entries = |cells: u32| -> usize {
-            hiders.iter().map(|hider| columns_of(hider, cells).len() * rows_of(hider, cells).len()).sum()
+            hiders.iter().map(|occluder| columns_of(occluder, cells).len() * rows_of(occluder, cells).len()).sum()
         };
         // Large triangles are in many cells; there may be no more entries than this for each of them.
         while cells > 0 && entries(cells) > 64 + 16 * hiders.len() {
             cells -= 1;
         }
         let mut starts = vec![0_u32; (1 << (2 * cells)) + 1];
-        let each_cell = |hider: &Occluder, visit: &mut dyn FnMut(usize)| {
-            for row in rows_of(hider, cells) {
-                columns_of(hider, cells).for_each(|column| visit((row << cells) + column));
+        let each_cell = |occluder: &Occluder, visit: &mut dyn FnMut(usize)| {
+            for row in rows_of(occluder, cells) {
+                columns_of(occluder, cells).for_each(|column| visit((row << cells) + column));
             }
         };
-        for hider in &hiders {
-            each_cell(hider, &mut |cell| starts[cell + 1] += 1);
+        for occluder in &hiders {
+            each_cell(occluder, &mut |cell| starts[cell + 1] += 1);
         }
         for cell in 1..starts.len() {
             starts[cell] += starts[cell - 1];
         }
         let mut free = starts.clone();
         let mut lists = vec![0; starts.last().map_or(0, |end| *end as usize)];
-        for (number, hider) in hiders.iter().enumerate() {
-            each_cell(hider, &mut |cell| {
+        for (number, occluder) in hiders.iter().enumerate() {
+            each_cell(occluder, &mut |cell| {
                 lists[free[cell] as usize] = number as u32;
                 free[cell] += 1;
             });
         }
-        Grid { hiders, cells, starts, lists }
+        Grid { occluders: hiders, cells, starts, lists }
     }
 
     /// The seen parts of an edge, and the number of tests that they took.
@@ -318,9 +318,9 @@ impl Grid {
                 tests += list.len() as u64;
                 let before = hidden.len();
                 for &number in list {
-                    let hider = &self.hiders[number as usize];
-                    if hider.nearest > farthest && !edge.faces.contains(&Some(hider.face)) {
-                        hidden.extend(hider.hidden(edge));
+                    let occluder = &self.occluders[number as usize];
+                    if occluder.nearest > farthest && !edge.faces.contains(&Some(occluder.face)) {
+                        hidden.extend(occluder.hidden(edge));
                     }
                 }
                 if hidden[before..].contains(&[0.0, 1.0]) {
@@ -358,12 +358,12 @@ impl Grid {
 impl ScreenEdge {
     fn new(line: &ProjectedEdge, edge: &Edge, spots: &[GridPoint]) -> ScreenEdge {
         let ends = line.spots.map(|spot| spots[spot as usize]);
-        ScreenEdge { ends, names: line.spots, faces: edge.faces, places: line.ends, color: edge.color }
+        ScreenEdge { ends, names: line.spots, faces: edge.faces, endpoints: line.ends, color: edge.color }
     }
 
     /// A part of the edge in the coordinates of the node. Parameters run evenly on the screen.
     fn part(&self, from: f64, to: f64) -> Option<Segment> {
-        let [(a, wa), (b, wb)] = self.places;
+        let [(a, wa), (b, wb)] = self.endpoints;
         let place = |t: f64| {
             if t == 0.0 || t == 1.0 {
                 let end = if t == 0.0 { a } else { b };
@@ -385,14 +385,14 @@ fn span(from: f64, to: f64, cells: u32) -> std::ops::RangeInclusive<usize> {
     cell(from.min(to))..=cell(from.max(to))
 }
 
-fn rows_of(hider: &Occluder, cells: u32) -> std::ops::Range<usize> {
-    let [a, b, c] = hider.spots.map(|spot| spot.y);
+fn rows_of(occluder: &Occluder, cells: u32) -> std::ops::Range<usize> {
+    let [a, b, c] = occluder.spots.map(|spot| spot.y);
     let span = span(a.min(b).min(c), a.max(b).max(c), cells);
     *span.start()..span.end() + 1
 }
 
-fn columns_of(hider: &Occluder, cells: u32) -> std::ops::Range<usize> {
-    let [a, b, c] = hider.spots.map(|spot| spot.x);
+fn columns_of(occluder: &Occluder, cells: u32) -> std::ops::Range<usize> {
+    let [a, b, c] = occluder.spots.map(|spot| spot.x);
     let span = span(a.min(b).min(c), a.max(b).max(c), cells);
     *span.start()..span.end() + 1
 }

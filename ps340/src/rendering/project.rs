@@ -25,9 +25,9 @@ const OPENING: u8 = 0b10_0001;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScreenPoint {
     /// x and y; the screen is -1..=1.
-    pub place: DVec2,
+    pub position: DVec2,
     /// How near.
-    pub nearness: f64,
+    pub depth_key: f64,
 }
 
 /// A piece of a triangle, on the screen.
@@ -54,7 +54,7 @@ pub struct ProjectedEdge {
 #[derive(Clone, Debug, Default)]
 pub struct Projected {
     /// Points; the first are those of the facets, as far as they are shown.
-    pub spots: Vec<ScreenPoint>,
+    pub points: Vec<ScreenPoint>,
     /// Triangles.
     pub pieces: Vec<TrianglePiece>,
     /// Edges.
@@ -107,7 +107,7 @@ pub fn project(facets: &Facets, edges: &[Edge]) -> Projected {
             projected.lines.push(ProjectedEdge { spots, ends, edge });
         }
     }
-    projected.spots = cutter.raw.iter().map(|raw| screen_point(raw, &facets.views[raw.view as usize])).collect();
+    projected.points = cutter.raw.iter().map(|raw| screen_point(raw, &facets.views[raw.view as usize])).collect();
     projected
 }
 
@@ -222,7 +222,7 @@ impl Cutter {
 /// A point on the screen; some place for one that is not shown.
 fn screen_point(raw: &Raw, view: &BlockView) -> ScreenPoint {
     if raw.clip.w <= 0.0 {
-        return ScreenPoint { place: DVec2::ZERO, nearness: 0.0 };
+        return ScreenPoint { position: DVec2::ZERO, depth_key: 0.0 };
     }
     let across = |[low, high]: [f64; 2], c: f64| low + (c / raw.clip.w + 1.0) * (high - low) / 2.0;
     let nearness = if view.matrix.row(3).truncate() == DVec3::ZERO {
@@ -230,5 +230,5 @@ fn screen_point(raw: &Raw, view: &BlockView) -> ScreenPoint {
     } else {
         1.0 / raw.clip.w
     };
-    ScreenPoint { place: DVec2::new(across(view.horizontal, raw.clip.x), across(view.vertical, raw.clip.y)), nearness }
+    ScreenPoint { position: DVec2::new(across(view.horizontal, raw.clip.x), across(view.vertical, raw.clip.y)), depth_key: nearness }
 }

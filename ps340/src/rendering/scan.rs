@@ -67,9 +67,9 @@ impl Scan {
             .pieces
             .iter()
             .filter_map(|piece| {
-                let spots = piece.spots.map(|spot| projected.spots[spot as usize]);
-                let corners = spots.map(|spot| [place(spot.place.x, width), place(spot.place.y, height)]);
-                Triangle::new(corners, spots.map(|spot| spot.nearness), piece.triangle)
+                let spots = piece.spots.map(|spot| projected.points[spot as usize]);
+                let corners = spots.map(|spot| [place(spot.position.x, width), place(spot.position.y, height)]);
+                Triangle::new(corners, spots.map(|spot| spot.depth_key), piece.triangle)
             })
             .collect();
         let mut bands = vec![Vec::new(); height.div_ceil(BAND)];
@@ -224,22 +224,22 @@ impl Samples {
         &self,
         column: usize,
         line: usize,
-        seen: &mut Vec<(u32, [usize; 3])>,
+        visible: &mut Vec<(u32, [usize; 3])>,
         shade: &impl Fn(u32, f64, f64) -> [f32; 3],
     ) -> [f32; 4] {
-        seen.clear();
+        visible.clear();
         for y in 0..self.side {
             let place = (line * self.side + y) * self.row + column * self.side;
             for (x, name) in self.names[place..place + self.side].iter().enumerate() {
                 if *name == NONE {
                     continue;
                 }
-                let found = match seen.iter_mut().rev().find(|(known, _)| known == name) {
+                let found = match visible.iter_mut().rev().find(|(known, _)| known == name) {
                     Some((_, found)) => found,
                     None => {
-                        seen.push((*name, [0; 3]));
-                        let end = seen.len() - 1;
-                        &mut seen[end].1
+                        visible.push((*name, [0; 3]));
+                        let end = visible.len() - 1;
+                        &mut visible[end].1
                     }
                 };
                 *found = [found[0] + 1, found[1] + x, found[2] + y];
@@ -248,7 +248,7 @@ impl Samples {
         let side = self.side as f64;
         let corner = [(column * self.side) as f64, (self.first + line * self.side) as f64];
         let mut pixel = [0.0; 4];
-        for (name, [count, x, y]) in seen.iter() {
+        for (name, [count, x, y]) in visible.iter() {
             let mean = |sum: usize, corner: f64| (corner + sum as f64 / *count as f64 + 0.5) / side;
             let [r, g, b] = shade(*name, mean(*x, corner[0]), mean(*y, corner[1]));
             let part = *count as f32 / (self.side * self.side) as f32;

@@ -24,7 +24,7 @@ pub struct Window {
     /// What it shows.
     pub mirror: Arc<Mirror>,
     /// What it wants; the machine ends when the other end is gone.
-    pub orders: std::sync::mpsc::Receiver<OperatorLine>,
+    pub operator_lines: std::sync::mpsc::Receiver<OperatorLine>,
 }
 
 /// What stands open before hosts and operators can come.
@@ -76,7 +76,7 @@ pub fn run(options: &Options, window: Option<Window>, mut ready: impl FnMut(&str
         }
         io_runtime.spawn(serve_operators(listener, token, events.clone()));
     }
-    let mirror = window.map(|Window { mirror, orders }| {
+    let mirror = window.map(|Window { mirror, operator_lines: orders }| {
         let events = events.clone();
         std::thread::spawn(move || serve_window(orders, &events));
         mirror
@@ -134,7 +134,7 @@ async fn open(options: &Options) -> io::Result<Opened> {
         .map_err(|e| io::Error::new(e.kind(), format!("--files {}: {e}", options.files.display())))?;
     // Last, without a wait behind it: an interruption leaves no part of it.
     let capture = options.capture.as_deref().map(|path| {
-        let is_read = |line: &LineAddress| matches!(&line.place, Endpoint::File { path: read, .. } if read == path);
+        let is_read = |line: &LineAddress| matches!(&line.endpoint, Endpoint::File { path: read, .. } if read == path);
         let created = match options.listen.iter().any(is_read) {
             true => Err(io::Error::new(io::ErrorKind::InvalidInput, "it is to be played")),
             false => Capture::create(path),

@@ -39,7 +39,7 @@ pub struct Options {
     /// Where time comes from.
     pub clock: TimeSource,
     /// Whether captures that are played may give orders that write files or end the machine.
-    pub replayed_orders: bool,
+    pub replays_operator: bool,
     /// The folder below which orders write files.
     pub files: PathBuf,
     /// Whether it may listen where other computers reach it.

@@ -30,7 +30,7 @@ pub(super) struct MachineLoop {
     /// The folder below which orders write.
     files: Sandbox,
     /// Whether captures may give orders that reach out.
-    replayed_orders: bool,
+    replays_operator: bool,
     /// Takes what the operator does, if it is wanted.
     capture: Option<Capture>,
     inbox: mpsc::Receiver<LineEvent>,
@@ -69,7 +69,7 @@ impl MachineLoop {
             machine,
             mirror,
             files,
-            replayed_orders: options.replayed_orders,
+            replays_operator: options.replays_operator,
             capture,
             inbox,
             timer: tokio::runtime::Builder::new_current_thread().enable_time().build()?,
@@ -190,7 +190,7 @@ impl MachineLoop {
                 if let Some(capture) = self.capture.as_ref().filter(|_| order.is_action()) {
                     capture.record_operator_command(&text);
                 }
-                let files = Some(&self.files).filter(|_| !is_replayed || self.replayed_orders);
+                let files = Some(&self.files).filter(|_| !is_replayed || self.replays_operator);
                 perform(order, &mut self.machine, files)
             }
             Err(error) => CommandOutcome::Done(Err(error.to_string())),

@@ -41,8 +41,8 @@ pub struct Structures {
     nodes: Vec<Option<Node>>,
     /// The displayed roots by the order of DISPLAY, and the place of each in that order.
     displayed: BTreeMap<u64, ObjectId>,
-    places: HashMap<ObjectId, u64>,
-    next_place: u64,
+    positions: HashMap<ObjectId, u64>,
+    next_position: u64,
     /// The structure that each member of a structure was made in, as far as it is still there.
     homes: HashMap<ObjectId, ObjectId>,
     /// Objects that are other names of objects; their nodes are instances of these.
@@ -305,17 +305,17 @@ impl Structures {
 
     /// DISPLAY: adds a root; nothing happens if it is there already.
     pub fn display(&mut self, id: ObjectId) {
-        if !self.places.contains_key(&id) {
-            self.places.insert(id, self.next_place);
-            self.displayed.insert(self.next_place, id);
-            self.next_place += 1;
+        if !self.positions.contains_key(&id) {
+            self.positions.insert(id, self.next_position);
+            self.displayed.insert(self.next_position, id);
+            self.next_position += 1;
             self.version += 1;
         }
     }
 
     /// REMOVE: takes a root away. Returns whether it was there.
     pub fn remove(&mut self, id: ObjectId) -> bool {
-        let place = self.places.remove(&id);
+        let place = self.positions.remove(&id);
         if let Some(place) = place {
             self.displayed.remove(&place);
             self.version += 1;
@@ -326,7 +326,7 @@ impl Structures {
     /// Empties the display list.
     pub fn clear_displayed(&mut self) {
         self.displayed.clear();
-        self.places.clear();
+        self.positions.clear();
         self.version += 1;
     }
 
@@ -351,7 +351,7 @@ impl Structures {
         self.homes.retain(|_, home| nodes.get(home.index()).is_some_and(Option::is_some));
         self.homes.shrink_to_fit();
         self.aliases.shrink_to_fit();
-        self.places.shrink_to_fit();
+        self.positions.shrink_to_fit();
     }
 
     /// The members that follow a named member in the structure where it was defined; none if it stands in none.

@@ -71,7 +71,7 @@ pub struct State {
     /// The XFORM VECTOR node that gathers the vectors below.
     pub gatherer: Option<ObjectId>,
     /// The parts of the matrix, while polygons are gathered for a rendering.
-    pub sight: Option<Box<MatrixFactors>>,
+    pub factors: Option<Box<MatrixFactors>>,
 }
 
 impl Default for State {
@@ -105,7 +105,7 @@ impl Default for State {
             plotter: false,
             write_back: false,
             gatherer: None,
-            sight: None,
+            factors: None,
         }
     }
 }
@@ -114,13 +114,13 @@ impl State {
     /// The state below a matrix that moves and does not project.
     pub(super) fn transform(&mut self, m: DMat4) {
         self.ctm *= m;
-        self.sight.iter_mut().for_each(|sight| sight.transform(&m));
+        self.factors.iter_mut().for_each(|factors| factors.transform(&m));
     }
 
     /// The state below a window, a field of view or another 4x4 matrix.
     pub(super) fn project(&mut self, m: &DMat4) {
         self.ctm *= *m;
-        self.sight.iter_mut().for_each(|sight| sight.project(m));
+        self.factors.iter_mut().for_each(|factors| factors.project(m));
     }
 
     /// The state below a viewport, whose limits are those on the screen.

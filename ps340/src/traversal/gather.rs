@@ -21,7 +21,7 @@ pub struct PolygonBlock<'a> {
     /// Where they are, and their colour if they do not say.
     pub state: State,
     /// The parts of their matrix.
-    pub sight: MatrixFactors,
+    pub factors: MatrixFactors,
 }
 
 /// A plane in eye coordinates.
@@ -64,25 +64,25 @@ impl<'a> Gatherer<'a> {
     /// The state below a rendering node.
     pub(super) fn rendering(&mut self, object: Option<ObjectId>, state: &mut State) {
         if object == Some(self.target) && self.gathered.node.is_none() {
-            self.gathered.node = Some(State { sight: None, ..state.clone() });
-            state.sight.iter_mut().for_each(|sight| sight.enter());
+            self.gathered.node = Some(State { factors: None, ..state.clone() });
+            state.factors.iter_mut().for_each(|factors| factors.enter());
         }
     }
 
     /// Takes a data node.
     pub(super) fn take(&mut self, node: &'a Node, state: &State) {
-        let Some(sight) = state.sight.as_deref() else { return };
+        let Some(factors) = state.factors.as_deref() else { return };
         match node {
-            Node::Illumination(light) if sight.local.is_some() => self.gathered.lights.push((*light, sight.eye)),
+            Node::Illumination(light) if factors.local.is_some() => self.gathered.lights.push((*light, factors.eye)),
             Node::Polygons(polygons) => {
-                match sight.plane {
-                    Some(true) if self.gathered.plane.is_none() => self.gathered.plane = plane(polygons, &sight.eye),
-                    Some(false) if self.elsewhere.is_none() => self.elsewhere = plane(polygons, &sight.eye),
+                match factors.plane {
+                    Some(true) if self.gathered.plane.is_none() => self.gathered.plane = plane(polygons, &factors.eye),
+                    Some(false) if self.elsewhere.is_none() => self.elsewhere = plane(polygons, &factors.eye),
                     _ => {}
                 }
-                if sight.local.is_some() && sight.plane != Some(true) {
-                    let state = State { sight: None, ..state.clone() };
-                    self.gathered.blocks.push(PolygonBlock { polygons, state, sight: *sight });
+                if factors.local.is_some() && factors.plane != Some(true) {
+                    let state = State { factors: None, ..state.clone() };
+                    self.gathered.blocks.push(PolygonBlock { polygons, state, factors: *factors });
                 }
             }
             _ => {}

@@ -70,19 +70,19 @@ fn list(list: &VectorList, state: &State, sink: Sink) -> ControlFlow<()> {
         let source = [place(from), place(to)];
         let ends = source.map(|p| state.ctm * p.extend(1.0));
         let index = to as u32 + 1;
-        let piece = LineSegment { index, ends, source, intensity: [intensity(from), intensity(to)], color: None, dot };
+        let segment = LineSegment { index, ends, source, intensity: [intensity(from), intensity(to)], color: None, dot };
         match blending {
             Some(saturation) => {
-                blend(piece, [list.points[from][3], list.points[to][3]].map(f64::from), saturation, sink)?
+                blend(segment, [list.points[from][3], list.points[to][3]].map(f64::from), saturation, sink)?
             }
-            None => sink(piece)?,
+            None => sink(segment)?,
         }
     }
     ControlFlow::Continue(())
 }
 
 /// Cuts a piece into so many that the hue of each is nearly constant.
-fn blend(piece: LineSegment, hues: [f64; 2], saturation: f64, sink: Sink) -> ControlFlow<()> {
+fn blend(segment: LineSegment, hues: [f64; 2], saturation: f64, sink: Sink) -> ControlFlow<()> {
     // 0 to 720, so that no more than 120 pieces come of a line whatever the host sends.
     let [from, to] = hues.map(|h| h.clamp(0.0, 720.0));
     let parts = ((to - from).abs() / BLEND_STEP).ceil().max(1.0) as u32;
@@ -90,9 +90,9 @@ fn blend(piece: LineSegment, hues: [f64; 2], saturation: f64, sink: Sink) -> Con
         let t = [part, part + 1].map(|k| f64::from(k) / f64::from(parts));
         let middle = from + (to - from) * (t[0] + t[1]) / 2.0;
         let color = Some(hue::rgb((middle % 360.0) as f32, saturation as f32));
-        let ends = t.map(|t| piece.ends[0].lerp(piece.ends[1], t));
-        let source = t.map(|t| piece.source[0].lerp(piece.source[1], t));
-        sink(LineSegment { ends, source, color, ..piece })?;
+        let ends = t.map(|t| segment.ends[0].lerp(segment.ends[1], t));
+        let source = t.map(|t| segment.source[0].lerp(segment.source[1], t));
+        sink(LineSegment { ends, source, color, ..segment })?;
     }
     ControlFlow::Continue(())
 }

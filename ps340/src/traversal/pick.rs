@@ -32,7 +32,7 @@ pub struct PickHit {
     /// What kind of data.
     pub kind: PickedKind,
     /// Where it was picked, if that was wanted: the point of the vector that is nearest to the centre of the box.
-    pub place: Option<PickCoordinates>,
+    pub coordinates: Option<PickCoordinates>,
 }
 
 /// The kind of data that was picked.

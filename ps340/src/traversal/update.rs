@@ -75,7 +75,7 @@ pub struct Update {
     /// Vectors and character strokes that went into the pipeline.
     pub vectors: u64,
     /// What was left out, if anything.
-    pub trouble: Option<UpdateFault>,
+    pub fault: Option<UpdateFault>,
 }
 
 impl Update {

@@ -82,7 +82,7 @@ pub fn gather(structures: &Structures, frame: u64, node: ObjectId) -> Gathered<'
     let mut walk = Walk::new(structures, frame, &NOTHING);
     walk.gatherer = Some(Gatherer::new(node));
     for root in structures.displayed() {
-        walk.root(root, State { sight: Some(Box::<MatrixFactors>::default()), ..State::default() });
+        walk.root(root, State { factors: Some(Box::<MatrixFactors>::default()), ..State::default() });
     }
     walk.gatherer.map(Gatherer::finish).unwrap_or_default()
 }
@@ -205,7 +205,7 @@ impl<'a> Walk<'a> {
     fn visit(&mut self, visit: &Visit<'a>, levels: &mut Vec<Level<'a>>) -> ControlFlow<()> {
         self.update.visits += 1;
         if self.update.visits > MAX_VISITS {
-            self.update.trouble = Some(UpdateFault::TooManyVisits);
+            self.update.fault = Some(UpdateFault::TooManyVisits);
             return ControlFlow::Break(());
         }
         let Some(level) = levels.last_mut() else { return ControlFlow::Break(()) };
@@ -261,13 +261,13 @@ impl<'a> Walk<'a> {
     /// Goes a level down, unless the structure is too deep or contains itself.
     fn enter(&mut self, object: Option<ObjectId>, items: Items<'a>, state: State, levels: &mut Vec<Level<'a>>) {
         if levels.len() >= MAX_DEPTH {
-            self.update.trouble = Some(UpdateFault::TooDeep);
+            self.update.fault = Some(UpdateFault::TooDeep);
             return;
         }
         if let Some(id) = object {
             let (word, bit) = (&mut self.entered[id.index() / 64], 1 << (id.index() % 64));
             if *word & bit != 0 {
-                self.update.trouble = Some(UpdateFault::ContainsItself(id));
+                self.update.fault = Some(UpdateFault::ContainsItself(id));
                 return;
             }
             *word |= bit;
@@ -349,7 +349,7 @@ impl<'a> Walk<'a> {
     fn counted(&mut self, vectors: usize) -> bool {
         let sum = self.update.vectors + vectors as u64;
         if sum > MAX_VECTORS {
-            self.update.trouble = Some(UpdateFault::TooManyVectors);
+            self.update.fault = Some(UpdateFault::TooManyVectors);
             return false;
         }
         self.update.vectors = sum;
@@ -361,7 +361,7 @@ impl<'a> Walk<'a> {
         match self.drawing {
             Drawing::Stored { most } if self.update.vectors > most => {
                 if most == MAX_STORED_VECTORS {
-                    self.update.trouble = Some(UpdateFault::TooManyStored);
+                    self.update.fault = Some(UpdateFault::TooManyStored);
                 } else if !self.update.is_counted_only {
                     self.update.is_counted_only = true;
                     self.update.strokes.clear();
@@ -486,7 +486,7 @@ impl<'a> Walk<'a> {
             PickCoordinates { point, dimension, parameter }
         });
         let identifiers = self.identifiers.names(state.identifiers);
-        Some(PickHit { index: piece.index, identifiers, node: object, kind, place })
+        Some(PickHit { index: piece.index, identifiers, node: object, kind, coordinates: place })
     }
 
     /// Adds the vectors of a list to what an XFORM VECTOR node gathers. Text and polygons are no vectors.
@@ -495,7 +495,7 @@ impl<'a> Walk<'a> {
         let list = vectors.drawn();
         let into = self.update.transformed.entry(gatherer).or_default();
         if into.points.len() + list.points.len() > MAX_GATHERED {
-            self.update.trouble = Some(UpdateFault::TooManyGathered);
+            self.update.fault = Some(UpdateFault::TooManyGathered);
             return;
         }
         let place = |p: &[f32; 4]| state.ctm.project_point3(DVec3::new(p[0].into(), p[1].into(), p[2].into()));

@@ -18,7 +18,7 @@ use tests::conformance::{
 )]
 struct Arguments {
     /// The machine's host line: tcp:HOST:PORT, unix:PATH, pty:PATH or serial:PATH.
-    place: Endpoint,
+    endpoint: Endpoint,
     /// Who is at the machine: the address of an emulator's operator line, or 'ask' to be asked on this terminal.
     #[arg(long, value_name = "ADDRESS|ask")]
     operator: Option<String>,
@@ -112,10 +112,10 @@ fn run(arguments: &Arguments) -> Result<bool, (u8, String)> {
     let way = Transport { form: arguments.form, packets: arguments.packets.unwrap_or(default) };
     way.check().map_err(|e| usage(e.to_string()))?;
     let target = Target {
-        place: arguments.place.clone(),
-        way,
+        endpoint: arguments.endpoint.clone(),
+        transport: way,
         cut: arguments.cut,
-        patience: Duration::from_secs(arguments.patience),
+        timeout: Duration::from_secs(arguments.patience),
         any_fault: arguments.any_fault,
         reboots: arguments.mutate,
     };
@@ -128,7 +128,7 @@ fn run(arguments: &Arguments) -> Result<bool, (u8, String)> {
         }
     };
     let mut operator = operator.as_mut().map(|operator| &mut **operator as &mut dyn Operator);
-    let unreachable = |e: std::io::Error| (3, format!("no machine at {}: {e}", arguments.place));
+    let unreachable = |e: std::io::Error| (3, format!("no machine at {}: {e}", arguments.endpoint));
     let write = |file: &PathBuf, text: String| {
         std::fs::write(file, text).map_err(|e| usage(format!("{}: {e}", file.display())))
     };

@@ -98,7 +98,7 @@ impl std::fmt::Display for Transport {
 /// Brings command text on its way: into bytes of the line.
 #[derive(Debug)]
 pub struct Sender {
-    way: Transport,
+    transport: Transport,
     cut: Option<Pcg64Mcg>,
     reader: CommandReader,
 }
@@ -108,7 +108,7 @@ impl Sender {
     ///
     /// - `cut`: seed for cutting the stream at random places.
     pub fn new(way: Transport, cut: Option<u64>) -> Sender {
-        Sender { way, cut: cut.map(Pcg64Mcg::seed_from_u64), reader: CommandReader::default() }
+        Sender { transport: way, cut: cut.map(Pcg64Mcg::seed_from_u64), reader: CommandReader::default() }
     }
 
     /// Appends command text in the sender's way. A statement may come in pieces.
@@ -116,7 +116,7 @@ impl Sender {
     /// # Errors
     /// [`WayError`] if the text cannot go this way.
     pub fn write(&mut self, text: &[u8], text_only: bool, out: &mut Vec<u8>) -> Result<(), TransportError> {
-        if self.way.form == Form::Text || text_only {
+        if self.transport.form == Form::Text || text_only {
             self.write_text(text, out);
             return Ok(());
         }
@@ -125,18 +125,18 @@ impl Sender {
         for read in self.reader.by_ref() {
             commands.push(read.map_err(TransportError::Text)?.command);
         }
-        let data = if self.way.form == Form::Binary6 { DataForm::SixBit } else { DataForm::EightBit };
-        let packets = self.way.packets.form().ok_or(TransportError::NoPackets)?;
+        let data = if self.transport.form == Form::Binary6 { DataForm::SixBit } else { DataForm::EightBit };
+        let packets = self.transport.packets.form().ok_or(TransportError::NoPackets)?;
         write_commands_as(Sending { packets, data }, &commands, out).map_err(TransportError::Record)
     }
 
     fn write_text(&mut self, text: &[u8], out: &mut Vec<u8>) {
         let mut rest = text;
         while !rest.is_empty() {
-            let most = if self.way.packets == Packets::None { usize::MAX } else { MAX_COUNT_DATA };
+            let most = if self.transport.packets == Packets::None { usize::MAX } else { MAX_COUNT_DATA };
             let most = self.cut.as_mut().map_or(most, |random| 1 + random.next_u32() as usize % 200);
             let (now, later) = rest.split_at(rest.len().min(most));
-            match self.way.packets.form() {
+            match self.transport.packets.form() {
                 None => out.extend_from_slice(now),
                 Some(form) => write_packet_as(form, Route::Text, now, out).expect("a piece fits every packet"),
             }

@@ -30,13 +30,13 @@ const WRITEBACK_TOLERANCE: f64 = 1e-5;
 #[derive(Clone, Debug)]
 pub struct Target {
     /// Where the machine is.
-    pub place: Endpoint,
+    pub endpoint: Endpoint,
     /// How commands travel.
-    pub way: Transport,
+    pub transport: Transport,
     /// Seed for cutting the stream at random places.
     pub cut: Option<u64>,
     /// How long a machine may take to answer.
-    pub patience: Duration,
+    pub timeout: Duration,
     /// Numbers and texts of the machine's messages do not matter.
     pub any_fault: bool,
     /// The machine is started again (REBOOT) before each case: what a case changes and INITIALIZE spares reaches no other.
@@ -122,13 +122,13 @@ impl<'s> Session<'s> {
         operator: Option<&'s mut dyn Operator>,
         case: &'s Case,
     ) -> Result<Session<'s>, Stop> {
-        let line = Line::attach(&target.place).map_err(Stop::Unreachable)?;
+        let line = Line::attach(&target.endpoint).map_err(Stop::Unreachable)?;
         let mut session = Session {
             target,
             operator,
             case,
             line,
-            sender: Sender::new(target.way, target.cut),
+            sender: Sender::new(target.transport, target.cut),
             reader: MessageReader::default(),
             waiting: Vec::new(),
             messages: VecDeque::new(),
@@ -271,10 +271,10 @@ impl<'s> Session<'s> {
         // A case about the text form may have stopped the interpreter of text only.
         self.sender.write(text.as_bytes(), self.case.text_only, &mut self.waiting)?;
         self.flush()?;
-        let deadline = Instant::now() + self.target.patience;
+        let deadline = Instant::now() + self.target.timeout;
         loop {
             let Some(mut message) = self.receive(deadline)? else {
-                let found = format!("nothing for {:?}, after: {}", self.target.patience, self.collected());
+                let found = format!("nothing for {:?}, after: {}", self.target.timeout, self.collected());
                 return Err(Stop::Failed { expected: "an answer of the machine".into(), found });
             };
             if message.ends_with(token.as_bytes()) {
@@ -327,7 +327,7 @@ impl<'s> Session<'s> {
         }
         // Where time passes by itself, a message may still be on its way.
         if self.messages.is_empty() && !self.time_stands() {
-            let deadline = Instant::now() + self.target.patience;
+            let deadline = Instant::now() + self.target.timeout;
             if let Some(message) = self.receive(deadline)? {
                 self.arrived(message);
             }
@@ -441,7 +441,7 @@ impl<'s> Session<'s> {
         self.commands(&ask, false)?;
         self.flush()?;
         let mut text = WritebackText::default();
-        let deadline = Instant::now() + self.target.patience;
+        let deadline = Instant::now() + self.target.timeout;
         loop {
             let Some(message) = self.receive(deadline)? else {
                 return Err(Stop::Skipped("WRITEBACK tells no strokes".into()));

@@ -32,13 +32,13 @@ struct Node {
     /// ...up to here.
     end: u8,
     /// The beginning that the words so far are, if they are a whole one.
-    whole: Option<u8>,
+    complete: Option<u8>,
 }
 
 impl KeywordTree {
     /// The tree of some beginnings.
     pub(super) const fn new(beginnings: &[&[Word]]) -> KeywordTree {
-        let node = Node { begin: 0, end: 0, whole: None };
+        let node = Node { begin: 0, end: 0, complete: None };
         let mut leads = KeywordTree {
             words: [Word::Set; MAX_KEYWORDS],
             names: [""; MAX_KEYWORDS],
@@ -58,8 +58,8 @@ impl KeywordTree {
                 let beginning = beginnings[index];
                 if begin_alike(beginning, beginnings[sample], depth) {
                     if beginning.len() == depth {
-                        assert!(leads.nodes[at].whole.is_none(), "two commands begin with the same words");
-                        leads.nodes[at].whole = Some(index as u8);
+                        assert!(leads.nodes[at].complete.is_none(), "two commands begin with the same words");
+                        leads.nodes[at].complete = Some(index as u8);
                     } else if !contains(&leads.words, leads.nodes[at].begin as usize, words, beginning[depth]) {
                         leads.words[words] = beginning[depth];
                         leads.names[words] = beginning[depth].capitals();
@@ -102,14 +102,14 @@ impl KeywordTree {
         while node.begin < node.end {
             let words = self.following(node);
             let found = parser.accept_one_of(words).and_then(|found| words.iter().position(|word| *word == found));
-            match (found, node.whole) {
+            match (found, node.complete) {
                 (Some(index), _) => node = self.nodes[usize::from(self.targets[usize::from(node.begin) + index])],
                 (None, Some(_)) => break,
                 (None, None) if first == SETTING.0 => return Err(parser.fail(SETTING.1)),
                 (None, None) => return Err(parser.fail(&self.names[usize::from(node.begin)..usize::from(node.end)])),
             }
         }
-        node.whole.map(usize::from).ok_or_else(|| parser.fail(&[]))
+        node.complete.map(usize::from).ok_or_else(|| parser.fail(&[]))
     }
 }
 

@@ -42,10 +42,10 @@ pub fn rows() -> impl Iterator<Item = &'static CommandRow> {
 
 /// A name that no row has, with the nearest name if one is near.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no command {asked}{}", .nearest.map(|name| format!("; did you mean {name}?")).unwrap_or_default())]
+#[error("there is no command {requested}{}", .nearest.map(|name| format!("; did you mean {name}?")).unwrap_or_default())]
 pub struct UnknownCommand {
     /// What was asked for.
-    pub asked: String,
+    pub requested: String,
     /// The nearest name of a row.
     pub nearest: Option<&'static str>,
 }
@@ -79,7 +79,7 @@ pub fn find(name: &str) -> Result<Vec<&'static CommandRow>, UnknownCommand> {
         let word = upper.iter().find(|pair| pair.0 == near)?.1;
         rows().find(|row| row.words().any(|w| w == word)).map(|row| row.name)
     });
-    Err(UnknownCommand { asked: name.to_owned(), nearest: word })
+    Err(UnknownCommand { requested: name.to_owned(), nearest: word })
 }
 
 /// The parts of a name between blanks and underscores.

@@ -65,7 +65,7 @@ impl Gpu {
         let written = written.unwrap_or_else(|_| Err("the graphics library failed".into()));
         let Err(why) = written else { return true };
         if self.given_up.set(()).is_ok() {
-            let why = self.device.trouble.get().unwrap_or(&why);
+            let why = self.device.failure.get().unwrap_or(&why);
             tracing::warn!("{} failed: {why}; the processor draws the vector screen from now on", self.device.name);
         }
         false
@@ -96,7 +96,7 @@ impl Gpu {
             }
         }
         canvas.read(&self.device, light)?;
-        self.device.trouble.get().map_or(Ok(()), |why| Err(why.clone()))
+        self.device.failure.get().map_or(Ok(()), |why| Err(why.clone()))
     }
 
     /// Destroys the device, as when it is lost.

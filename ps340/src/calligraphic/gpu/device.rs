@@ -46,7 +46,7 @@ pub(super) struct Device {
     /// For one gun and for three.
     pub(super) pipelines: [wgpu::RenderPipeline; 2],
     /// What the device complained about, at any time.
-    pub(super) trouble: Arc<OnceLock<String>>,
+    pub(super) failure: Arc<OnceLock<String>>,
 }
 
 impl Device {
@@ -96,13 +96,13 @@ impl Device {
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&wanted))
             .map_err(|error| GpuError::Refused { name: name.clone(), why: error.to_string() })?;
-        let trouble = Arc::new(OnceLock::new());
-        let (noted, lost) = (trouble.clone(), trouble.clone());
+        let failure = Arc::new(OnceLock::new());
+        let (noted, lost) = (failure.clone(), failure.clone());
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| drop(noted.set(error.to_string()))));
         device.set_device_lost_callback(move |reason, text| drop(lost.set(format!("lost ({reason:?}) {text}"))));
         let pipelines = pipelines(&device);
-        let opened = Device { name, device, queue, pipelines, trouble };
-        match opened.trouble.get() {
+        let opened = Device { name, device, queue, pipelines, failure };
+        match opened.failure.get() {
             Some(why) => Err(GpuError::Refused { name: opened.name, why: why.clone() }),
             None => Ok(opened),
         }
@@ -111,7 +111,7 @@ impl Device {
     /// Waits until something is done.
     pub(super) fn wait(&self, sent: wgpu::SubmissionIndex) -> Result<(), String> {
         let waited = self.device.poll(PollType::Wait { submission_index: Some(sent), timeout: Some(DEVICE_TIMEOUT) });
-        match (waited, self.trouble.get()) {
+        match (waited, self.failure.get()) {
             (_, Some(why)) => Err(why.clone()),
             (Err(error), None) => Err(error.to_string()),
             (Ok(_), None) => Ok(()),

@@ -57,7 +57,7 @@ impl StrokeInstance {
         Some(Self {
             anchor: anchor.map(|pixels| pixels as f32),
             step: track.step,
-            course: [track.u, track.rest, track.v],
+            course: [track.u, track.to_end, track.v],
             kind,
             terms: [terms[0], terms[1], terms[2], terms[3]],
             from: from - REACH,

@@ -54,12 +54,12 @@ fn instances_of_instances_of_instances_are_drawn_and_deleted() {
 fn a_structure_that_contains_itself_is_drawn_once_and_named() {
     let desk = told(&format!("{DOT} A := INSTANCE OF D, B; B := INSTANCE OF A, D; DISPLAY A;"));
     let drawn = update(&desk);
-    assert_eq!(drawn.trouble, Some(UpdateFault::ContainsItself(desk.id("A"))));
+    assert_eq!(drawn.fault, Some(UpdateFault::ContainsItself(desk.id("A"))));
     assert_eq!(drawn.strokes.len(), 2);
     let mut desk = told(&format!("{DOT} A := SCALE BY 0.5 APPLIED TO A; DISPLAY A;"));
-    assert!(matches!(update(&desk).trouble, Some(UpdateFault::ContainsItself(_))));
+    assert!(matches!(update(&desk).fault, Some(UpdateFault::ContainsItself(_))));
     desk.tell("DELETE A;");
-    assert_eq!(update(&desk).trouble, None);
+    assert_eq!(update(&desk).fault, None);
 }
 
 #[test]

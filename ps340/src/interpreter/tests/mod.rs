@@ -46,7 +46,7 @@ impl Desk {
     /// Where the strokes of an update begin, rounded to 1/1000.
     fn picture(&self) -> Vec<[f32; 2]> {
         let update = traversal::update(&self.memory.structures, 0, &Requests::default());
-        assert_eq!(update.trouble, None);
+        assert_eq!(update.fault, None);
         update.strokes.iter().map(|s| s.start.map(|c| (c * 1000.0).round() / 1000.0)).collect()
     }
 

@@ -78,8 +78,8 @@ fn list(address: u32, words: u16) -> Vec<u8> {
 }
 
 /// An error answer.
-fn error(word: u16, trouble: ParallelError) -> [ParallelFrame; 2] {
-    [ParallelFrame::Word(word | ERROR), ParallelFrame::Word(trouble as u16)]
+fn error(word: u16, error: ParallelError) -> [ParallelFrame; 2] {
+    [ParallelFrame::Word(word | ERROR), ParallelFrame::Word(error as u16)]
 }
 
 const V: &str = "V := VECTOR_LIST ITEMIZED P 0.25,0,0 L 0.5,0,0; DISPLAY V;";

@@ -74,7 +74,7 @@ pub struct MirrorFrame {
 
 /// A copy of what people see, renewed by the machine's thread and read by the window's.
 pub struct Mirror {
-    asked: Mutex<MirrorRequest>,
+    requested: Mutex<MirrorRequest>,
     shown: Mutex<Arc<MirrorFrame>>,
     traffic: Mutex<Traffic>,
     screen: Arc<SharedDisplay>,
@@ -88,7 +88,7 @@ impl Mirror {
     /// - `drawer`: who writes the light of the vector screen.
     pub fn new(drawer: Drawer, wake: impl Fn() + Send + Sync + 'static) -> Mirror {
         Mirror {
-            asked: Mutex::default(),
+            requested: Mutex::default(),
             shown: Mutex::default(),
             traffic: Mutex::default(),
             screen: Arc::new(SharedDisplay::new(drawer)),
@@ -102,10 +102,10 @@ impl Mirror {
     }
 
     /// Says what is wanted from now on.
-    pub fn request(&self, asked: &MirrorRequest) {
-        let mut now = lock(&self.asked);
-        if *now != *asked {
-            now.clone_from(asked);
+    pub fn request(&self, requested: &MirrorRequest) {
+        let mut now = lock(&self.requested);
+        if *now != *requested {
+            now.clone_from(requested);
         }
     }
 
@@ -116,7 +116,7 @@ impl Mirror {
 
     /// Bytes pass on a host line.
     pub(super) fn pass(&self, line: LineId, from_host: bool, bytes: &[u8], machine: &Machine) {
-        if lock(&self.asked).traffic {
+        if lock(&self.requested).traffic {
             lock(&self.traffic).record(time_of_frame(machine.frame()), line, from_host, bytes);
         }
     }
@@ -161,30 +161,30 @@ impl Mirror {
 
     /// Copies what people read; whether something of it is new.
     fn renew_texts(&self, shown: &mut MirrorFrame, machine: &mut Machine) -> bool {
-        let asked = lock(&self.asked).clone();
+        let requested = lock(&self.requested).clone();
         let mut is_new = false;
-        if let Some(pattern) = &asked.network {
+        if let Some(pattern) = &requested.network {
             if !machine.memory().network.counts_activity() {
                 machine.instruments().count_activity(true);
             }
             is_new |= renew(&mut shown.network, network::functions(machine, pattern));
         }
-        if asked.structure {
+        if requested.structure {
             is_new |= renew(&mut shown.structure, structure::tree(machine));
         }
-        if asked.log
+        if requested.log
             && (shown.log.len() != machine.log().count()
                 || shown.log.last().map(String::as_str) != machine.log().last())
         {
             is_new |= renew(&mut shown.log, machine.log().map(str::to_owned).collect());
         }
-        if asked.refresh {
+        if requested.refresh {
             let refresh = Some(machine.refresh());
             is_new |= refresh != shown.refresh;
             shown.refresh = refresh;
         }
         let mut traffic = lock(&self.traffic);
-        if !asked.traffic {
+        if !requested.traffic {
             traffic.clear();
         } else if traffic.take_change() {
             shown.traffic = Arc::new(traffic.entries().cloned().collect());

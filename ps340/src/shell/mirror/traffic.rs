@@ -22,9 +22,9 @@ pub struct TrafficEntry {
 /// What passed lately.
 #[derive(Debug, Default)]
 pub struct Traffic {
-    passed: VecDeque<TrafficEntry>,
+    entries: VecDeque<TrafficEntry>,
     bytes: usize,
-    has_news: bool,
+    has_changed: bool,
 }
 
 impl Traffic {
@@ -32,23 +32,23 @@ impl Traffic {
     pub(super) fn record(&mut self, micros: u64, line: LineId, from_host: bool, bytes: &[u8]) {
         let bytes: Arc<[u8]> = bytes[..bytes.len().min(MAX_TRAFFIC)].into();
         self.bytes += bytes.len();
-        self.passed.push_back(TrafficEntry { micros, line, from_host, bytes });
-        self.has_news = true;
+        self.entries.push_back(TrafficEntry { micros, line, from_host, bytes });
+        self.has_changed = true;
         // Many small pieces count as well: each is an entry of a list on the screen.
-        while self.bytes > MAX_TRAFFIC || self.passed.len() > MAX_TRAFFIC / 16 {
-            let Some(oldest) = self.passed.pop_front() else { break };
+        while self.bytes > MAX_TRAFFIC || self.entries.len() > MAX_TRAFFIC / 16 {
+            let Some(oldest) = self.entries.pop_front() else { break };
             self.bytes -= oldest.bytes.len();
         }
     }
 
     /// Whether something has passed since this was asked last.
     pub(super) fn take_change(&mut self) -> bool {
-        std::mem::take(&mut self.has_news)
+        std::mem::take(&mut self.has_changed)
     }
 
     /// What is kept, oldest first.
     pub(super) fn entries(&self) -> impl Iterator<Item = &TrafficEntry> {
-        self.passed.iter()
+        self.entries.iter()
     }
 
     pub(super) fn clear(&mut self) {

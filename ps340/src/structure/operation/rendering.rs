@@ -20,7 +20,7 @@ macro_rules! rendering_rows {
     SectioningPlane = {
         named "SECTIONING_PLANE";
         from Operate::SectioningPlane => Operation::SectioningPlane;
-        below state => state.sight.iter_mut().for_each(|sight| sight.cut());
+        below state => state.factors.iter_mut().for_each(|factors| factors.cut());
     }
 
     /// XFORM MATRIX.

@@ -250,7 +250,7 @@ fn structures_a_thousand_levels_deep_are_drawn_and_deeper_than_the_limit_are_rep
         }
         structures.display(ObjectId::new(levels));
         let update = update(&structures, 0, &Requests::default());
-        assert_eq!((update.strokes.len(), update.trouble), (usize::from(trouble.is_none()), trouble));
+        assert_eq!((update.strokes.len(), update.fault), (usize::from(trouble.is_none()), trouble));
     }
 }
 
@@ -263,7 +263,7 @@ fn a_cycle_is_drawn_once_and_named() {
     structures.define(b, Node::Group(vec![Member::Unnamed(point()), again]));
     structures.display(a);
     let update = update(&structures, 0, &Requests::default());
-    assert_eq!(update.trouble, Some(UpdateFault::ContainsItself(a)));
+    assert_eq!(update.fault, Some(UpdateFault::ContainsItself(a)));
     assert_eq!(update.strokes.len(), 2);
 }
 

@@ -191,7 +191,7 @@ fn a_structure_that_contains_itself_ends() {
     let id = ObjectId::new(0);
     structures.define(id, Node::Instance(vec![id]));
     structures.display(id);
-    assert_eq!(update(&structures, 0, &Requests::default()).trouble, Some(UpdateFault::ContainsItself(id)));
+    assert_eq!(update(&structures, 0, &Requests::default()).fault, Some(UpdateFault::ContainsItself(id)));
 }
 
 #[test]
@@ -202,7 +202,7 @@ fn instances_of_instances_of_instances_end() {
     }
     structures.define(ObjectId::new(0), Node::Nil);
     structures.display(ObjectId::new(63));
-    assert_eq!(update(&structures, 0, &Requests::default()).trouble, Some(UpdateFault::TooManyVisits));
+    assert_eq!(update(&structures, 0, &Requests::default()).fault, Some(UpdateFault::TooManyVisits));
 }
 
 #[test]
@@ -260,7 +260,7 @@ fn text_under_instances_of_instances_ends() {
         structures.define(ObjectId::new(i), Node::Instance(vec![ObjectId::new(i - 1); 100]));
     }
     structures.display(ObjectId::new(3));
-    assert_eq!(update(&structures, 0, &Requests::default()).trouble, Some(UpdateFault::TooManyVectors));
+    assert_eq!(update(&structures, 0, &Requests::default()).fault, Some(UpdateFault::TooManyVectors));
 }
 
 /// A text and lists of 1 to 300,000 vectors, the second on screen 1 only.

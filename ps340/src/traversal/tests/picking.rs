@@ -33,7 +33,7 @@ fn the_first_vector_in_the_box_is_picked_with_its_identifiers_nearest_first() {
     assert_eq!(hit.index, 3);
     assert_eq!(hit.identifiers.iter().map(Name::as_str).collect::<Vec<_>>(), ["INNER", "OUTER"]);
     assert_eq!(hit.kind, PickedKind::Vectors);
-    let place = hit.place.unwrap();
+    let place = hit.coordinates.unwrap();
     assert!(place.point.abs_diff_eq(DVec3::new(0.0, 0.3, 0.0), 1e-12), "{place:?}");
     assert_eq!(pick(&structures, 0.0, 0.0).map(|hit| hit.index), Some(2), "both meet there: the first drawn");
     assert_eq!(pick(&structures, 0.2, 0.2), None);
@@ -79,7 +79,7 @@ fn the_picked_point_is_right_in_perspective_and_in_a_viewport() {
         pickable(vec![identifier("A"), operate(viewport), operate(fov(90.0, 0.5, 10.0)), Member::Unnamed(data)]);
     let t = 0.4;
     let seen = 2.0 * t / (1.0 + 3.0 * t);
-    let place = pick(&structures, 0.5 + seen / 2.0, 0.5).unwrap().place.unwrap();
+    let place = pick(&structures, 0.5 + seen / 2.0, 0.5).unwrap().coordinates.unwrap();
     assert!(place.point.abs_diff_eq(DVec3::new(2.0 * t, 0.0, 1.0 + 3.0 * t), 1e-6), "{place:?}");
 }
 
@@ -101,7 +101,7 @@ fn a_curve_tells_its_parameter() {
     }
     let hit = pick(&pickable(vec![identifier("A"), Member::Unnamed(node)]), 0.0, 0.25).unwrap();
     assert_eq!(hit.kind, PickedKind::Curve);
-    assert!((hit.place.unwrap().parameter.unwrap() - 17.5).abs() < 1e-9);
+    assert!((hit.coordinates.unwrap().parameter.unwrap() - 17.5).abs() < 1e-9);
 }
 
 #[test]
