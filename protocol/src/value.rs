@@ -254,9 +254,9 @@ impl Value {
             Value::Matrix2(m) => m.is_finite(),
             Value::Matrix3(m) => m.is_finite(),
             Value::Matrix4x3(m) | Value::Matrix4(m) | Value::Transform(m) => is_finite(m),
-            Value::Pick(pick) => {
-                pick.coordinates.is_none_or(|place| place.point.is_finite() && place.parameter.is_none_or(f64::is_finite))
-            }
+            Value::Pick(pick) => pick
+                .coordinates
+                .is_none_or(|place| place.point.is_finite() && place.parameter.is_none_or(f64::is_finite)),
             Value::Label(label) => label.position.is_finite(),
             Value::Vectors(vectors) => vectors.ends.iter().all(|end| end.point.is_finite()),
         }

@@ -1,6 +1,6 @@
 //! A picture of either screen: linear red, green and blue, as PNG or OpenEXR.
 
-use files::{Sandbox, Destination, WriteError};
+use files::{Destination, Sandbox, WriteError};
 use protocol::raster::srgb_from_linear;
 use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};

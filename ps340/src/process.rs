@@ -6,7 +6,7 @@ use crate::{
     cli,
     line::LineAddress,
     machine::{KeyboardMode, PlainText, Settings},
-    shell::{TimeSource, ExitReason, INTERRUPTED, Operator, Options, run},
+    shell::{ExitReason, INTERRUPTED, Operator, Options, TimeSource, run},
 };
 use clap::Parser;
 use protocol::address::Endpoint;

@@ -9,7 +9,7 @@ use std::f64::consts::{PI, TAU};
 use std::hint::black_box;
 
 use glam::{DAffine3, DVec2, DVec3};
-use host::intersection::{Intersection, CurvePrecision, ExactSheet, intersect};
+use host::intersection::{CurvePrecision, ExactSheet, Intersection, intersect};
 use host::solid::primitive::{cylinder, prism, sphere, torus};
 use host::solid::{Body, EdgeChoice, ExactSolid, PrimitiveError};
 use host::surface::Tolerance;

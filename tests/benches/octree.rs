@@ -9,7 +9,7 @@ use std::time::Instant;
 use glam::DVec3;
 use host::mesh::{Mesh, bunny};
 use host::numeric::bounds::Bounds;
-use host::octree::{Octree, OctreeSettings, Containment, TriangleBvh, Walk};
+use host::octree::{Containment, Octree, OctreeSettings, TriangleBvh, Walk};
 
 /// The least of so many times counts.
 const TRIALS: usize = 5;
@@ -67,7 +67,8 @@ fn whole(mesh: &Mesh) {
         })
         .collect();
     let corners = |triangle: u32| mesh.corners(triangle as usize);
-    let count = |side: &dyn Fn(DVec3) -> Containment| points.iter().filter(|&&p| side(p) == Containment::Inside).count();
+    let count =
+        |side: &dyn Fn(DVec3) -> Containment| points.iter().filter(|&&p| side(p) == Containment::Inside).count();
     let (by_octree, by_sorted) = (count(&|p| octree.containment(p)), count(&|p| sorted.containment(p, corners)));
     assert_eq!(by_octree, by_sorted, "both structures say the same");
     let thousand = points.len() as f64 / 1e3;

@@ -137,7 +137,8 @@ fn build(shape: &Shape) -> (Octree, Duration) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     pool.install(|| {
         let start = processor_seconds();
-        let octree = Octree::build(&shape.vertices, &shape.triangles, &OctreeSettings::default()).expect("a sound mesh");
+        let octree =
+            Octree::build(&shape.vertices, &shape.triangles, &OctreeSettings::default()).expect("a sound mesh");
         (octree, Duration::from_secs_f64(processor_seconds() - start))
     })
 }

@@ -11,7 +11,7 @@ use ps340::{
     structure::Operation,
 };
 use std::time::Instant;
-use tests::facets::{facets, matrix, to_screen, polygons, view, z_buffer};
+use tests::facets::{facets, matrix, polygons, to_screen, view, z_buffer};
 
 /// Lines and columns of the image.
 const SIZE: usize = 480;

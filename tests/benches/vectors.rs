@@ -132,7 +132,13 @@ fn updates() {
             *seconds = one.install(|| {
                 best(|| {
                     let room = std::mem::take(&mut update.strokes);
-                    update = traversal::update_into(&structures, 0, &Requests::default(), room, traversal::MAX_STORED_VECTORS);
+                    update = traversal::update_into(
+                        &structures,
+                        0,
+                        &Requests::default(),
+                        room,
+                        traversal::MAX_STORED_VECTORS,
+                    );
                 })
             });
             assert_eq!(update.strokes.len(), count, "all are seen");

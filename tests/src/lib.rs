@@ -5,9 +5,9 @@
 pub mod conformance;
 pub mod simple;
 pub mod corpus;
-pub mod desk;
+pub mod windowed;
 pub mod facets;
-pub mod house;
+pub mod source_tree;
 pub mod notices;
 pub mod readers;
 
@@ -67,7 +67,8 @@ impl Machine {
                 }
             }
         });
-        let mut machine = Machine { child, operator_input: orders, errors, replies, line: String::new(), more_lines: Vec::new() };
+        let mut machine =
+            Machine { child, operator_input: orders, errors, replies, line: String::new(), more_lines: Vec::new() };
         loop {
             let line = machine.replies.recv_timeout(TIMEOUT).expect("the machine gets ready");
             match line.strip_prefix("ready line ") {

@@ -15,7 +15,7 @@ use ps340::{
     rendering::{RenderingResult, Segment, render},
 };
 use std::collections::{HashMap, HashSet};
-use tests::facets::{facets, matrix, to_screen, polygons, view};
+use tests::facets::{facets, matrix, polygons, to_screen, view};
 
 /// Steps of the beam's grid across the screen.
 const STEPS: usize = 1 << 24;

@@ -7,7 +7,7 @@ use host::{
     production::{Production, difference, view_of_dials},
     render::{RenderOrder, Watch},
     script,
-    workstation::{Drawing, DrawnEdges, Timeouts, Session},
+    workstation::{Drawing, DrawnEdges, Session, Timeouts},
 };
 use std::{collections::BTreeMap, fs, path::Path, time::Duration};
 use tests::{Ended, Machine, run};

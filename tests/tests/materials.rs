@@ -1,7 +1,7 @@
 //! Materials as somebody writes them in a script: names, numbers that patterns tell, and what is said of mistakes.
 
 use host::color::shipped;
-use host::illumination::material::{MaterialKind, Finish, RefractiveIndex, Transparent};
+use host::illumination::material::{Finish, MaterialKind, RefractiveIndex, Transparent};
 use host::illumination::texture::NumberTexture;
 use host::script::{self, Inputs};
 use std::fs;

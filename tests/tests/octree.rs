@@ -5,7 +5,7 @@ use host::{
     mesh::{Mesh, bunny},
     numeric::sampling::{self, RandomStream},
     octree::{
-        Octree, Ray, OctreeSettings,
+        Octree, OctreeSettings, Ray,
         brute_force::{Agreement, agreement, closest_many},
     },
     surface::{Tolerance, teapot, tessellate},
@@ -40,7 +40,8 @@ fn rays(mesh: &Mesh, count: usize) -> Vec<Ray> {
 
 /// Every hit is the same, apart from ties, which are counted.
 fn compare(name: &str, mesh: &Mesh) {
-    let octree = Octree::build(&mesh.vertices, &mesh.triangles, &OctreeSettings::default()).expect("the octree is built");
+    let octree =
+        Octree::build(&mesh.vertices, &mesh.triangles, &OctreeSettings::default()).expect("the octree is built");
     let rays = rays(mesh, RAYS);
     let expected = closest_many(&mesh.vertices, &mesh.triangles, &rays, 0.0, f64::INFINITY);
     let (mut hits, mut ties) = (0, 0);
@@ -72,7 +73,8 @@ fn a_million_rays_hit_the_teapot_where_all_its_triangles_say() {
 fn no_ray_leaves_the_bunny_through_a_vertex_or_an_edge() {
     let mesh = bunny().expect("it ships");
     assert!(mesh.edge_report().is_closed());
-    let octree = Octree::build(&mesh.vertices, &mesh.triangles, &OctreeSettings::default()).expect("the octree is built");
+    let octree =
+        Octree::build(&mesh.vertices, &mesh.triangles, &OctreeSettings::default()).expect("the octree is built");
     let bounds = mesh.bounds().expect("the mesh has vertices");
     let inside = DVec3::new(-0.02, 0.09, 0.0);
     assert!(inside.cmpgt(bounds.min).all() && inside.cmplt(bounds.max).all(), "{bounds:?}");

@@ -7,7 +7,7 @@ use host::render::radiosity::Radiosity;
 use host::render::scan_line::ScanLine;
 use host::render::{RenderOrder, Renderer, Watch, World, ray_tracer};
 use host::scene::Prepared;
-use host::script::{ParameterAssignment, Inputs, load_file};
+use host::script::{Inputs, ParameterAssignment, load_file};
 use serde_json::Value;
 use std::path::Path;
 use std::sync::Arc;
@@ -34,7 +34,10 @@ fn means_of_blocks_are_those_of_mitsuba_within_the_errors_of_both() {
         let told = case["told"].as_object().expect("what the script is told");
         let mut definitions: Vec<ParameterAssignment> = told
             .iter()
-            .map(|(name, value)| ParameterAssignment { name: name.clone(), value: value.as_str().expect("text").to_owned() })
+            .map(|(name, value)| ParameterAssignment {
+                name: name.clone(),
+                value: value.as_str().expect("text").to_owned(),
+            })
             .collect();
         definitions.push(ParameterAssignment { name: "count".into(), value: "64".into() });
         let script = folder.join(case["script"].as_str().expect("a script"));
@@ -91,7 +94,8 @@ fn the_cornell_box_by_radiosity_is_that_of_mitsuba_within_a_percent_and_each_reg
     let solution = Radiosity::new(&world, &plan, &prepared.settings.radiosity, None, &Watch::NOBODY);
     let solution = solution.expect("a solution");
     let scan_line = ScanLine::showing(Arc::new(solution), world, &plan);
-    let picture = scan_line.render(&view, &RenderOrder::of(&prepared.settings), &Watch::NOBODY).expect("a picture").picture;
+    let picture =
+        scan_line.render(&view, &RenderOrder::of(&prepared.settings), &Watch::NOBODY).expect("a picture").picture;
     let side = 128 / theirs.len();
     let mean_of = |bands: &[f64; 3]| bands.iter().sum::<f64>() / 3.0;
     let ours = |x: usize, y: usize| {

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
-use tests::house::{CRATES, Crate, Uses, code, members, read, root, sources};
+use tests::source_tree::{CRATES, Crate, Uses, code, members, read, root, sources};
 
 /// Most lines of a source file.
 const MAX_LINES: usize = 600;

@@ -8,7 +8,7 @@ use host::{
     render::{RenderOrder, Renderer, Watch, World, indirect::IndirectLight, radiosity::Radiosity, scan_line::ScanLine},
     scene::{Prepared, Projection, View},
     script,
-    workstation::{Timeouts, Session},
+    workstation::{Session, Timeouts},
 };
 use std::{fs, path::Path, sync::Arc, time::Duration};
 use tests::{Machine, run};

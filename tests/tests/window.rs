@@ -8,7 +8,7 @@ use std::{
     process::Command,
     time::{Duration, Instant},
 };
-use tests::{TIMEOUT, desk::WindowedMachine, run};
+use tests::{TIMEOUT, run, windowed::WindowedMachine};
 
 const PS340: &str = env!("CARGO_BIN_EXE_ps340-under-test");
 const PERIS: &str = env!("CARGO_BIN_EXE_peris-under-test");

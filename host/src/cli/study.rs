@@ -102,7 +102,8 @@ fn measure(arguments: &IlluminationArguments) -> Result<(), CommandFailure> {
     let study = illumination(&arguments.roughness, &watch)?;
     progress::clear();
     let table = study.csv();
-    let csv = folder.write_or_save_elsewhere(&format!("{ILLUMINATION}.csv"), |file| file.write_all(table.as_bytes()))?;
+    let csv =
+        folder.write_or_save_elsewhere(&format!("{ILLUMINATION}.csv"), |file| file.write_all(table.as_bytes()))?;
     let mut written = vec![csv];
     for (roughness, plot) in study.plots() {
         written.extend(plot.write(&folder, &format!("{ILLUMINATION}-{roughness}"))?);

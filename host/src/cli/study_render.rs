@@ -88,7 +88,8 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), CommandFailure> {
     let study = renderers(&scene, &techniques, &names, &options, &watch)?;
     progress::clear();
     let table = study.csv();
-    let csv = folder.write_or_save_elsewhere(&format!("{script}-{NAME}.csv"), |file| file.write_all(table.as_bytes()))?;
+    let csv =
+        folder.write_or_save_elsewhere(&format!("{script}-{NAME}.csv"), |file| file.write_all(table.as_bytes()))?;
     let mut written = vec![csv];
     for (name, plot) in study.plots(script) {
         written.extend(plot.write(&folder, &format!("{script}-{NAME}{name}"))?);

@@ -57,7 +57,8 @@ impl Picture {
                 };
                 let channels = SpecificChannels::rgba(pixel);
                 let image = encoder::exr([width, height], channels, provenance);
-                destination.write_or_save_elsewhere(|file| image.write().to_buffered(file).map_err(encoder::exr_error))?;
+                destination
+                    .write_or_save_elsewhere(|file| image.write().to_buffered(file).map_err(encoder::exr_error))?;
             }
         }
         Ok(())

@@ -188,8 +188,9 @@ impl Plot {
         let svg = folder.write_or_save_elsewhere(&format!("{name}.svg"), |file| file.write_all(text.as_bytes()))?;
         let (bytes, width, height) = self.pixels()?;
         let png = format!("{name}.png");
-        let png =
-            folder.write_or_save_elsewhere(&png, |file| encoder::png(file, &bytes, [width, height], &Provenance::default()))?;
+        let png = folder.write_or_save_elsewhere(&png, |file| {
+            encoder::png(file, &bytes, [width, height], &Provenance::default())
+        })?;
         Ok([svg, png])
     }
 

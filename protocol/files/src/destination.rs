@@ -100,7 +100,10 @@ impl Destination {
     ///
     /// # Errors
     /// [`WriteError`], also with [`Problem::Elsewhere`] if the content is kept there.
-    pub fn write_or_save_elsewhere(&self, content: impl Fn(&mut Writer<'_>) -> io::Result<()>) -> Result<(), WriteError> {
+    pub fn write_or_save_elsewhere(
+        &self,
+        content: impl Fn(&mut Writer<'_>) -> io::Result<()>,
+    ) -> Result<(), WriteError> {
         let name = self.target.file_name().unwrap_or_default();
         self.try_write(&content).map_err(|problem| self.failed(saved_elsewhere(name, problem, &content)))
     }
@@ -438,7 +441,8 @@ mod tests {
         }
         let name = format!("kept-in-folder-{}", std::process::id());
         fs::create_dir(folder.path().join(&name)).expect("a folder");
-        let error = folder.write_or_save_elsewhere(&name, |file| file.write_all(b"two")).expect_err("a folder has the name");
+        let error =
+            folder.write_or_save_elsewhere(&name, |file| file.write_all(b"two")).expect_err("a folder has the name");
         let Problem::Elsewhere { saved_as: kept, why } = error.problem else { panic!("{error}") };
         assert!(matches!(*why, Problem::IsAFolder));
         assert_eq!(fs::read(&kept).expect("there"), b"two");

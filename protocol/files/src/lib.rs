@@ -6,13 +6,13 @@
 mod error;
 mod draft;
 mod destination;
-mod beneath;
-mod growing;
+mod sandbox;
+mod log_file;
 mod read;
 
-pub use beneath::Sandbox;
 pub use destination::{Destination, Folder, Writer};
 pub use draft::naming;
 pub use error::{Problem, WriteError};
-pub use growing::LogFile;
+pub use log_file::LogFile;
 pub use read::{open, read, read_text};
+pub use sandbox::Sandbox;

@@ -2,7 +2,7 @@
 
 mod line;
 
-pub use line::{Conditions, LineAddress, LineAddressError, Parity, Endpoint, Serial};
+pub use line::{Conditions, Endpoint, LineAddress, LineAddressError, Parity, Serial};
 
 use std::{fmt, path::PathBuf, str::FromStr};
 

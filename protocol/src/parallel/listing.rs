@@ -1,7 +1,8 @@
 //! A listing of a dialogue over the parallel interface for people.
 
 use super::{
-    AddressList, Code, CommandWord, DONE, ERROR, ParallelFrame, ParallelFrameReader, INFORMATION, ParallelError, write_block, write_word,
+    AddressList, Code, CommandWord, DONE, ERROR, INFORMATION, ParallelError, ParallelFrame, ParallelFrameReader,
+    write_block, write_word,
 };
 use std::fmt::Write;
 

@@ -9,7 +9,7 @@ mod frame;
 mod listing;
 
 pub use address::{AddressList, Block, MAX_BLOCKS};
-pub use frame::{ParallelFrame, ParallelFrameReader, MAX_BLOCK_BYTES, write_block, write_reset, write_word};
+pub use frame::{MAX_BLOCK_BYTES, ParallelFrame, ParallelFrameReader, write_block, write_reset, write_word};
 pub use listing::{ParallelListing, Side};
 
 /// Added to a command word in the answer that its block has been taken or given.

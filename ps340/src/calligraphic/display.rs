@@ -18,7 +18,7 @@ use super::drawer::Drawer;
 use super::exposure::Exposure;
 use super::phosphor::Emission;
 use super::tile::{PLANE, STRIDE, TILE_HEIGHT, TILE_WIDTH, Tile};
-use super::{Controls, ScreenLight, Refresh};
+use super::{Controls, Refresh, ScreenLight};
 use crate::picture::Picture;
 use crate::traversal::Stroke;
 use processes::widest::{self, Work};
@@ -198,7 +198,8 @@ impl Display {
         light.write(bins, &[]);
         give(&mut |strokes| light.add(bins, strokes));
         self.glow(1, f64::INFINITY, 1, 0);
-        self.written = Some(Written { version: u64::MAX, frame: 0, refreshed: 0, period: 1, unchanged_frames: u64::MAX / 2 });
+        self.written =
+            Some(Written { version: u64::MAX, frame: 0, refreshed: 0, period: 1, unchanged_frames: u64::MAX / 2 });
         self.expose(true);
     }
 
@@ -236,7 +237,12 @@ impl Display {
     /// Whether the picture is refreshed in every frame, and the phosphor glows as it will for ever.
     fn is_steady(&self, written: &Written) -> bool {
         let steady = self.controls.steady || written.period == 1;
-        steady && self.emission.slow.iter().all(|slow| f64::from(slow.remaining).powf(written.unchanged_frames as f64) < UNSEEN)
+        steady
+            && self
+                .emission
+                .slow
+                .iter()
+                .all(|slow| f64::from(slow.remaining).powf(written.unchanged_frames as f64) < UNSEEN)
     }
 
     /// Whether a refresh is seen in the frame that is shown.

@@ -1,6 +1,6 @@
 //! `ps340 decode`: what every byte of a stream means.
 
-use super::trouble::{ToolError, of_output, open};
+use super::error::{ToolError, of_output, open};
 use protocol::{
     capture::{CaptureReader, Event, Record, is_capture},
     listing::{Listing, Sender},
@@ -60,7 +60,9 @@ pub(super) fn run(arguments: &DecodeArguments) -> Result<ExitCode, ToolError> {
     let sender = match arguments.from {
         None | Some(StreamSide::Host) => Sender::Host,
         Some(StreamSide::Machine) => Sender::Machine,
-        Some(StreamSide::Both) => return Err(ToolError::Usage("--from both is for captures; a plain stream has one".into())),
+        Some(StreamSide::Both) => {
+            return Err(ToolError::Usage("--from both is for captures; a plain stream has one".into()));
+        }
     };
     let mut out = BufWriter::new(io::stdout().lock());
     let mut listing = Listing::of(sender);

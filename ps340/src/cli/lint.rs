@@ -1,6 +1,6 @@
 //! `ps340 lint`: what is wrong in command files.
 
-use super::trouble::{ToolError, read, print};
+use super::error::{ToolError, print, read};
 use crate::lint::{Finding, Level, lint};
 use std::{path::PathBuf, process::ExitCode};
 

@@ -1,6 +1,6 @@
 //! The sub-commands of `ps340`: tools for people who write programs for the machine.
 
-mod trouble;
+mod error;
 mod reference;
 mod decode;
 mod lint;

@@ -1,13 +1,13 @@
 //! `ps340 play`: command files on a machine in virtual time, with pictures, a transcript and an exit code.
 
-use super::trouble::{ToolError, read, print};
+use super::error::{ToolError, print, read};
 use crate::{
     example::{EXAMPLES, example},
     machine::Settings,
     picture::Picture,
     play::{PlayEnd, PlayOptions, Player, Script, Watcher},
 };
-use files::{Sandbox, Destination, LogFile};
+use files::{Destination, LogFile, Sandbox};
 use std::{
     io::{self, BufWriter, IsTerminal, Write},
     path::PathBuf,

@@ -1,6 +1,6 @@
 //! `ps340 functions` and `ps340 commands`: the reference, from the tables.
 
-use super::trouble::{ToolError, print};
+use super::error::{ToolError, print};
 use crate::functions::page;
 use protocol::command::reference;
 use std::process::ExitCode;

@@ -1,6 +1,6 @@
 //! The tools by their names, and how each is run.
 
-use super::{decode, lint, play, reference, trouble::ToolError};
+use super::{decode, error::ToolError, lint, play, reference};
 use clap::Subcommand;
 use std::process::ExitCode;
 
@@ -37,7 +37,7 @@ pub fn run(tool: &Tool) -> ExitCode {
         Tool::Functions { name } => reference::functions(name.as_deref()),
         Tool::Commands { name } => reference::commands(name),
         #[cfg(feature = "window")]
-        Tool::Mapping => super::trouble::print(crate::console::DEFAULT_MAPPING).map(|()| ExitCode::SUCCESS),
+        Tool::Mapping => super::error::print(crate::console::DEFAULT_MAPPING).map(|()| ExitCode::SUCCESS),
     };
     match result {
         Ok(code) => code,

@@ -3,20 +3,20 @@
 use super::{
     Appearance,
     bar::Bar,
-    choices::{Choices, RasterPlacement, MouseRole},
+    choices::{Choices, MouseRole, RasterPlacement},
     devices,
     dials::DialPanel,
     keys::Row,
     link::{Link, WINDOW},
     mapping::Mapping,
-    orders::OperatorCommands,
+    operator_commands::OperatorCommands,
     pad::Pad,
     screens::{RasterScreen, VectorScreen},
     split::Split,
     views::{self, View},
     welcome::{self, AttachedHosts},
 };
-use crate::shell::{MirrorRequest, Mirror, MirrorFrame};
+use crate::shell::{Mirror, MirrorFrame, MirrorRequest};
 use egui::{CentralPanel, Color32, Panel, RichText, Ui, UiBuilder, ViewportBuilder, ViewportId, vec2};
 use std::{
     sync::{Arc, Mutex, PoisonError},

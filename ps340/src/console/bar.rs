@@ -1,11 +1,11 @@
 //! The bar at the top: who is attached, and what the window shows and does. It is one row, however narrow the window is.
 
 use super::{
-    choices::{Choices, RasterPlacement, MouseRole},
-    orders::OperatorCommands,
-    places,
+    choices::{Choices, MouseRole, RasterPlacement},
+    operator_commands::OperatorCommands,
     views::View,
     welcome::AttachedHosts,
+    widget_positions,
 };
 use crate::{machine::KeyboardMode, shell::MirrorFrame};
 use egui::{Align, Layout, RichText, Sense, Ui, vec2};
@@ -51,13 +51,13 @@ impl Bar<'_> {
             let (light, _) = ui.allocate_exact_size(vec2(9.0, 9.0), Sense::hover());
             ui.painter().circle_filled(light.center(), 4.0, ink);
             let state = ui.label(RichText::new(state).color(ink)).on_hover_text(self.hosts.names());
-            places::note(ui, "hosts", state.rect.center());
+            widget_positions::note(ui, "hosts", state.rect.center());
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 show_help(ui, choices, self.views);
                 show_views(ui, choices, self.views, is_wide);
                 ui.separator();
                 let devices = ui.toggle_value(&mut choices.devices, "Devices").on_hover_text("dials, keys and buttons");
-                places::note(ui, "devices", devices.rect.center());
+                widget_positions::note(ui, "devices", devices.rect.center());
                 show_raster(ui, choices, is_wide);
                 ui.separator();
                 show_mouse(ui, choices, self.role, is_wide);
@@ -89,7 +89,7 @@ fn show_keyboard(ui: &mut Ui, now: KeyboardMode, orders: &mut OperatorCommands, 
             }
         }
     });
-    places::note(ui, "menu Keyboard", menu.response.rect.center());
+    widget_positions::note(ui, "menu Keyboard", menu.response.rect.center());
 }
 
 fn show_mouse(ui: &mut Ui, choices: &mut Choices, role: MouseRole, is_wide: bool) {
@@ -106,7 +106,7 @@ fn show_mouse(ui: &mut Ui, choices: &mut Choices, role: MouseRole, is_wide: bool
             }
         }
     });
-    places::note(ui, "menu Mouse", menu.response.rect.center());
+    widget_positions::note(ui, "menu Mouse", menu.response.rect.center());
 }
 
 fn show_raster(ui: &mut Ui, choices: &mut Choices, is_wide: bool) {
@@ -118,7 +118,7 @@ fn show_raster(ui: &mut Ui, choices: &mut Choices, is_wide: bool) {
             }
         }
     });
-    places::note(ui, "menu Raster", menu.response.rect.center());
+    widget_positions::note(ui, "menu Raster", menu.response.rect.center());
 }
 
 fn show_views(ui: &mut Ui, choices: &mut Choices, views: &[Box<dyn View>], is_wide: bool) {
@@ -128,21 +128,21 @@ fn show_views(ui: &mut Ui, choices: &mut Choices, views: &[Box<dyn View>], is_wi
         for (index, view) in views.iter().enumerate().filter(|(_, view)| !view.is_help()) {
             let is_open = choices.view == Some(index);
             let row = ui.selectable_label(is_open, view.title()).on_hover_text(view.summary());
-            places::note(ui, &format!("view {}", view.title()), row.rect.center());
+            widget_positions::note(ui, &format!("view {}", view.title()), row.rect.center());
             if row.clicked() {
                 choices.view = (!is_open).then_some(index);
                 ui.close();
             }
         }
     });
-    places::note(ui, "menu Inspect", menu.response.rect.center());
+    widget_positions::note(ui, "menu Inspect", menu.response.rect.center());
 }
 
 fn show_help(ui: &mut Ui, choices: &mut Choices, views: &[Box<dyn View>]) {
     let Some(index) = views.iter().position(|view| view.is_help()) else { return };
     let is_open = choices.view == Some(index);
     let help = ui.selectable_label(is_open, views[index].title());
-    places::note(ui, "view Help", help.rect.center());
+    widget_positions::note(ui, "view Help", help.rect.center());
     if help.clicked() {
         choices.view = (!is_open).then_some(index);
     }

@@ -3,7 +3,7 @@
 use super::{
     dials::DialPanel,
     keys::{Row, show_buttons, show_keys},
-    orders::OperatorCommands,
+    operator_commands::OperatorCommands,
 };
 use crate::machine::Panel;
 use egui::{Ui, vec2};

@@ -1,6 +1,6 @@
 //! The eight dials with their labels.
 
-use super::{orders::OperatorCommands, places};
+use super::{operator_commands::OperatorCommands, widget_positions};
 use crate::{machine::Panel, port::Label};
 use egui::{
     Align2, Color32, Event, FontId, Key, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke, Ui, Vec2,
@@ -80,7 +80,7 @@ impl DialPanel {
         let knob = Rect::from_center_size(center, Vec2::splat(size));
         let response = ui.interact(knob, ui.scope_id().with(("dial", dial)), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, format!("dial {dial} {label}")));
-        places::note(ui, &format!("dial {dial}"), knob.center());
+        widget_positions::note(ui, &format!("dial {dial}"), knob.center());
         let response = response.on_hover_text(
             "drag right or up, use the wheel, or the arrow keys; SHIFT fine, CONTROL coarse; double click: a quarter turn",
         );

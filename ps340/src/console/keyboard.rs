@@ -1,6 +1,6 @@
 //! The keyboard of the window: typed characters and keys become orders.
 
-use super::{mapping::Mapping, orders::OperatorCommands};
+use super::{mapping::Mapping, operator_commands::OperatorCommands};
 use egui::{Event, Key, Modifiers};
 
 /// The orders that events of the keyboard mean.

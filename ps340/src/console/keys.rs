@@ -2,8 +2,8 @@
 
 use super::{
     dials::{LIT, show_label},
-    orders::OperatorCommands,
-    places,
+    operator_commands::OperatorCommands,
+    widget_positions,
 };
 use crate::{machine::Panel, port::Label};
 use egui::{Align2, Color32, FontId, Rect, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
@@ -45,7 +45,7 @@ pub fn show_keys(ui: &mut Ui, panel: &Panel, row: &mut Row, width: f32, orders: 
                 FontId::proportional(12.0),
                 Color32::from_gray(220),
             );
-            places::note(ui, &format!("key {key}"), cap.center());
+            widget_positions::note(ui, &format!("key {key}"), cap.center());
             let held = ui.input(|input| input.modifiers);
             if response.on_hover_text("with SHIFT 13 to 24, with CONTROL 25 to 36").clicked() {
                 let other = match *row {
@@ -93,7 +93,7 @@ fn show_button(ui: &mut Ui, panel: &Panel, button: u8, width: f32, orders: &mut 
     let edge = Stroke::new(1.0, Color32::from_gray(if response.is_pointer_button_down_on() { 200 } else { 90 }));
     ui.painter().rect(area, 3.0, fill, edge, egui::StrokeKind::Inside);
     ui.painter().text(area.center(), Align2::CENTER_CENTER, button, FontId::proportional(11.0), ink);
-    places::note(ui, &format!("button {button}"), area.center());
+    widget_positions::note(ui, &format!("button {button}"), area.center());
     if response.clicked() {
         orders.give(format!("button {button}"));
     }

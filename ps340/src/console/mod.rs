@@ -3,8 +3,8 @@
 //! It is the only user of egui and eframe, and owns no state of the machine: it sees by a mirror
 //! ([`crate::shell::Mirror`]) and acts by orders, as an operator on a line does.
 
-mod orders;
-mod places;
+mod operator_commands;
+mod widget_positions;
 mod mapping;
 mod fault;
 mod libraries;

@@ -5,7 +5,7 @@
 //! milliseconds (u32), value (i16), kind (u8: 1 button, 2 axis, 128 added for the state at the start), number (u8).
 //! Elsewhere there is no controller.
 
-use super::{dials::DialPanel, mapping::Mapping, orders::OperatorCommands};
+use super::{dials::DialPanel, mapping::Mapping, operator_commands::OperatorCommands};
 use std::{
     collections::BTreeMap,
     fs::File,

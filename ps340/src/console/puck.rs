@@ -2,7 +2,7 @@
 
 use super::{
     mapping::{Click, Mouse},
-    orders::OperatorCommands,
+    operator_commands::OperatorCommands,
 };
 use egui::{Event, MouseWheelUnit, Pos2, Rect, Response, Ui};
 

@@ -4,11 +4,11 @@ use super::{
     dials::DialPanel,
     keyboard,
     mapping::{Mapping, Mouse},
-    orders::OperatorCommands,
-    painter::{Painter, DrawRequest},
-    places,
+    operator_commands::OperatorCommands,
+    painter::{DrawRequest, Painter},
     puck::Puck,
     steering::Steering,
+    widget_positions,
 };
 use crate::{calligraphic::SharedDisplay, raster::FrameBuffer, shell::MirrorFrame};
 use egui::{
@@ -62,8 +62,8 @@ impl VectorScreen {
         paint_texture(ui, self.texture.as_ref(), area);
         let response = ui.interact(area, ui.scope_id().with("vector screen"), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "vector screen"));
-        places::note(ui, "vector screen", area.center());
-        places::note(ui, "vector screen's corner", area.right_top());
+        widget_positions::note(ui, "vector screen", area.center());
+        widget_positions::note(ui, "vector screen's corner", area.right_top());
         self.keyboard(ui, &response, mapping, commands);
         match dials {
             Some(dials) => {

@@ -39,7 +39,7 @@ impl Split {
             let moved = if way == Axis::Across { response.drag_delta().x } else { response.drag_delta().y };
             self.part = Some((part + moved / length.max(1.0)).clamp(LEAST, 1.0 - LEAST));
         }
-        super::places::note(ui, "splitter", bar.center());
+        super::widget_positions::note(ui, "splitter", bar.center());
         let is_held = response.hovered() || response.dragged();
         let ink = Color32::from_gray(if is_held { 130 } else { 62 });
         let grip = if way == Axis::Across { vec2(2.0, 36.0) } else { vec2(36.0, 2.0) };

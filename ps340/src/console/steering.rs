@@ -1,6 +1,6 @@
 //! The mouse over the vector screen while it turns dials: drags turn and move what is shown, the wheel scales it.
 
-use super::{dials::DialPanel, mapping::Mouse, places};
+use super::{dials::DialPanel, mapping::Mouse, widget_positions};
 use egui::{Event, Modifiers, MouseWheelUnit, PointerButton, Pos2, Rect, Response, Ui};
 
 /// Points of a wheel that count as a step.
@@ -20,7 +20,7 @@ pub struct Steering {
 impl Steering {
     /// Turns the dials that events of the mouse mean over the area of `response`.
     pub fn follow(&mut self, ui: &Ui, response: &Response, mouse: &Mouse, dials: &mut DialPanel) {
-        places::note(ui, "view", response.rect.center());
+        widget_positions::note(ui, "view", response.rect.center());
         let is_over = response.contains_pointer();
         let turned = ui.input(|input| self.turns(&input.events, response.rect, is_over, mouse));
         for (dial, turns) in turned {

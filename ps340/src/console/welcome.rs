@@ -1,6 +1,6 @@
 //! What stands on the vector screen while nobody shows anything there: where hosts attach, and what one can do.
 
-use super::{orders::OperatorCommands, places};
+use super::{operator_commands::OperatorCommands, widget_positions};
 use crate::{example::EXAMPLES, shell::MirrorFrame};
 use egui::{Align2, Color32, FontId, Layout, Rect, RichText, Ui, UiBuilder, vec2};
 
@@ -67,7 +67,14 @@ impl AttachedHosts {
 /// Shows what one can do, if nothing is on the screen, or that the host has left.
 ///
 /// - `lines`: where hosts attach.
-pub fn show(ui: &mut Ui, screen: Rect, shown: &MirrorFrame, guests: &AttachedHosts, lines: &[String], orders: &mut OperatorCommands) {
+pub fn show(
+    ui: &mut Ui,
+    screen: Rect,
+    shown: &MirrorFrame,
+    guests: &AttachedHosts,
+    lines: &[String],
+    orders: &mut OperatorCommands,
+) {
     let is_empty = shown.scene.strokes.is_empty();
     match (is_empty, guests.present.is_empty(), guests.have_left()) {
         (true, true, has_left) => show_welcome(ui, screen, has_left, lines, orders),
@@ -117,7 +124,7 @@ fn show_welcome(ui: &mut Ui, screen: Rect, has_left: bool, lines: &[String], ord
         ui.horizontal_wrapped(|ui| {
             for example in EXAMPLES {
                 let button = ui.button(example.name).on_hover_text(example.summary());
-                places::note(ui, &format!("example {}", example.name), button.rect.center());
+                widget_positions::note(ui, &format!("example {}", example.name), button.rect.center());
                 if button.clicked() {
                     orders.give(format!("example {}", example.name));
                 }

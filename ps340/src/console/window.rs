@@ -19,7 +19,11 @@ use std::{
 ///
 /// # Errors
 /// Why there is no window; then the machine is not run either.
-pub fn open(options: &Options, appearance: Appearance, ready: impl FnMut(&str) + Send) -> Result<ExitReason, ConsoleError> {
+pub fn open(
+    options: &Options,
+    appearance: Appearance,
+    ready: impl FnMut(&str) + Send,
+) -> Result<ExitReason, ConsoleError> {
     libraries::check()?;
     let context = Arc::new(OnceLock::<egui::Context>::new());
     let woken = context.clone();

@@ -58,8 +58,11 @@ pub static ROWS: &[FunctionRow] = &[
                 &[(1, M2([[1.0, 2.0], [3.0, 4.0]])), (2, M2([[1.0; 2]; 2]))],
                 &[(1, M2([[2.0, 3.0], [4.0, 5.0]]))],
             ),
-            FunctionExample::of(&[(1, V2([1.0, 2.0])), (2, V3([1.0, 0.0, 0.0])), (2, V2([1.0, 1.0]))], &[(1, V2([2.0, 3.0]))])
-                .faults(&[5]),
+            FunctionExample::of(
+                &[(1, V2([1.0, 2.0])), (2, V3([1.0, 0.0, 0.0])), (2, V2([1.0, 1.0]))],
+                &[(1, V2([2.0, 3.0]))],
+            )
+            .faults(&[5]),
             FunctionExample::of(&[(1, R(1.7e308)), (2, R(1.7e308))], &[]).faults(&[7]),
         ],
         ..FunctionRow::PLAIN
@@ -117,8 +120,11 @@ pub static ROWS: &[FunctionRow] = &[
         in_place: Some(subtract_in_place),
         examples: &[
             FunctionExample::of(&[(1, R(1.0)), (2, I(2))], &[(1, R(-1.0))]),
-            FunctionExample::of(&[(1, V2([1.0, 1.0])), (2, V2([0.0, 2.0])), (2, V3([0.0; 3]))], &[(1, V2([1.0, -1.0]))])
-                .faults(&[5]),
+            FunctionExample::of(
+                &[(1, V2([1.0, 1.0])), (2, V2([0.0, 2.0])), (2, V3([0.0; 3]))],
+                &[(1, V2([1.0, -1.0]))],
+            )
+            .faults(&[5]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -165,7 +171,10 @@ pub static ROWS: &[FunctionRow] = &[
         in_place: Some(multiply_in_place),
         examples: &[
             FunctionExample::of(&[(2, R(4.0)), (1, R(0.25))], &[(1, R(1.0))]),
-            FunctionExample::of(&[(2, I(3)), (1, I(2)), (1, V3([1.0, 0.0, -1.0]))], &[(1, I(6)), (1, V3([3.0, 0.0, -3.0]))]),
+            FunctionExample::of(
+                &[(2, I(3)), (1, I(2)), (1, V3([1.0, 0.0, -1.0]))],
+                &[(1, I(6)), (1, V3([3.0, 0.0, -3.0]))],
+            ),
         ],
         ..FunctionRow::PLAIN
     },
@@ -224,7 +233,8 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["<1> / <2>"],
         behaviour: divide,
         examples: &[
-            FunctionExample::of(&[(1, R(1.0)), (2, R(8.0)), (2, I(0)), (2, I(2))], &[(1, R(0.125)), (1, R(0.5))]).faults(&[7]),
+            FunctionExample::of(&[(1, R(1.0)), (2, R(8.0)), (2, I(0)), (2, I(2))], &[(1, R(0.125)), (1, R(0.5))])
+                .faults(&[7]),
             FunctionExample::of(&[(1, I(7)), (2, I(2)), (2, R(2.0))], &[(1, I(3)), (1, R(3.5))]),
         ],
         ..FunctionRow::PLAIN
@@ -251,7 +261,8 @@ pub static ROWS: &[FunctionRow] = &[
         behaviour: modulo,
         examples: &[
             FunctionExample::of(&[(2, I(3)), (1, I(8))], &[(1, I(2))]),
-            FunctionExample::of(&[(2, I(0)), (1, I(8)), (2, I(-3)), (1, I(8)), (1, R(8.0))], &[(1, I(2))]).faults(&[7, 5]),
+            FunctionExample::of(&[(2, I(0)), (1, I(8)), (2, I(-3)), (1, I(8)), (1, R(8.0))], &[(1, I(2))])
+                .faults(&[7, 5]),
         ],
         ..FunctionRow::PLAIN
     },

@@ -90,8 +90,14 @@ pub static ROWS: &[FunctionRow] = &[
         memory: 1,
         behaviour: gather,
         examples: &[
-            FunctionExample::of(&[(1, S("HE")), (1, S("LLO\rWOR")), (1, S("LD\r"))], &[(1, S("HELLO")), (1, S("WORLD"))]),
-            FunctionExample::of(&[(2, S("--")), (1, S("A-")), (1, S("-----B"))], &[(1, S("A")), (1, S("")), (1, S(""))]),
+            FunctionExample::of(
+                &[(1, S("HE")), (1, S("LLO\rWOR")), (1, S("LD\r"))],
+                &[(1, S("HELLO")), (1, S("WORLD"))],
+            ),
+            FunctionExample::of(
+                &[(2, S("--")), (1, S("A-")), (1, S("-----B"))],
+                &[(1, S("A")), (1, S("")), (1, S(""))],
+            ),
             FunctionExample::of(&[(2, S("")), (1, S("A"))], &[]).faults(&[6]),
         ],
         ..FunctionRow::PLAIN

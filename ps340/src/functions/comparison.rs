@@ -117,8 +117,11 @@ pub static ROWS: &[FunctionRow] = &[
         |f| compare_ordered(f, Ordering::is_gt),
         &[
             FunctionExample::of(&[(2, R(0.0)), (1, R(0.5)), (1, R(-0.5))], &[(1, B(true)), (1, B(false))]),
-            FunctionExample::of(&[(2, I(0)), (1, R(-0.0)), (1, B(true)), (1, R(1e300))], &[(1, B(false)), (1, B(true))])
-                .faults(&[5]),
+            FunctionExample::of(
+                &[(2, I(0)), (1, R(-0.0)), (1, B(true)), (1, R(1e300))],
+                &[(1, B(false)), (1, B(true))],
+            )
+            .faults(&[5]),
         ],
     ),
     ordering(
@@ -128,8 +131,11 @@ pub static ROWS: &[FunctionRow] = &[
         |f| compare_ordered(f, Ordering::is_gt),
         &[
             FunctionExample::of(&[(1, R(0.0)), (2, R(0.5)), (2, R(-0.5))], &[(1, B(false)), (1, B(true))]),
-            FunctionExample::of(&[(1, I(0)), (2, R(-0.0)), (2, B(true)), (2, R(1e300))], &[(1, B(false)), (1, B(false))])
-                .faults(&[5]),
+            FunctionExample::of(
+                &[(1, I(0)), (2, R(-0.0)), (2, B(true)), (2, R(1e300))],
+                &[(1, B(false)), (1, B(false))],
+            )
+            .faults(&[5]),
         ],
     ),
     ordering(
@@ -160,8 +166,11 @@ pub static ROWS: &[FunctionRow] = &[
         |f| compare_ordered(f, Ordering::is_ge),
         &[
             FunctionExample::of(&[(1, I(1)), (2, I(1)), (2, I(2))], &[(1, B(true)), (1, B(false))]),
-            FunctionExample::of(&[(1, I(0)), (2, R(-0.0)), (2, B(true)), (2, R(1e300))], &[(1, B(true)), (1, B(false))])
-                .faults(&[5]),
+            FunctionExample::of(
+                &[(1, I(0)), (2, R(-0.0)), (2, B(true)), (2, R(1e300))],
+                &[(1, B(true)), (1, B(false))],
+            )
+            .faults(&[5]),
         ],
     ),
     ordering(
@@ -181,8 +190,11 @@ pub static ROWS: &[FunctionRow] = &[
         |f| compare_ordered(f, Ordering::is_lt),
         &[
             FunctionExample::of(&[(2, I(1)), (1, I(1)), (1, I(0))], &[(1, B(false)), (1, B(true))]),
-            FunctionExample::of(&[(2, I(0)), (1, R(-0.0)), (1, B(true)), (1, R(1e300))], &[(1, B(false)), (1, B(false))])
-                .faults(&[5]),
+            FunctionExample::of(
+                &[(2, I(0)), (1, R(-0.0)), (1, B(true)), (1, R(1e300))],
+                &[(1, B(false)), (1, B(false))],
+            )
+            .faults(&[5]),
         ],
     ),
     ordering(
@@ -192,8 +204,11 @@ pub static ROWS: &[FunctionRow] = &[
         |f| compare_ordered(f, Ordering::is_lt),
         &[
             FunctionExample::of(&[(1, I(1)), (2, I(1)), (2, I(2))], &[(1, B(false)), (1, B(true))]),
-            FunctionExample::of(&[(1, I(0)), (2, R(-0.0)), (2, B(true)), (2, R(1e300))], &[(1, B(false)), (1, B(true))])
-                .faults(&[5]),
+            FunctionExample::of(
+                &[(1, I(0)), (2, R(-0.0)), (2, B(true)), (2, R(1e300))],
+                &[(1, B(false)), (1, B(true))],
+            )
+            .faults(&[5]),
         ],
     ),
     ordering(
@@ -213,8 +228,11 @@ pub static ROWS: &[FunctionRow] = &[
         |f| compare_ordered(f, Ordering::is_le),
         &[
             FunctionExample::of(&[(2, I(1)), (1, I(1)), (1, I(2))], &[(1, B(true)), (1, B(false))]),
-            FunctionExample::of(&[(2, I(0)), (1, R(-0.0)), (1, B(true)), (1, R(1e300))], &[(1, B(true)), (1, B(false))])
-                .faults(&[5]),
+            FunctionExample::of(
+                &[(2, I(0)), (1, R(-0.0)), (1, B(true)), (1, R(1e300))],
+                &[(1, B(true)), (1, B(false))],
+            )
+            .faults(&[5]),
         ],
     ),
     ordering(

@@ -4,7 +4,7 @@
 //! anywhere. Used: the packets of count mode and the routing bytes as remembered. Modelled: a packet on an arc is a
 //! string, its routing byte first. *Not modelled*: packets of escape mode.
 
-use super::{FunctionExample, Family, FunctionRow, Rule, Source};
+use super::{Family, FunctionExample, FunctionRow, Rule, Source};
 use crate::port::{
     Cause, Effect, Fault, Firing, KindSet,
     Literal::{I, S},
@@ -43,7 +43,10 @@ pub static ROWS: &[FunctionRow] = &[
                 &[(1, S("HI\u{1c} $0ABC!")), (1, S("\u{1c} !1"))],
                 &[(1, S("0ABC")), (2, S("HI!")), (1, S("1"))],
             ),
-            FunctionExample::of(&[(1, S("\u{1c}")), (1, S(" ")), (1, S("#0A")), (1, S("BC"))], &[(1, S("0AB")), (2, S("C"))]),
+            FunctionExample::of(
+                &[(1, S("\u{1c}")), (1, S(" ")), (1, S("#0A")), (1, S("BC"))],
+                &[(1, S("0AB")), (2, S("C"))],
+            ),
             FunctionExample::of(&[(2, I(2)), (1, S("\u{2}\u{2} \"0X\u{1c}"))], &[(1, S("0X")), (2, S("\u{2}\u{1c}"))]),
             FunctionExample::of(&[(2, I(256)), (1, S("A"))], &[]).faults(&[6]),
         ],
@@ -61,7 +64,10 @@ pub static ROWS: &[FunctionRow] = &[
         outputs: &["packets as they stand on a line"],
         behaviour: pack,
         examples: &[
-            FunctionExample::of(&[(2, S("0")), (1, S("ABC")), (1, S(""))], &[(1, S("\u{1c} $0ABC")), (1, S("\u{1c} !0"))]),
+            FunctionExample::of(
+                &[(2, S("0")), (1, S("ABC")), (1, S(""))],
+                &[(1, S("\u{1c} $0ABC")), (1, S("\u{1c} !0"))],
+            ),
             FunctionExample::of(&[(2, S("01")), (1, S("A"))], &[]).faults(&[6]),
         ],
         ..FunctionRow::PLAIN
@@ -80,8 +86,11 @@ pub static ROWS: &[FunctionRow] = &[
         rule: Rule::Any,
         behaviour: route,
         examples: &[
-            FunctionExample::of(&[(1, S("0ABC")), (2, S("TEXT")), (1, S("1"))], &[(2, S("ABC")), (1, S("TEXT")), (3, S(""))])
-                .sized(3),
+            FunctionExample::of(
+                &[(1, S("0ABC")), (2, S("TEXT")), (1, S("1"))],
+                &[(2, S("ABC")), (1, S("TEXT")), (3, S(""))],
+            )
+            .sized(3),
             FunctionExample::of(&[(1, S("2A")), (1, S("/A")), (1, S(""))], &[]).sized(3).faults(&[6, 6, 6]),
             FunctionExample::of(&[(3, I(65)), (1, S("A0"))], &[(2, S("0"))]).sized(2),
         ],
@@ -155,7 +164,8 @@ pub static ROWS: &[FunctionRow] = &[
 ];
 
 const COMPLETED: &[&str] = &["how many commands the message completed"];
-const RECORDS: &[FunctionExample] = &[FunctionExample::of(&[(1, S(""))], &[]), FunctionExample::of(&[(1, I(0))], &[]).faults(&[5])];
+const RECORDS: &[FunctionExample] =
+    &[FunctionExample::of(&[(1, S(""))], &[]), FunctionExample::of(&[(1, I(0))], &[]).faults(&[5])];
 
 /// The character that starts a packet, at an input.
 fn start(f: &Firing, input: u16) -> Result<u8, Problem> {

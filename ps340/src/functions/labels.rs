@@ -26,8 +26,12 @@ pub static ROWS: &[FunctionRow] = &[
         },
         examples: &[
             FunctionExample::of(&[(1, V3([1.0, 2.0, 3.0])), (2, S("CA"))], &[(1, L([1.0, 2.0, 3.0], "CA", true))]),
-            FunctionExample::of(&[(3, B(false)), (2, S("")), (1, V2([1.0, 2.0]))], &[(1, L([1.0, 2.0, 0.0], "", false))]),
-            FunctionExample::of(&[(2, I(1)), (1, V2([0.0; 2])), (2, S("A"))], &[(1, L([0.0; 3], "A", true))]).faults(&[5]),
+            FunctionExample::of(
+                &[(3, B(false)), (2, S("")), (1, V2([1.0, 2.0]))],
+                &[(1, L([1.0, 2.0, 0.0], "", false))],
+            ),
+            FunctionExample::of(&[(2, I(1)), (1, V2([0.0; 2])), (2, S("A"))], &[(1, L([0.0; 3], "A", true))])
+                .faults(&[5]),
         ],
         ..FunctionRow::PLAIN
     },

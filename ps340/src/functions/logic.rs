@@ -21,7 +21,10 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: BOTH,
         behaviour: |f| combine(f, |a, b| a && b),
         examples: &[
-            FunctionExample::of(&[(1, B(true)), (2, B(true)), (1, B(true)), (2, B(false))], &[(1, B(true)), (1, B(false))]),
+            FunctionExample::of(
+                &[(1, B(true)), (2, B(true)), (1, B(true)), (2, B(false))],
+                &[(1, B(true)), (1, B(false))],
+            ),
             FunctionExample::of(
                 &[(1, B(true)), (1, B(false)), (2, I(1)), (2, B(true)), (2, B(true))],
                 &[(1, B(true)), (1, B(false))],
@@ -37,7 +40,10 @@ pub static ROWS: &[FunctionRow] = &[
         behaviour: |f| combine(f, |a, b| a && b),
         examples: &[
             FunctionExample::of(&[(2, B(true)), (1, B(true)), (1, B(false))], &[(1, B(true)), (1, B(false))]),
-            FunctionExample::of(&[(2, B(false)), (1, B(true)), (2, B(true)), (1, B(true))], &[(1, B(false)), (1, B(true))]),
+            FunctionExample::of(
+                &[(2, B(false)), (1, B(true)), (2, B(true)), (1, B(true))],
+                &[(1, B(false)), (1, B(true))],
+            ),
         ],
         ..LOGICAL
     },
@@ -47,7 +53,10 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: BOTH,
         behaviour: |f| combine(f, |a, b| a || b),
         examples: &[
-            FunctionExample::of(&[(1, B(false)), (2, B(true)), (2, B(false)), (1, B(false))], &[(1, B(true)), (1, B(false))]),
+            FunctionExample::of(
+                &[(1, B(false)), (2, B(true)), (2, B(false)), (1, B(false))],
+                &[(1, B(true)), (1, B(false))],
+            ),
             FunctionExample::of(
                 &[(1, B(true)), (1, B(false)), (2, I(1)), (2, B(true)), (2, B(true))],
                 &[(1, B(true)), (1, B(true))],
@@ -63,7 +72,10 @@ pub static ROWS: &[FunctionRow] = &[
         behaviour: |f| combine(f, |a, b| a || b),
         examples: &[
             FunctionExample::of(&[(2, B(false)), (1, B(true)), (1, B(false))], &[(1, B(true)), (1, B(false))]),
-            FunctionExample::of(&[(2, B(true)), (1, B(false)), (2, B(false)), (1, B(false))], &[(1, B(true)), (1, B(false))]),
+            FunctionExample::of(
+                &[(2, B(true)), (1, B(false)), (2, B(false)), (1, B(false))],
+                &[(1, B(true)), (1, B(false))],
+            ),
         ],
         ..LOGICAL
     },
@@ -73,7 +85,10 @@ pub static ROWS: &[FunctionRow] = &[
         inputs: BOTH,
         behaviour: |f| combine(f, |a, b| a != b),
         examples: &[
-            FunctionExample::of(&[(1, B(true)), (2, B(true)), (1, B(true)), (2, B(false))], &[(1, B(false)), (1, B(true))]),
+            FunctionExample::of(
+                &[(1, B(true)), (2, B(true)), (1, B(true)), (2, B(false))],
+                &[(1, B(false)), (1, B(true))],
+            ),
             FunctionExample::of(
                 &[(1, B(true)), (1, B(false)), (2, I(1)), (2, B(true)), (2, B(true))],
                 &[(1, B(false)), (1, B(true))],
@@ -89,7 +104,10 @@ pub static ROWS: &[FunctionRow] = &[
         behaviour: |f| combine(f, |a, b| a != b),
         examples: &[
             FunctionExample::of(&[(2, B(true)), (1, B(true)), (1, B(false))], &[(1, B(false)), (1, B(true))]),
-            FunctionExample::of(&[(2, B(false)), (1, B(true)), (2, B(true)), (1, B(true))], &[(1, B(true)), (1, B(false))]),
+            FunctionExample::of(
+                &[(2, B(false)), (1, B(true)), (2, B(true)), (1, B(true))],
+                &[(1, B(true)), (1, B(false))],
+            ),
         ],
         ..LOGICAL
     },

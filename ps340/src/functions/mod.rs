@@ -27,8 +27,8 @@ pub mod vectors;
 pub mod viewing;
 
 pub use row::{
-    Behaviour, ClockBehaviour, Confidence, FunctionExample, Family, FunctionRow, InPlace, MAX_SIZE, QueuePosition, Rule, Shape, SizeError,
-    Source,
+    Behaviour, ClockBehaviour, Confidence, Family, FunctionExample, FunctionRow, InPlace, MAX_SIZE, QueuePosition,
+    Rule, Shape, SizeError, Source,
 };
 
 use std::{collections::HashMap, sync::LazyLock};

@@ -1,6 +1,6 @@
 //! The reference of the functions as text, made from the rows.
 
-use super::{Confidence, FunctionExample, FAMILIES, Family, FunctionRow, Rule, devices};
+use super::{Confidence, FAMILIES, Family, FunctionExample, FunctionRow, Rule, devices};
 use crate::port::{PortSpec, QueueRole};
 use protocol::command::spelling::nearest;
 use std::fmt::Write;

@@ -73,7 +73,10 @@ pub static ROWS: &[FunctionRow] = &[FunctionRow {
             &[(1, Vectors(&[(false, [0.0; 3]), (true, [1.0, 0.0, 0.5])]))],
             &[(1, S("VECTOR_LIST ITEMIZED N=2 P 0,0,0 L 1,0,0.5"))],
         ),
-        FunctionExample::of(&[(2, B(true)), (1, V2([10.0, 0.0])), (1, S("TEXT"))], &[(1, S("V 1E+01,0E+00")), (1, S("TEXT"))]),
+        FunctionExample::of(
+            &[(2, B(true)), (1, V2([10.0, 0.0])), (1, S("TEXT"))],
+            &[(1, S("V 1E+01,0E+00")), (1, S("TEXT"))],
+        ),
     ],
     ..FunctionRow::PLAIN
 }];

@@ -1,6 +1,6 @@
 //! Routing and choosing: where a message goes on, which message goes on, and messages that wait for each other.
 
-use super::{FunctionExample, Family, FunctionRow, Rule, Source};
+use super::{Family, FunctionExample, FunctionRow, Rule, Source};
 use crate::port::{
     Firing, KindSet,
     Literal::{B, I, R, S},
@@ -44,7 +44,8 @@ pub static ROWS: &[FunctionRow] = &[
         },
         examples: &[
             FunctionExample::of(&[(2, I(7)), (1, R(1.0)), (2, I(8))], &[(2, I(7)), (1, R(1.0)), (2, I(8))]).sized(3),
-            FunctionExample::of(&[(1, S("A")), (1, S("B")), (2, S("C"))], &[(1, S("A")), (1, S("B")), (2, S("C"))]).sized(2),
+            FunctionExample::of(&[(1, S("A")), (1, S("B")), (2, S("C"))], &[(1, S("A")), (1, S("B")), (2, S("C"))])
+                .sized(2),
         ],
         ..FunctionRow::PLAIN
     },
@@ -126,9 +127,12 @@ pub static ROWS: &[FunctionRow] = &[
         behaviour: route_by_integer,
         examples: &[
             FunctionExample::of(&[(1, I(9)), (2, I(9)), (1, I(2)), (2, I(2))], &[(9, I(9)), (2, I(2))]).sized(9),
-            FunctionExample::of(&[(1, I(0)), (2, S("A")), (1, I(4)), (2, S("B")), (1, I(3)), (2, S("C"))], &[(3, S("C"))])
-                .sized(3)
-                .faults(&[6, 6]),
+            FunctionExample::of(
+                &[(1, I(0)), (2, S("A")), (1, I(4)), (2, S("B")), (1, I(3)), (2, S("C"))],
+                &[(3, S("C"))],
+            )
+            .sized(3)
+            .faults(&[6, 6]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -158,7 +162,9 @@ pub static ROWS: &[FunctionRow] = &[
         behaviour: route_by_integer,
         examples: &[
             FunctionExample::of(&[(1, I(2)), (2, S("X")), (2, S("Y"))], &[(2, S("X")), (2, S("Y"))]).sized(2),
-            FunctionExample::of(&[(1, I(3)), (2, S("A")), (1, I(1)), (2, S("B"))], &[(1, S("B"))]).sized(2).faults(&[6]),
+            FunctionExample::of(&[(1, I(3)), (2, S("A")), (1, I(1)), (2, S("B"))], &[(1, S("B"))])
+                .sized(2)
+                .faults(&[6]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -177,9 +183,12 @@ pub static ROWS: &[FunctionRow] = &[
             }
         },
         examples: &[
-            FunctionExample::of(&[(1, S("A")), (2, S("B")), (3, I(2)), (3, I(3)), (3, I(1))], &[(1, S("B")), (1, S("A"))])
-                .sized(3)
-                .faults(&[6]),
+            FunctionExample::of(
+                &[(1, S("A")), (2, S("B")), (3, I(2)), (3, I(3)), (3, I(1))],
+                &[(1, S("B")), (1, S("A"))],
+            )
+            .sized(3)
+            .faults(&[6]),
             FunctionExample::of(&[(1, I(7)), (2, I(0)), (2, I(1))], &[(1, I(7))]).sized(2).faults(&[6]),
         ],
         ..FunctionRow::PLAIN
@@ -208,8 +217,11 @@ pub static ROWS: &[FunctionRow] = &[
                 &[(2, I(1)), (3, I(3)), (1, I(3)), (1, R(3.5))],
                 &[(1, I(3)), (3, B(true)), (2, R(3.5)), (3, B(false))],
             ),
-            FunctionExample::of(&[(2, R(1.0)), (3, R(1.0)), (1, I(1)), (2, R(2.0)), (1, I(1))], &[(1, I(1)), (3, B(true))])
-                .faults(&[6]),
+            FunctionExample::of(
+                &[(2, R(1.0)), (3, R(1.0)), (1, I(1)), (2, R(2.0)), (1, I(1))],
+                &[(1, I(1)), (3, B(true))],
+            )
+            .faults(&[6]),
         ],
         ..FunctionRow::PLAIN
     },

@@ -1,6 +1,6 @@
 //! Transformed data and colour: asked from a node of the structure, joined, and written as commands.
 
-use super::{FunctionExample, Family, FunctionRow, Source, printing::decimal};
+use super::{Family, FunctionExample, FunctionRow, Source, printing::decimal};
 use crate::port::{
     Effect, Firing, KindSet,
     Literal::{I, R, S, T, Vectors},
@@ -45,7 +45,8 @@ pub static ROWS: &[FunctionRow] = &[
             FunctionExample::of(&[(2, S("R001.MXFORM1")), (1, I(0))], &[]),
             FunctionExample::of(&[(2, S("1X")), (1, S(""))], &[]).faults(&[6]),
             FunctionExample::of(&[(2, S("X")), (3, S("*")), (1, I(1))], &[]).faults(&[6]),
-            FunctionExample::of(&[(2, S("X")), (4, I(0)), (1, I(1)), (4, I(1)), (5, I(-1)), (1, I(1))], &[]).faults(&[6, 6]),
+            FunctionExample::of(&[(2, S("X")), (4, I(0)), (1, I(1)), (4, I(1)), (5, I(-1)), (1, I(1))], &[])
+                .faults(&[6, 6]),
         ],
         ..FunctionRow::PLAIN
     },

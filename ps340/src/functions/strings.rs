@@ -1,6 +1,6 @@
 //! Strings: joined, measured, cut, searched, compared, translated, and read as numbers. Positions count from 1.
 
-use super::{FunctionExample, Family, FunctionRow, Source};
+use super::{Family, FunctionExample, FunctionRow, Source};
 use crate::port::{
     Firing, KindSet,
     Literal::{B, I, R, S},
@@ -92,7 +92,8 @@ pub static ROWS: &[FunctionRow] = &[
                 &[(1, S("ABC")), (2, I(3)), (3, I(i32::MAX)), (1, S("ABC")), (2, I(9)), (3, I(1))],
                 &[(1, S("C")), (1, S(""))],
             ),
-            FunctionExample::of(&[(1, S("A")), (2, I(0)), (3, I(1)), (1, S("A")), (2, I(1)), (3, I(-1))], &[]).faults(&[6, 6]),
+            FunctionExample::of(&[(1, S("A")), (2, I(0)), (3, I(1)), (1, S("A")), (2, I(1)), (3, I(-1))], &[])
+                .faults(&[6, 6]),
         ],
         ..FunctionRow::PLAIN
     },
@@ -129,7 +130,10 @@ pub static ROWS: &[FunctionRow] = &[
             f.emit(1, Value::Integer(i32::try_from(at).map_err(|_| Problem::TooLong)?))
         },
         examples: &[
-            FunctionExample::of(&[(1, S("ABABAC")), (2, S("ABAC")), (1, S("ABC")), (2, S("D"))], &[(1, I(3)), (1, I(0))]),
+            FunctionExample::of(
+                &[(1, S("ABABAC")), (2, S("ABAC")), (1, S("ABC")), (2, S("D"))],
+                &[(1, I(3)), (1, I(0))],
+            ),
             FunctionExample::of(
                 &[(1, S("A")), (2, S("")), (1, S("")), (2, S("A")), (1, S("abc")), (2, S("C"))],
                 &[(1, I(1)), (1, I(0)), (1, I(0))],
@@ -187,9 +191,15 @@ pub static ROWS: &[FunctionRow] = &[
                 &[(1, S(" -17 ")), (1, S("2.50")), (1, S("1E3")), (1, S("+.5D-1"))],
                 &[(1, I(-17)), (1, R(2.5)), (1, R(1000.0)), (1, R(0.05))],
             ),
-            FunctionExample::of(&[(1, S("2147483647")), (1, S("2147483648"))], &[(1, I(i32::MAX)), (1, R(2147483648.0))]),
-            FunctionExample::of(&[(1, S("")), (1, S("1 2")), (1, S("INF")), (1, S("1E")), (1, S(".")), (1, S("1E999"))], &[])
-                .faults(&[6, 6, 6, 6, 6, 6]),
+            FunctionExample::of(
+                &[(1, S("2147483647")), (1, S("2147483648"))],
+                &[(1, I(i32::MAX)), (1, R(2147483648.0))],
+            ),
+            FunctionExample::of(
+                &[(1, S("")), (1, S("1 2")), (1, S("INF")), (1, S("1E")), (1, S(".")), (1, S("1E999"))],
+                &[],
+            )
+            .faults(&[6, 6, 6, 6, 6, 6]),
         ],
         ..FunctionRow::PLAIN
     },

@@ -54,7 +54,8 @@ pub static ROWS: &[FunctionRow] = &[
         behaviour: append,
         examples: &[
             FunctionExample::of(&[(1, R(1.0)), (2, R(2.0)), (2, R(3.0))], &[(1, V2([1.0, 2.0])), (1, V2([1.0, 3.0]))]),
-            FunctionExample::of(&[(1, V2([1.0, 2.0])), (2, V2([0.0; 2])), (2, I(3))], &[(1, V3([1.0, 2.0, 3.0]))]).faults(&[5]),
+            FunctionExample::of(&[(1, V2([1.0, 2.0])), (2, V2([0.0; 2])), (2, I(3))], &[(1, V3([1.0, 2.0, 3.0]))])
+                .faults(&[5]),
         ],
         ..FunctionRow::PLAIN
     },

@@ -1,11 +1,11 @@
 //! Host lines: whatever arrives goes to the machine, and back, as the conditions of the line allow.
 
 use super::{
-    Interface, LineEvent, LineId, LineContext,
+    Interface, LineContext, LineEvent, LineId,
     conditions::{Flow, INPUT_QUEUE, XOFF, XON, leave},
+    connection_slots::Presence,
     http,
     pace::Pace,
-    places::Presence,
     writer::{OutputQueue, Writer},
 };
 use protocol::{address::Conditions, capture::Event};

@@ -2,9 +2,9 @@
 
 use super::{
     Events, LineEvent, Listener, Token,
+    connection_slots::{ConnectionSlot, ConnectionSlots, Presence},
     http::is_request,
     listener::SocketStream,
-    places::{ConnectionSlot, ConnectionSlots, Presence},
 };
 use protocol::capture::MAX_OPERATOR_COMMAND;
 use std::{
@@ -77,7 +77,13 @@ pub async fn serve_operators(listener: Listener, token: Option<Token>, events: E
     }
 }
 
-async fn serve(stream: Box<dyn SocketStream>, peer: String, token: Option<Token>, place: ConnectionSlot, events: Events) {
+async fn serve(
+    stream: Box<dyn SocketStream>,
+    peer: String,
+    token: Option<Token>,
+    place: ConnectionSlot,
+    events: Events,
+) {
     tokio::select! {
         () = place.presence.is_evicted() => {
             tracing::warn!("operator {peer} was dropped: it gave no order, and its place was wanted");
@@ -87,7 +93,13 @@ async fn serve(stream: Box<dyn SocketStream>, peer: String, token: Option<Token>
 }
 
 /// Takes one order after the other, until the operator leaves or the machine ends.
-async fn obey(stream: Box<dyn SocketStream>, peer: &str, mut token: Option<Token>, presence: &Presence, events: Events) {
+async fn obey(
+    stream: Box<dyn SocketStream>,
+    peer: &str,
+    mut token: Option<Token>,
+    presence: &Presence,
+    events: Events,
+) {
     let (read, mut write) = tokio::io::split(stream);
     let mut read = BufReader::new(read);
     let mut people = false;

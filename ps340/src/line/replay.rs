@@ -1,7 +1,7 @@
 //! Files as hosts: a plain file is sent as it is, a capture is played again.
 
 use super::{
-    Interface, LineEvent, LineId, OperatorLine, LineContext,
+    Interface, LineContext, LineEvent, LineId, OperatorLine,
     hosts::{Host, MAX_HOSTS, serve, silent_writer},
 };
 use protocol::{

@@ -158,7 +158,8 @@ impl<'p> Flow<'p> {
         let silent = match function.row.rule {
             Rule::All => inputs.clone().any(missing),
             _ => {
-                let spec = |n: &u16| function.row.input(function.shape, *n).is_some_and(|s| s.role == QueueRole::Active);
+                let spec =
+                    |n: &u16| function.row.input(function.shape, *n).is_some_and(|s| s.role == QueueRole::Active);
                 inputs.clone().filter(spec).all(missing) && inputs.clone().any(|n| spec(&n))
             }
         };

@@ -12,7 +12,7 @@ mod names;
 mod ports;
 mod program;
 mod reading;
-mod source;
+mod source_file;
 mod trial;
 
 pub use reading::lint;
@@ -60,7 +60,7 @@ impl std::fmt::Display for Finding {
 /// A finding before its place is looked up.
 #[derive(Clone, Debug)]
 struct Note {
-    location: source::Location,
+    location: source_file::Location,
     level: Level,
     text: String,
 }

@@ -14,7 +14,7 @@ use std::collections::HashSet;
 pub(super) fn check(
     program: &Program,
     machine: &Machine,
-    line_of: impl Fn(super::source::Location) -> String,
+    line_of: impl Fn(super::source_file::Location) -> String,
 ) -> Vec<Note> {
     let mut notes = Vec::new();
     for (function, place) in &program.no_functions {

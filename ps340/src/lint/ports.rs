@@ -2,7 +2,7 @@
 
 use super::{
     Level, Note,
-    program::{Arc, Program, DefinitionKind},
+    program::{Arc, DefinitionKind, Program},
 };
 use crate::{functions::FunctionRow, machine::Machine, port::KindSet, structure::Node};
 use protocol::{Name, command::Input};
@@ -119,7 +119,8 @@ fn numbered(what: &str, count: u16) -> String {
 /// A hint which nodes of a structure may be meant.
 fn inside(program: &Program, name: &Name) -> String {
     let prefix = format!("{name}.");
-    let nodes = program.definitions.iter().filter(|(n, d)| n.as_str().starts_with(&prefix) && d.kind == DefinitionKind::Node);
+    let nodes =
+        program.definitions.iter().filter(|(n, d)| n.as_str().starts_with(&prefix) && d.kind == DefinitionKind::Node);
     let nodes: Vec<String> = nodes.take(NAMED).map(|(n, _)| n.to_string()).collect();
     if nodes.is_empty() {
         "; name a node inside it".into()

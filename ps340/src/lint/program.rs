@@ -1,6 +1,6 @@
 //! One program: what its commands define, use, connect and send.
 
-use super::source::{Location, first_offset, last_offset};
+use super::source_file::{Location, first_offset, last_offset};
 use crate::{
     functions::{self, FunctionRow, Shape},
     structure::Operation,
@@ -267,12 +267,17 @@ impl Program {
             return DefinitionKind::NoFunction;
         };
         // A wrong size is what the machine says itself.
-        row.shape(size).map_or(DefinitionKind::NoFunction, |shape| DefinitionKind::Function(Function { row, size, shape }))
+        row.shape(size)
+            .map_or(DefinitionKind::NoFunction, |shape| DefinitionKind::Function(Function { row, size, shape }))
     }
 
     fn operate(&mut self, operate: &Operate, text: &[u8], location: Location) {
         if let Some(name) = Operation::named_in(operate) {
-            self.used(name, operate.kind().name(), Location { at: location.at + last_offset(text, name.as_str()), ..location });
+            self.used(
+                name,
+                operate.kind().name(),
+                Location { at: location.at + last_offset(text, name.as_str()), ..location },
+            );
         }
     }
 

@@ -3,7 +3,7 @@
 use super::{
     Finding, Level, Note, flow, names, ports,
     program::Program,
-    source::{Location, SourceFile},
+    source_file::{Location, SourceFile},
 };
 use crate::{
     line::LineId,

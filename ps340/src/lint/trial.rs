@@ -107,7 +107,8 @@ fn once(function: &Function, chosen: &[Option<&Value>]) -> Option<Vec<Effect>> {
         network.connect(FUNCTION, output, to, Input::Number(1)).ok()?;
     }
     let mut effects = Vec::new();
-    let active = |input: u16| function.row.input(function.shape, input).is_some_and(|spec| spec.role == QueueRole::Active);
+    let active =
+        |input: u16| function.row.input(function.shape, input).is_some_and(|spec| spec.role == QueueRole::Active);
     for round in [false, true, true] {
         for (input, sample) in (1..).zip(chosen) {
             if let Some(sample) = sample.filter(|_| active(input) == round) {

@@ -33,7 +33,8 @@ impl Addresses {
             return Ok(address);
         }
         let bytes = words.checked_mul(2).and_then(|bytes| bytes.checked_next_multiple_of(ADDRESS_STEP));
-        let next = bytes.and_then(|bytes| self.next.checked_add(bytes.max(ADDRESS_STEP))).ok_or(ParallelError::Address)?;
+        let next =
+            bytes.and_then(|bytes| self.next.checked_add(bytes.max(ADDRESS_STEP))).ok_or(ParallelError::Address)?;
         if self.ranges.len() >= MAX_ADDRESSES {
             return Err(ParallelError::Address);
         }

@@ -2,8 +2,8 @@
 
 use super::{
     Machine,
+    pending::{PendingRequests, Pick, TransformRequest},
     renderings::Renderings,
-    waiting::{Pick, TransformRequest, PendingRequests},
 };
 use crate::{
     interpreter::Message,

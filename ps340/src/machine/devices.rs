@@ -3,8 +3,8 @@
 //! Dials speak at samples, everything else at once. Keyboard and screen have rooms of their own (`keyboard`, `tube`).
 
 use super::{
+    device_message::DeviceMessage,
     dials::Dials,
-    emission::DeviceMessage,
     key::{Key, KeyboardMode},
     tablet::{Tablet, TabletEvent},
 };

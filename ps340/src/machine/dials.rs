@@ -4,7 +4,7 @@
 //! Modes, smallest change and samples a second are settings of DSET1 to DSET8, remembered; their numbers are ours. The
 //! real dials were sampled 10 to 20 times a second at the start; ours are sampled at every frame, for a smooth picture.
 
-use super::{FRAMES_PER_SECOND, emission::DeviceMessage};
+use super::{FRAMES_PER_SECOND, device_message::DeviceMessage};
 use crate::port::DialSetting;
 use protocol::Value;
 

@@ -8,7 +8,7 @@
 
 use super::{
     KeyboardMode, Machine,
-    tube::{CursorKey, Tube, TextStrokes, TextKey},
+    tube::{CursorKey, TextKey, TextStrokes, Tube},
 };
 use crate::{
     interpreter::Message,

@@ -11,8 +11,8 @@ use crate::{interpreter::Message, structure::PhysicalFault};
 use protocol::{
     Name,
     parallel::{
-        AddressList, Code, CommandWord, DONE, ERROR, ParallelFrame, INFORMATION, MAX_BLOCK_BYTES, MAX_LOOKUP, ParallelError, swap,
-        write_block, write_word,
+        AddressList, Code, CommandWord, DONE, ERROR, INFORMATION, MAX_BLOCK_BYTES, MAX_LOOKUP, ParallelError,
+        ParallelFrame, swap, write_block, write_word,
     },
 };
 
@@ -54,10 +54,12 @@ impl ParallelLine {
             ParallelState::Flag(command, count) => self.state = ParallelState::Block(command, count, word != 0),
             ParallelState::Block(command, _, _) => fail(command.word(), ParallelError::Command, out),
             // While it waits, a command may be aborted, and any other gives it up too.
-            ParallelState::Idle | ParallelState::Mail(_) | ParallelState::Refresh(_, _) => match CommandWord::from_word(word) {
-                Some(command) => self.command(command, machine, out),
-                None => fail(word & 0xf00f, ParallelError::Command, out),
-            },
+            ParallelState::Idle | ParallelState::Mail(_) | ParallelState::Refresh(_, _) => {
+                match CommandWord::from_word(word) {
+                    Some(command) => self.command(command, machine, out),
+                    None => fail(word & 0xf00f, ParallelError::Command, out),
+                }
+            }
         }
     }
 

@@ -15,7 +15,7 @@ use crate::{
     interpreter::Message,
     memory::Refusal,
     port::{ObjectId, Rendering, RenderingRequest},
-    rendering::{Facets, RenderingResult, RenderingFault, Task, members},
+    rendering::{Facets, RenderingFault, RenderingResult, Task, members},
     structure::NodeFault,
     traversal,
 };

@@ -1,18 +1,18 @@
 //! How the machine moves: inputs, events and frames; the network runs until it rests.
 
 use super::{
-    Event, Input, Machine, Micros, HostOutput, Panel, WORK_PER_STEP,
+    Event, HostOutput, Input, Machine, Micros, Panel, WORK_PER_STEP,
+    device_message::DeviceMessage,
     devices::Devices,
-    drawn::LatestUpdate,
-    emission::DeviceMessage,
     host_line::HostLine,
     initial::initial_memory,
     keyboard::Keyboard,
+    latest_update::LatestUpdate,
+    monitor::Monitor,
     parallel_line::ParallelLine,
     renderings::Renderings,
     streams::Streams,
     time::{centiseconds, time_of_frame},
-    watch::Monitor,
 };
 use crate::{interpreter::Message, line::LineId, port::Effect, raster::FrameBuffer, terminal::Terminal};
 

@@ -13,7 +13,7 @@
 //! rolls, chords and changes of the network come between; that a held code is not repeated, since a program that
 //! connects meanwhile would take it for a press without a position.
 
-use super::emission::DeviceMessage;
+use super::device_message::DeviceMessage;
 use crate::port::TabletCommand;
 use glam::DVec2;
 use protocol::Value;

@@ -2,7 +2,7 @@
 
 use super::{
     Machine,
-    waiting::{Pick, TransformRequest},
+    pending::{Pick, TransformRequest},
 };
 use crate::{
     interpreter::Message,
@@ -10,7 +10,7 @@ use crate::{
     port::ObjectId,
     structure::{Node, Operation},
     traversal::{
-        self, MAX_STORED_VECTORS, PickHit, PickRequest, Requests, Stroke, Transformed, UpdateFault, Update,
+        self, MAX_STORED_VECTORS, PickHit, PickRequest, Requests, Stroke, Transformed, Update, UpdateFault,
         write_back::{self, RECORD, RECORDS_PER_MESSAGE},
     },
 };

@@ -1,9 +1,10 @@
 //! The machine as a whole: the parts that it owns.
 
 use super::{
-    Counters, Panel, Settings, WORK_PER_STEP, devices::Devices, drawn::LatestUpdate, initial::initial_memory, kept::HostMessages,
-    keyboard::Keyboard, lines::Lines, outgoing::Outgoing, relief::MemoryRelease, renderings::Renderings, reports::Reports,
-    sight::VectorDisplay, streams::Streams, tube::Tube, watch::Monitor,
+    Counters, Panel, Settings, WORK_PER_STEP, devices::Devices, host_messages::HostMessages, initial::initial_memory,
+    keyboard::Keyboard, latest_update::LatestUpdate, lines::Lines, memory_release::MemoryRelease, monitor::Monitor,
+    outgoing::Outgoing, renderings::Renderings, reports::Reports, streams::Streams, tube::Tube,
+    vector_display::VectorDisplay,
 };
 use crate::{disk::Disk, memory::MassMemory, raster::FrameBuffer, terminal::Terminal};
 

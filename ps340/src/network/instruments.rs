@@ -2,7 +2,7 @@
 
 use super::{
     Destination,
-    observe::{Observer, Delivery, ArcSource},
+    observe::{ArcSource, Delivery, Observer},
 };
 use crate::port::ObjectId;
 use protocol::Value;

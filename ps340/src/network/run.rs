@@ -2,7 +2,7 @@
 
 use super::{
     Destination, MAX_STRING_BYTES, Network,
-    observe::{NoObserver, Observer, Delivery, ArcSource},
+    observe::{ArcSource, Delivery, NoObserver, Observer},
 };
 use crate::port::{Arrival, Backlog, Cause, Effect, Elapsed, Fault, Firing, KindSet, ObjectId, Outbox, Port, Problem};
 use protocol::{Kind, Value, command::Input};

@@ -4,7 +4,7 @@ use super::{
     Inspection, Language, OperatorCommand, OperatorCommandError, OperatorCommandRow, Subject,
     fault::REFUSED,
     graph::{graph, title},
-    words::WordReader,
+    word_reader::WordReader,
 };
 use crate::{
     functions::printing::print,
@@ -58,7 +58,9 @@ pub(super) const INSPECTION_ROWS: &[OperatorCommandRow] = &[
         word: "top",
         arguments: "[N]",
         summary: "the functions that fired most since 'count on'",
-        read: |words| Ok(OperatorCommand::Inspect(Inspection::Top(words.optional("a number of functions")?.unwrap_or(TOP)))),
+        read: |words| {
+            Ok(OperatorCommand::Inspect(Inspection::Top(words.optional("a number of functions")?.unwrap_or(TOP))))
+        },
     },
     OperatorCommandRow {
         word: "graph",

@@ -3,20 +3,20 @@
 //! A reply begins with `ok` or `error`. Line ends inside a reply are written `\n`.
 
 mod fault;
-mod words;
+mod word_reader;
 mod graph;
-mod order;
+mod command;
 mod reading;
 mod inspect;
-mod sight;
+mod display;
 mod table;
 mod perform;
 mod reply;
 
+pub use command::{DisplayCommand, Inspection, OperatorCommand, OperatorCommandRow, Screen};
 pub use fault::OperatorCommandError;
 pub use graph::{Language, Subject, title};
 pub use inspect::brief;
-pub use order::{Inspection, OperatorCommand, OperatorCommandRow, Screen, DisplayCommand};
 pub use perform::{CommandOutcome, Wait, perform};
 pub use reading::unescape;
 pub use reply::reply;

@@ -1,6 +1,6 @@
 //! Carrying out an order on a machine.
 
-use super::{OperatorCommand, OperatorCommandRow, fault::REFUSED, inspect::inspect, rows, sight};
+use super::{OperatorCommand, OperatorCommandRow, display, fault::REFUSED, inspect::inspect, rows};
 use crate::{
     calligraphic,
     example::EXAMPLES,
@@ -77,13 +77,17 @@ pub fn perform(command: &OperatorCommand, machine: &mut Machine, files: Option<&
         }
         OperatorCommand::Messages => return CommandOutcome::Done(Ok(messages(machine))),
         OperatorCommand::Lines(_) => return CommandOutcome::Done(Ok(String::new())),
-        OperatorCommand::Display(order) => return CommandOutcome::Done(sight::perform(order, machine, files)),
-        OperatorCommand::Show(name) => return CommandOutcome::Done(machine.describe(name).ok_or(format!("there is no {name}"))),
+        OperatorCommand::Display(order) => return CommandOutcome::Done(display::perform(order, machine, files)),
+        OperatorCommand::Show(name) => {
+            return CommandOutcome::Done(machine.describe(name).ok_or(format!("there is no {name}")));
+        }
         OperatorCommand::Strokes(most) => {
             machine.renew_picture();
             return CommandOutcome::Done(Ok(calligraphic::text(&machine.latest_update().strokes, *most)));
         }
-        OperatorCommand::Overlay(most) => return CommandOutcome::Done(Ok(calligraphic::text(machine.overlay(), *most))),
+        OperatorCommand::Overlay(most) => {
+            return CommandOutcome::Done(Ok(calligraphic::text(machine.overlay(), *most)));
+        }
         OperatorCommand::Counters => return CommandOutcome::Done(Ok(machine.counters().to_string())),
         OperatorCommand::Inspect(what) => return CommandOutcome::Done(inspect(what, machine, files)),
         OperatorCommand::Panel => {

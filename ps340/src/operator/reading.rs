@@ -1,6 +1,6 @@
 //! How the orders of a person at the machine are read.
 
-use super::{OperatorCommand, OperatorCommandError, words::WordReader};
+use super::{OperatorCommand, OperatorCommandError, word_reader::WordReader};
 use crate::machine::{Key, KeyboardMode};
 use clap::ValueEnum;
 
@@ -12,7 +12,10 @@ pub(super) fn message(words: &mut WordReader<'_>) -> Result<OperatorCommand, Ope
     if fresh {
         words.next();
     }
-    Ok(OperatorCommand::Message { fresh, frames: words.optional("'new' or a number of frames")?.unwrap_or(DEFAULT_WAIT_FRAMES) })
+    Ok(OperatorCommand::Message {
+        fresh,
+        frames: words.optional("'new' or a number of frames")?.unwrap_or(DEFAULT_WAIT_FRAMES),
+    })
 }
 
 pub(super) fn dial(words: &mut WordReader<'_>) -> Result<OperatorCommand, OperatorCommandError> {
@@ -47,7 +50,10 @@ pub(super) fn puck(words: &mut WordReader<'_>) -> Result<OperatorCommand, Operat
             if (1..=15).contains(&code) {
                 Ok(OperatorCommand::PuckPress(code))
             } else {
-                Err(OperatorCommandError::Bad { found: code.to_string(), expected: "a sum of the button codes 1, 2, 4 and 8" })
+                Err(OperatorCommandError::Bad {
+                    found: code.to_string(),
+                    expected: "a sum of the button codes 1, 2, 4 and 8",
+                })
             }
         }
         "release" => Ok(OperatorCommand::PuckRelease),
@@ -113,5 +119,7 @@ pub fn unescape(text: &str) -> Vec<u8> {
 }
 
 pub(super) fn frames(words: &mut WordReader<'_>) -> Result<OperatorCommand, OperatorCommandError> {
-    Ok(OperatorCommand::Frames(words.optional("a number of frames")?.ok_or(OperatorCommandError::Missing("a number of frames"))?))
+    Ok(OperatorCommand::Frames(
+        words.optional("a number of frames")?.ok_or(OperatorCommandError::Missing("a number of frames"))?,
+    ))
 }

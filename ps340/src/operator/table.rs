@@ -2,10 +2,10 @@
 
 use super::{
     Inspection, OperatorCommand, OperatorCommandError, OperatorCommandRow,
+    display::DISPLAY_ROWS,
     inspect::INSPECTION_ROWS,
     reading::{DEFAULT_WAIT_FRAMES, button, dial, frames, key, message, mode, puck, stylus, type_text},
-    sight::DISPLAY_ROWS,
-    words::WordReader,
+    word_reader::WordReader,
 };
 use crate::example::example;
 
@@ -99,7 +99,9 @@ const COMMANDS: &[OperatorCommandRow] = &[
         arguments: "[NAME]",
         summary: "counters of the machine, or of a function after 'count on'",
         read: |w| {
-            Ok(w.next().map_or(OperatorCommand::Counters, |n| OperatorCommand::Inspect(Inspection::Activity(n.to_ascii_uppercase()))))
+            Ok(w.next().map_or(OperatorCommand::Counters, |n| {
+                OperatorCommand::Inspect(Inspection::Activity(n.to_ascii_uppercase()))
+            }))
         },
     },
     OperatorCommandRow {
@@ -114,7 +116,12 @@ const COMMANDS: &[OperatorCommandRow] = &[
         summary: "the text on the screen of the terminal",
         read: |_| Ok(OperatorCommand::Terminal),
     },
-    OperatorCommandRow { word: "log", arguments: "", summary: "the latest messages of the machine", read: |_| Ok(OperatorCommand::Log) },
+    OperatorCommandRow {
+        word: "log",
+        arguments: "",
+        summary: "the latest messages of the machine",
+        read: |_| Ok(OperatorCommand::Log),
+    },
     OperatorCommandRow {
         word: "lines",
         arguments: "[on|off]",
@@ -125,7 +132,9 @@ const COMMANDS: &[OperatorCommandRow] = &[
         word: "example",
         arguments: "[NAME]",
         summary: "run a program that ships with the machine; alone: list them",
-        read: |words| Ok(OperatorCommand::Example(words.next().map(example).transpose().map_err(OperatorCommandError::Example)?)),
+        read: |words| {
+            Ok(OperatorCommand::Example(words.next().map(example).transpose().map_err(OperatorCommandError::Example)?))
+        },
     },
     OperatorCommandRow { word: "help", arguments: "[ORDER]", summary: "this list, or one order", read: help },
     OperatorCommandRow { word: "quit", arguments: "", summary: "end the machine", read: |_| Ok(OperatorCommand::Quit) },

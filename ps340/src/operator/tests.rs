@@ -50,7 +50,10 @@ fn bad_orders_name_the_word_that_is_wrong() {
     assert_eq!(parse(""), Err(OperatorCommandError::Missing("an order")));
     assert!(matches!(parse("dance"), Err(OperatorCommandError::Unknown { word, .. }) if word == "dance"));
     assert_eq!(parse("dial 9 1"), Err(OperatorCommandError::Bad { found: "9".into(), expected: "a dial, 1 to 8" }));
-    assert_eq!(parse("dial 1 NaN"), Err(OperatorCommandError::Bad { found: "NaN".into(), expected: "a number of turns" }));
+    assert_eq!(
+        parse("dial 1 NaN"),
+        Err(OperatorCommandError::Bad { found: "NaN".into(), expected: "a number of turns" })
+    );
     let expected = "a function key, 1 to 12, or a key of the list 'keys'";
     assert_eq!(parse("key hyper"), Err(OperatorCommandError::Bad { found: "hyper".into(), expected }));
     assert_eq!(parse("key up shift"), Err(OperatorCommandError::TooMuch("shift".into())));

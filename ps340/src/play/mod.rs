@@ -15,8 +15,8 @@ mod pattern;
 mod player;
 mod script;
 
-pub use player::{PlayEnd, Failure, PlayOptions, Player, Watcher};
-pub use script::{Expected, ScriptLine, Script, ScriptError, ScriptProblem, Step};
+pub use player::{Failure, PlayEnd, PlayOptions, Player, Watcher};
+pub use script::{Expected, Script, ScriptError, ScriptLine, ScriptProblem, Step};
 
 #[cfg(test)]
 mod tests;

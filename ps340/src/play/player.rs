@@ -1,6 +1,6 @@
 //! The player: a machine, one host on its line, an operator, and time that passes only while a step waits.
 
-use super::script::{Expected, ScriptLine, Script, Step};
+use super::script::{Expected, Script, ScriptLine, Step};
 use crate::{
     line::LineId,
     machine::{Input, Machine, Micros, Settings, time_of_frame},

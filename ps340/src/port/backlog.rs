@@ -1,6 +1,6 @@
 //! The messages behind the first at each input: queues that are lent to the ports that need one.
 
-use super::place::{self, PLACEHOLDER};
+use super::moves::{self, PLACEHOLDER};
 use protocol::Value;
 
 /// Most messages that wait at one input; later ones are lost, counted and reported. Ours.
@@ -85,7 +85,7 @@ impl Backlog {
     /// Moves the message that came last to a place, if there is one; the others go with the queue.
     pub(super) fn pop_last(&mut self, lent: &mut QueueHandle, to: &mut Value) {
         if let Some(last) = self.queues.get_mut(lent.0 as usize).and_then(Ring::last) {
-            place::shift(last, to);
+            moves::shift(last, to);
         }
         self.take_back(lent);
     }
@@ -115,7 +115,8 @@ impl Backlog {
     /// Makes one more queue.
     #[cold]
     fn more(&mut self) -> Option<u32> {
-        let number = u32::try_from(self.queues.len()).ok().filter(|&number| QueueHandle(number) != QueueHandle::NOTHING)?;
+        let number =
+            u32::try_from(self.queues.len()).ok().filter(|&number| QueueHandle(number) != QueueHandle::NOTHING)?;
         self.queues.push(Ring::default());
         Some(number)
     }
@@ -128,14 +129,14 @@ impl Ring {
             self.grow();
         }
         let last = (self.first + self.length) & (self.slots.len() - 1);
-        place::shift(message, &mut self.slots[last]);
+        moves::shift(message, &mut self.slots[last]);
         self.length += 1;
     }
 
     /// Moves the first message, which must be there, to a place.
     #[inline(always)]
     fn pop(&mut self, to: &mut Value) {
-        place::shift(&mut self.slots[self.first], to);
+        moves::shift(&mut self.slots[self.first], to);
         self.first = (self.first + 1) & (self.slots.len() - 1);
         self.length -= 1;
     }

@@ -3,7 +3,7 @@
 use glam::{DMat2, DMat3, DMat4, DVec2, DVec3, DVec4};
 use protocol::{
     Name, Value,
-    value::{Label, PickList, PickCoordinates, TransformedVectors, VectorEnd},
+    value::{Label, PickCoordinates, PickList, TransformedVectors, VectorEnd},
 };
 use std::{fmt, sync::Arc};
 

@@ -7,7 +7,7 @@ mod firing;
 mod kinds;
 mod literal;
 mod outbox;
-mod place;
+mod moves;
 mod queue;
 mod rendering;
 

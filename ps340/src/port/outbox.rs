@@ -1,6 +1,6 @@
 //! The results of one firing, until they are delivered.
 
-use super::place;
+use super::moves;
 use protocol::Value;
 
 /// The results of one firing, as pairs of output and message, in their order.
@@ -22,15 +22,15 @@ impl Default for Outbox {
 impl Outbox {
     /// An empty one.
     pub const fn new() -> Outbox {
-        Outbox { first: (0, place::PLACEHOLDER), filled: false, more: Vec::new() }
+        Outbox { first: (0, moves::PLACEHOLDER), filled: false, more: Vec::new() }
     }
 
     /// Adds a result.
     #[inline(never)]
     pub(super) fn push(&mut self, output: u16, message: &mut Value) {
         match self.next(output) {
-            Some(place) => place::shift(message, place),
-            None => self.more.push((output, std::mem::replace(message, place::PLACEHOLDER))),
+            Some(place) => moves::shift(message, place),
+            None => self.more.push((output, std::mem::replace(message, moves::PLACEHOLDER))),
         }
     }
 
@@ -38,7 +38,7 @@ impl Outbox {
     #[inline(always)]
     pub(super) fn push_real(&mut self, output: u16, number: f64) {
         match self.next(output) {
-            Some(place) => place::put_real(number, place),
+            Some(place) => moves::put_real(number, place),
             None => self.push_more(output, number),
         }
     }
@@ -86,7 +86,7 @@ impl Outbox {
     #[inline]
     pub fn clear(&mut self) {
         self.filled = false;
-        place::clear(&mut self.first.1);
+        moves::clear(&mut self.first.1);
         if !self.more.is_empty() {
             self.more.clear();
         }

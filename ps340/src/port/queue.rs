@@ -3,7 +3,7 @@
 use super::{
     Backlog, Literal, PortSpec, QueueRole,
     backlog::QueueHandle,
-    place::{self, PLACEHOLDER},
+    moves::{self, PLACEHOLDER},
 };
 use protocol::{Kind, Value};
 
@@ -111,7 +111,7 @@ impl Port {
         if state & (ACTIVE | FILLED) == ACTIVE | FILLED {
             return if backlog.push(&mut self.tail, message) { Arrival::Queued } else { Arrival::Lost };
         }
-        place::shift(message, &mut self.value);
+        moves::shift(message, &mut self.value);
         self.state = state | FILLED | FRESH;
         if state & FILLED == 0 && state & (ACTIVE | REQUIRED) != 0 { Arrival::Awaited } else { Arrival::Queued }
     }
@@ -124,7 +124,7 @@ impl Port {
         if self.tail != QueueHandle::NOTHING && backlog.pop(&mut self.tail, &mut self.value) {
             return false;
         }
-        place::clear(&mut self.value);
+        moves::clear(&mut self.value);
         self.state &= !FILLED;
         true
     }

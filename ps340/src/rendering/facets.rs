@@ -16,7 +16,7 @@ use super::{
 };
 use crate::{
     port::ObjectId,
-    structure::{Node, Polygons, MatrixFactors, State, Structures},
+    structure::{MatrixFactors, Node, Polygons, State, Structures},
     traversal::{Gathered, Plane, newell},
 };
 use glam::{DMat3, DMat4, DVec3, DVec4};
@@ -178,7 +178,10 @@ impl Facets {
         if vertices > MAX_VERTICES || needed > u64::from(working_storage) {
             return Err(RenderingFault::Storage { needed });
         }
-        let lights = gathered.lights.iter().filter_map(|(light, matrix)| DirectionalLight::new(light, &DMat3::from_mat4(*matrix)));
+        let lights = gathered
+            .lights
+            .iter()
+            .filter_map(|(light, matrix)| DirectionalLight::new(light, &DMat3::from_mat4(*matrix)));
         let mut lights: Vec<DirectionalLight> = lights.collect();
         if gathered.lights.is_empty() {
             lights.push(DirectionalLight::default());

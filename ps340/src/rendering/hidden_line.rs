@@ -25,7 +25,7 @@
 use super::{
     Facets, Segment,
     facets::Edge,
-    project::{ProjectedEdge, Projected, project},
+    project::{Projected, ProjectedEdge, project},
 };
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
@@ -108,7 +108,12 @@ impl HiddenLine {
         let seen = |edge: &Edge| !closed || sides.get(&edge.ends).is_none_or(|side| side.toward > 0);
         let lines = projected.lines.iter().filter(|line| seen(&edges[line.edge]));
         let edges = lines.map(|line| ScreenEdge::new(line, &edges[line.edge], &spots)).collect();
-        HiddenLine { grid: Grid::new(occluders(facets, &projected, &spots, closed)), edges, next: 0, segments: Vec::new() }
+        HiddenLine {
+            grid: Grid::new(occluders(facets, &projected, &spots, closed)),
+            edges,
+            next: 0,
+            segments: Vec::new(),
+        }
     }
 
     /// Goes on for about so many tests of an edge against a triangle. Returns what is seen, once it is done.

@@ -9,7 +9,7 @@
 
 use super::{
     Facets,
-    facets::{Edge, BlockView},
+    facets::{BlockView, Edge},
 };
 use glam::{DVec2, DVec3, DVec4};
 use std::collections::HashMap;
@@ -230,5 +230,8 @@ fn screen_point(raw: &Raw, view: &BlockView) -> ScreenPoint {
     } else {
         1.0 / raw.clip.w
     };
-    ScreenPoint { position: DVec2::new(across(view.horizontal, raw.clip.x), across(view.vertical, raw.clip.y)), depth_key: nearness }
+    ScreenPoint {
+        position: DVec2::new(across(view.horizontal, raw.clip.x), across(view.vertical, raw.clip.y)),
+        depth_key: nearness,
+    }
 }

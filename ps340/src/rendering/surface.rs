@@ -146,7 +146,8 @@ mod tests {
 
     #[test]
     fn lights_add_up() {
-        let lamps = [-30.0, 10.0, 70.0].map(|angle| DirectionalLight { direction: at(angle), ..DirectionalLight::default() });
+        let lamps =
+            [-30.0, 10.0, 70.0].map(|angle| DirectionalLight { direction: at(angle), ..DirectionalLight::default() });
         let of = |lamps: &[DirectionalLight]| light(&GREY, lamps, DVec3::NEG_Z, at(5.0), [0.1; 3], true)[0];
         let sum: f64 = lamps.iter().map(|lamp| of(std::slice::from_ref(lamp))).sum();
         assert!((of(&lamps) - sum).abs() < 1e-12);

@@ -1,7 +1,7 @@
 //! A rendering as a task in pieces of bounded work.
 
 use super::{
-    Facets, RenderingResult, RenderingFault, Segment,
+    Facets, RenderingFault, RenderingResult, Segment,
     back_face::back_face_removal,
     hidden_line::HiddenLine,
     section::{cross_section, sectioned},
@@ -56,7 +56,11 @@ impl Task {
 ///
 /// # Errors
 /// As [`Task::new`].
-pub fn render(kind: Rendering, facets: Facets, environment: &ShadingEnvironment) -> Result<RenderingResult, RenderingFault> {
+pub fn render(
+    kind: Rendering,
+    facets: Facets,
+    environment: &ShadingEnvironment,
+) -> Result<RenderingResult, RenderingFault> {
     let mut task = Task::new(kind, facets, environment)?;
     loop {
         if let Some(outcome) = task.advance(u64::MAX) {

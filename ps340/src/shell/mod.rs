@@ -3,9 +3,9 @@
 mod mirror;
 mod options;
 mod signals;
-mod turns;
-mod around;
+mod machine_loop;
+mod lines;
 
-pub use around::{INTERRUPTED, Window, run};
-pub use mirror::{ArcShown, MirrorRequest, FunctionShown, InputShown, Mirror, NodeShown, TrafficEntry, MirrorFrame};
-pub use options::{TimeSource, ExitReason, Operator, Options};
+pub use lines::{INTERRUPTED, Window, run};
+pub use mirror::{ArcShown, FunctionShown, InputShown, Mirror, MirrorFrame, MirrorRequest, NodeShown, TrafficEntry};
+pub use options::{ExitReason, Operator, Options, TimeSource};

@@ -3,7 +3,7 @@
 
 mod fault;
 mod value;
-mod sight;
+mod matrix_factors;
 mod identifiers;
 mod state;
 mod operation;
@@ -16,10 +16,10 @@ mod word;
 pub use copy::{CopyFault, copy};
 pub use fault::NodeFault;
 pub use identifiers::{IdentifierChains, Identifiers};
+pub use matrix_factors::MatrixFactors;
 pub use node::{Labels, Member, Node, Polygons, Rendered, Vectors};
 pub use operation::{Asked, Degenerate, Operation};
 pub use physical::{PhysicalFault, VECTOR_WORDS};
-pub use sight::MatrixFactors;
 pub use state::{ALL_SCOPES, State};
 
 use crate::{

@@ -8,7 +8,7 @@
 
 use crate::{
     port::ObjectId,
-    structure::{Node, Polygons, MatrixFactors, State},
+    structure::{MatrixFactors, Node, Polygons, State},
 };
 use glam::{DMat4, DVec3};
 use protocol::command::Illumination;

@@ -20,11 +20,11 @@ mod walk;
 pub mod write_back;
 
 pub use clip::{Clipper, ScreenMap};
-pub use gather::{PolygonBlock, Gathered, Plane, newell};
+pub use gather::{Gathered, Plane, PolygonBlock, newell};
 pub use limits::{MAX_DEPTH, MAX_GATHERED, MAX_STORED_VECTORS, MAX_VECTORS, MAX_VISITS};
 pub use pick::{PickHit, PickRequest, PickedKind};
 pub use stroke::Stroke;
-pub use update::{Requests, Transformed, UpdateFault, Update};
+pub use update::{Requests, Transformed, Update, UpdateFault};
 pub use walk::{alone, draw_in_parts, gather, update, update_into};
 
 #[cfg(test)]

@@ -70,7 +70,8 @@ fn list(list: &VectorList, state: &State, sink: Sink) -> ControlFlow<()> {
         let source = [place(from), place(to)];
         let ends = source.map(|p| state.ctm * p.extend(1.0));
         let index = to as u32 + 1;
-        let segment = LineSegment { index, ends, source, intensity: [intensity(from), intensity(to)], color: None, dot };
+        let segment =
+            LineSegment { index, ends, source, intensity: [intensity(from), intensity(to)], color: None, dot };
         match blending {
             Some(saturation) => {
                 blend(segment, [list.points[from][3], list.points[to][3]].map(f64::from), saturation, sink)?

@@ -1,8 +1,8 @@
 //! The walk over the display structure.
 
 use super::{
-    Clipper, MAX_DEPTH, MAX_GATHERED, MAX_STORED_VECTORS, MAX_VECTORS, MAX_VISITS, PickHit, PickedKind, Requests, Stroke,
-    UpdateFault, Update,
+    Clipper, MAX_DEPTH, MAX_GATHERED, MAX_STORED_VECTORS, MAX_VECTORS, MAX_VISITS, PickHit, PickedKind, Requests,
+    Stroke, Update, UpdateFault,
     gather::{Gathered, Gatherer},
     outline::{self, LineSegment},
     phase,
@@ -10,7 +10,9 @@ use super::{
 };
 use crate::{
     port::ObjectId,
-    structure::{Asked, IdentifierChains, Identifiers, Member, Node, Operation, Rendered, MatrixFactors, State, Structures},
+    structure::{
+        Asked, IdentifierChains, Identifiers, MatrixFactors, Member, Node, Operation, Rendered, State, Structures,
+    },
 };
 use glam::{DMat4, DVec3, DVec4};
 use protocol::{

@@ -6,9 +6,9 @@ use crate::{campaign::Target, pool::Features, seeds, vocabulary::pairs};
 use protocol::command::{CommandReader, reference::name_of};
 use ps340::{
     line::LineId,
-    machine::{Input, Machine, HostOutput, Settings, WORK_PER_STEP},
+    machine::{HostOutput, Input, Machine, Settings, WORK_PER_STEP},
     memory::MASS_MEMORY,
-    operator::{OperatorCommand, CommandOutcome, DisplayCommand, parse, perform},
+    operator::{CommandOutcome, DisplayCommand, OperatorCommand, parse, perform},
 };
 
 pub static SESSION: Target = Target { name: "session", seeds: seeds::sessions, run };
@@ -161,7 +161,13 @@ impl Session {
         if lot % 16 == 5 {
             assert!(self.machine.raster_picture().width() > 0);
         }
-        for order in [OperatorCommand::Panel, OperatorCommand::Terminal, OperatorCommand::Log, OperatorCommand::Counters, OperatorCommand::Show("A".into())] {
+        for order in [
+            OperatorCommand::Panel,
+            OperatorCommand::Terminal,
+            OperatorCommand::Log,
+            OperatorCommand::Counters,
+            OperatorCommand::Show("A".into()),
+        ] {
             perform(&order, &mut self.machine, None);
         }
     }

@@ -3,7 +3,8 @@
 use clap::Parser;
 use std::{path::PathBuf, process::ExitCode, time::Duration};
 use tests::conformance::{
-    self, Case, Form, Operator, OperatorLine, Packets, Person, Target, Verdict, Transport, line::Endpoint, mutation, walk,
+    self, Case, Form, Operator, OperatorLine, Packets, Person, Target, Transport, Verdict, line::Endpoint, mutation,
+    walk,
 };
 
 /// Runs the conformance suite of the PS 340 against a machine; see protocol/CONFORMANCE.md.

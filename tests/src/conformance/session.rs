@@ -4,7 +4,7 @@ use super::{
     case::{Case, Expected, Step, StrokeLine, with_number},
     compare::{matches, strokes_differ},
     form::{Sender, Transport, TransportError},
-    line::{Line, Endpoint},
+    line::{Endpoint, Line},
     person::{Operator, OperatorFault},
     strokes::{self, Continuation, WritebackText},
 };

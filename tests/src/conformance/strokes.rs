@@ -58,7 +58,8 @@ pub struct WritebackText {
 impl WritebackText {
     /// Reads a line; none if it is no line of the text.
     pub fn line(&mut self, line: &str) -> Option<Continuation> {
-        let (line, rest) = line.strip_suffix(';').map_or((line, Continuation::Lines), |line| (line, Continuation::Nothing));
+        let (line, rest) =
+            line.strip_suffix(';').map_or((line, Continuation::Lines), |line| (line, Continuation::Nothing));
         if !self.begun {
             self.begun = true;
             let count: usize = line.strip_prefix("VECTOR_LIST ITEMIZED N=")?.parse().ok()?;

@@ -5,7 +5,7 @@ use protocol::{
     Name, Value,
     command::{Command, CommandReader, Destination, Input, print},
 };
-use ps340::functions::{Confidence, FunctionExample, FAMILIES, FunctionRow};
+use ps340::functions::{Confidence, FAMILIES, FunctionExample, FunctionRow};
 
 /// Allowed difference of printed numbers: F:PRINT has nine digits.
 const TOLERANCE: f64 = 1e-8;

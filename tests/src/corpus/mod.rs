@@ -1,11 +1,11 @@
 //! Boolean operations on solids that are hard on numbers: a seeded corpus, and how each of its cases is judged.
 
 mod classes;
-mod judge;
+mod scoring;
 mod points;
 
 pub use classes::{CLASSES, Class};
-pub use judge::{evaluated, score};
+pub use scoring::{evaluated, score};
 
 use host::mesh::Mesh;
 use host::solid::Expression;

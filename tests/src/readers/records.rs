@@ -3,7 +3,7 @@
 use super::place::with_file;
 use super::sums;
 use glam::DVec3;
-use host::database::{RecordKind, Record, DatabaseReport, Store, read, shipped};
+use host::database::{DatabaseReport, Record, RecordKind, Store, read, shipped};
 use host::illumination::light::Goniometry;
 use std::path::Path;
 

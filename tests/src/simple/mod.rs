@@ -4,7 +4,7 @@
 //! it winds once around what is behind each triangle and not at all around what is before it.
 
 mod integer;
-mod meeting;
+mod triangle_overlap;
 mod predicates;
 mod winding;
 
@@ -57,7 +57,7 @@ pub fn check(mesh: &Mesh) -> Result<(), NotSimple> {
         return Err(NotSimple::Flat(flat));
     }
     let sheets = sheets(&at, &triangles)?;
-    let pairs = meeting::pairs(&points, &triangles);
+    let pairs = triangle_overlap::pairs(&points, &triangles);
     if let Some(&pair) = pairs.first() {
         return Err(NotSimple::Crossing { pair, count: pairs.len() });
     }

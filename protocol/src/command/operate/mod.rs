@@ -3,7 +3,7 @@
 mod notation;
 mod number;
 mod setting;
-mod lead;
+mod keyword_tree;
 mod text;
 mod transformation;
 mod viewing;

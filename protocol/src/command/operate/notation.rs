@@ -159,7 +159,11 @@ impl<N: Fields> Fields for OptionalAfter<N> {
         }
     }
 
-    fn read<W: Witness>(&self, label: FieldLabel, reader: &mut Reader<'_, '_, W>) -> Result<Option<N::Value>, BinaryError> {
+    fn read<W: Witness>(
+        &self,
+        label: FieldLabel,
+        reader: &mut Reader<'_, '_, W>,
+    ) -> Result<Option<N::Value>, BinaryError> {
         if reader.boolean(label.given)? { self.1.read(label, reader).map(Some) } else { Ok(None) }
     }
 }

@@ -1,6 +1,6 @@
 //! Notations of numbers: reals, whole numbers, vectors, factors, matrices, ranges.
 
-use super::notation::{Fields, FieldLabel, Notation};
+use super::notation::{FieldLabel, Fields, Notation};
 use crate::{
     command::{
         error::Fault,

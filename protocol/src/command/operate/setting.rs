@@ -1,6 +1,6 @@
 //! Notations of switches, axes, screens, phases, comparisons, names and the parts of views.
 
-use super::notation::{Fields, FieldLabel, Notation};
+use super::notation::{FieldLabel, Fields, Notation};
 use crate::{
     Name,
     command::{

@@ -17,14 +17,17 @@
 use super::{
     attribute::{ON_OFF, SWITCH_INPUT, attribute_rows},
     condition::condition_rows,
-    lead::KeywordTree,
-    notation::{Fields, OptionalAfter, FieldLabel, OptionalNumber, Notation, after, equal, optional, unprinted},
+    keyword_tree::KeywordTree,
+    notation::{FieldLabel, Fields, Notation, OptionalAfter, OptionalNumber, after, equal, optional, unprinted},
     number::{
-        BIT, COUNT, CharacterFactors, Interval, Factors, LEVEL, Matrix2, Matrix3, Matrix4, Matrix4x3, NextReal, Place,
+        BIT, COUNT, CharacterFactors, Factors, Interval, LEVEL, Matrix2, Matrix3, Matrix4, Matrix4x3, NextReal, Place,
         Real, SIGNED, Vector2, Vector3,
     },
     rendering::{RENDERING_INPUTS, rendering_rows},
-    setting::{DepthBoundaries, Flag, AxisLetter, ObjectName, SideOffset, Orientation, PICKING, PhaseRate, SWITCH, ScreenWidth, Screens, ComparisonSign},
+    setting::{
+        AxisLetter, ComparisonSign, DepthBoundaries, Flag, ObjectName, Orientation, PICKING, PhaseRate, SWITCH,
+        ScreenWidth, Screens, SideOffset,
+    },
     text::{MATRIX_2, text_rows},
     transformation::{MATRIX_3, transformation_rows},
     viewing::{DEPTH, LIMITS, MATRIX_4, viewing_rows},

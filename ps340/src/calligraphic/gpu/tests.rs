@@ -5,7 +5,7 @@
 use super::Gpu;
 use crate::calligraphic::tests::{difference, jumble};
 use crate::{
-    calligraphic::{Beam, Controls, Display, Drawer, ScreenLight, PHOSPHORS, draw},
+    calligraphic::{Beam, Controls, Display, Drawer, PHOSPHORS, ScreenLight, draw},
     traversal::Stroke,
 };
 use std::sync::{Arc, OnceLock};

@@ -2,9 +2,9 @@
 
 use super::{View, view::refresh_row};
 use crate::{
-    console::orders::OperatorCommands,
+    console::operator_commands::OperatorCommands,
     machine::Counters,
-    shell::{MirrorRequest, MirrorFrame},
+    shell::{MirrorFrame, MirrorRequest},
 };
 use egui::Ui;
 

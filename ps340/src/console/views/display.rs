@@ -3,8 +3,8 @@
 use super::{View, view::refresh_row};
 use crate::{
     calligraphic::{KNOBS, PHOSPHORS, SCREENS},
-    console::{orders::OperatorCommands, places},
-    shell::{MirrorRequest, MirrorFrame},
+    console::{operator_commands::OperatorCommands, widget_positions},
+    shell::{MirrorFrame, MirrorRequest},
 };
 use egui::{ComboBox, Slider, Ui, vec2};
 
@@ -31,7 +31,7 @@ impl View for DisplayView {
                 ui.label(knob.name);
                 let mut at = knob.get(controls);
                 let slider = ui.add(Slider::new(&mut at, 0.0..=1.0).fixed_decimals(2));
-                places::note(ui, &format!("knob {}", knob.name), slider.rect.left_center() + vec2(2.0, 0.0));
+                widget_positions::note(ui, &format!("knob {}", knob.name), slider.rect.left_center() + vec2(2.0, 0.0));
                 if slider.changed() {
                     orders.give(format!("knob {} {at}", knob.name));
                 }

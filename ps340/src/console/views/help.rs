@@ -2,11 +2,11 @@
 
 use super::View;
 use crate::{
-    console::orders::OperatorCommands,
+    console::operator_commands::OperatorCommands,
     functions,
     functions::page,
     operator,
-    shell::{MirrorRequest, MirrorFrame},
+    shell::{MirrorFrame, MirrorRequest},
 };
 use egui::{RichText, Ui};
 use protocol::command::reference;

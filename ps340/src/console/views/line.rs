@@ -2,9 +2,9 @@
 
 use super::View;
 use crate::{
-    console::orders::OperatorCommands,
+    console::operator_commands::OperatorCommands,
     line::LineId,
-    shell::{MirrorRequest, TrafficEntry, MirrorFrame},
+    shell::{MirrorFrame, MirrorRequest, TrafficEntry},
 };
 use egui::Ui;
 use protocol::listing::{Listing, Sender};

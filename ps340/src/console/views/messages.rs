@@ -2,8 +2,8 @@
 
 use super::View;
 use crate::{
-    console::orders::OperatorCommands,
-    shell::{MirrorRequest, MirrorFrame},
+    console::operator_commands::OperatorCommands,
+    shell::{MirrorFrame, MirrorRequest},
 };
 use egui::Ui;
 

@@ -2,8 +2,8 @@
 
 use super::View;
 use crate::{
-    console::{orders::OperatorCommands, readable::rounded},
-    shell::{MirrorRequest, FunctionShown, MirrorFrame},
+    console::{operator_commands::OperatorCommands, readable::rounded},
+    shell::{FunctionShown, MirrorFrame, MirrorRequest},
 };
 use egui::{Color32, RichText, Ui};
 use std::collections::HashMap;

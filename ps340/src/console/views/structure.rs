@@ -2,8 +2,8 @@
 
 use super::View;
 use crate::{
-    console::{orders::OperatorCommands, readable::rounded},
-    shell::{MirrorRequest, MirrorFrame},
+    console::{operator_commands::OperatorCommands, readable::rounded},
+    shell::{MirrorFrame, MirrorRequest},
 };
 use egui::Ui;
 

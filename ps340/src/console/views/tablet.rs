@@ -2,8 +2,8 @@
 
 use super::View;
 use crate::{
-    console::{mapping::Mouse, orders::OperatorCommands, places, puck::Puck},
-    shell::{MirrorRequest, MirrorFrame},
+    console::{mapping::Mouse, operator_commands::OperatorCommands, puck::Puck, widget_positions},
+    shell::{MirrorFrame, MirrorRequest},
 };
 use egui::{Color32, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, vec2};
 
@@ -54,7 +54,7 @@ impl View for TabletView {
         let side = ui.available_size().min_elem().max(1.0);
         let (area, response) = ui.allocate_exact_size(Vec2::splat(side), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "tablet"));
-        places::note(ui, "tablet", area.center());
+        widget_positions::note(ui, "tablet", area.center());
         self.puck.follow(ui, &response, orders);
         paint(ui, area, &self.puck);
     }

@@ -1,8 +1,8 @@
 //! What every view has, and what several show.
 
 use crate::{
-    console::orders::OperatorCommands,
-    shell::{MirrorRequest, MirrorFrame},
+    console::operator_commands::OperatorCommands,
+    shell::{MirrorFrame, MirrorRequest},
 };
 use egui::Ui;
 

@@ -1,7 +1,7 @@
 //! Dials, keys, buttons, tablet and keyboard: what a person turns, presses and moves.
 
 use super::{
-    super::{FunctionExample, Family, FunctionRow, Rule, Source},
+    super::{Family, FunctionExample, FunctionRow, Rule, Source},
     common::request,
 };
 use crate::port::{

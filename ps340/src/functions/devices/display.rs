@@ -1,7 +1,7 @@
 //! Labels, lights, the message line, the terminal emulator, and the switches of the screen.
 
 use super::{
-    super::{FunctionExample, Family, FunctionRow, Source, printing::print},
+    super::{Family, FunctionExample, FunctionRow, Source, printing::print},
     common::{TEXT, TRIGGER, request},
 };
 use crate::port::{

@@ -47,7 +47,8 @@ pub fn initial() -> impl Iterator<Item = InitialInstance> {
             (Family::Device, _) => 1..=8,
             _ => return vec![InitialInstance { name: function.name.into(), function, device: None }],
         };
-        let several = devices.map(|n| InitialInstance { name: format!("{}{n}", function.name), function, device: Some(n) });
+        let several =
+            devices.map(|n| InitialInstance { name: format!("{}{n}", function.name), function, device: Some(n) });
         several.collect()
     })
 }

@@ -57,7 +57,10 @@ pub static ROWS: &[FunctionRow] = &[FunctionRow {
     behaviour: wash,
     examples: &[
         FunctionExample::of(&[(5, I(1)), (9, B(true)), (15, B(true)), (7, I(2))], &[]),
-        FunctionExample::of(&[(3, V3([80.0, 0.0, 480.0])), (7, I(0)), (3, V4([0.0, 0.0, 639.0, 479.0])), (7, I(1))], &[]),
+        FunctionExample::of(
+            &[(3, V3([80.0, 0.0, 480.0])), (7, I(0)), (3, V4([0.0, 0.0, 639.0, 479.0])), (7, I(1))],
+            &[],
+        ),
         FunctionExample::of(&[(3, M2([[0.0, 639.0], [0.0, 479.0]])), (7, I(0))], &[]),
         FunctionExample::of(&[(7, I(3)), (7, I(-1))], &[]).faults(&[6, 6]),
     ],

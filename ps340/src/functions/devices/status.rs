@@ -76,7 +76,8 @@ pub static ROWS: &[FunctionRow] = &[
     FunctionRow { name: "INFORMATION", summary: "text of every information, for whatever is connected", ..MESSAGES },
 ];
 
-const PASS_THROUGH_EXAMPLES: &[FunctionExample] = &[FunctionExample::of(&[(1, S("E 5 *** text"))], &[(1, S("E 5 *** text"))])];
+const PASS_THROUGH_EXAMPLES: &[FunctionExample] =
+    &[FunctionExample::of(&[(1, S("E 5 *** text"))], &[(1, S("E 5 *** text"))])];
 
 /// Memory: hundredths of a second from line to line; nothing if there is no next one.
 const INTERVAL: u8 = 0;

@@ -56,16 +56,20 @@ impl Scene {
     /// A whole command with a block from the host; the answers behind its echo.
     fn transfer(&mut self, word: u16, block: &[u8]) -> Vec<ParallelFrame> {
         let count = ParallelFrame::Word(block.len() as u16);
-        let mut said = self.say(&[ParallelFrame::Word(word), count, ParallelFrame::Word(0), ParallelFrame::Block(block.into())]);
+        let mut said =
+            self.say(&[ParallelFrame::Word(word), count, ParallelFrame::Word(0), ParallelFrame::Block(block.into())]);
         assert_eq!(said.remove(0), ParallelFrame::Word(word), "the machine echoes");
         said
     }
 
     fn address(&mut self, name: &str) -> u32 {
         match self.transfer(0x8000, name.as_bytes())[..] {
-            [ParallelFrame::Word(0x8a00), ParallelFrame::Word(0x8100), ParallelFrame::Word(high), ParallelFrame::Word(low)] => {
-                u32::from(high) << 16 | u32::from(low)
-            }
+            [
+                ParallelFrame::Word(0x8a00),
+                ParallelFrame::Word(0x8100),
+                ParallelFrame::Word(high),
+                ParallelFrame::Word(low),
+            ] => u32::from(high) << 16 | u32::from(low),
             ref other => panic!("{name}: {other:?}"),
         }
     }
@@ -125,7 +129,10 @@ fn logical_writes_are_the_host_line_and_logical_reads_its_messages() {
     assert_eq!(scene.transfer(0xc002, text), [ParallelFrame::Word(0xca02)]);
     let read = [ParallelFrame::Word(0x5000), ParallelFrame::Word(100), ParallelFrame::Word(0)];
     let message = |text: &[u8], count| {
-        [0x5000, 0x5100, count].map(ParallelFrame::Word).into_iter().chain([ParallelFrame::Block(text.into()), ParallelFrame::Word(0x5a00)])
+        [0x5000, 0x5100, count]
+            .map(ParallelFrame::Word)
+            .into_iter()
+            .chain([ParallelFrame::Block(text.into()), ParallelFrame::Word(0x5a00)])
     };
     assert_eq!(scene.say(&read), message(b"odd\0", 3).collect::<Vec<_>>());
     // The next one is not there yet: the machine answers when it is.
@@ -144,7 +151,9 @@ fn logical_writes_are_the_host_line_and_logical_reads_its_messages() {
 fn what_is_not_allowed_is_an_error_and_the_next_command_works() {
     let mut scene = Scene::new(V);
     let address = scene.address("V");
-    for (name, trouble) in [(&b"NOBODY"[..], ParallelError::Name), (b"1", ParallelError::Name), (b"\xff", ParallelError::Name)] {
+    for (name, trouble) in
+        [(&b"NOBODY"[..], ParallelError::Name), (b"1", ParallelError::Name), (b"\xff", ParallelError::Name)]
+    {
         assert_eq!(scene.transfer(0x8000, name), error(0x8000, trouble));
     }
     for (at, words, trouble) in [
@@ -170,7 +179,12 @@ fn what_is_not_allowed_is_an_error_and_the_next_command_works() {
     }
     let answer = scene.say(&[ParallelFrame::Word(0x8000), ParallelFrame::Block(vec![1])]);
     assert_eq!(answer[1..], error(0x8000, ParallelError::Command));
-    let answer = scene.say(&[ParallelFrame::Word(0x8000), ParallelFrame::Word(3), ParallelFrame::Word(0), ParallelFrame::Block(vec![1])]);
+    let answer = scene.say(&[
+        ParallelFrame::Word(0x8000),
+        ParallelFrame::Word(3),
+        ParallelFrame::Word(0),
+        ParallelFrame::Block(vec![1]),
+    ]);
     assert_eq!(answer[1..], error(0x8000, ParallelError::ByteCount));
     assert_eq!(scene.say(&[ParallelFrame::Noise(b'!'), ParallelFrame::Noise(b'?')]), error(0, ParallelError::Command));
     assert_eq!(scene.address("V"), address);
@@ -191,7 +205,10 @@ fn reset_ends_everything_and_attach_comes_first() {
     scene.address("V");
     assert_eq!(scene.transfer(0xc000, b"S := BEGIN_STRUCTURE NIL;"), [ParallelFrame::Word(0xca00)]);
     // In the middle of a transfer only the reset line is heard.
-    assert_eq!(scene.say(&[ParallelFrame::Word(0xc000), ParallelFrame::Reset]), [ParallelFrame::Word(0xc000), ParallelFrame::Word(0x3000)]);
+    assert_eq!(
+        scene.say(&[ParallelFrame::Word(0xc000), ParallelFrame::Reset]),
+        [ParallelFrame::Word(0xc000), ParallelFrame::Word(0x3000)]
+    );
     assert!(scene.machine.log().any(|line| line.contains("while S was open")));
     for word in [0x5000, 0x8000, 0x9000, 0xa000, 0xb000, 0xc000] {
         assert_eq!(scene.say(&[ParallelFrame::Word(word)]), error(word, ParallelError::Command));
@@ -200,7 +217,10 @@ fn reset_ends_everything_and_attach_comes_first() {
     assert_eq!(scene.say(&[ParallelFrame::Word(0xf001)]), [ParallelFrame::Word(0xf001)]);
     scene.address("V");
     assert_eq!(scene.say(&[ParallelFrame::Word(0xc001)]), error(0xc001, ParallelError::Command));
-    assert_eq!(scene.say(&[ParallelFrame::Word(0xd000), ParallelFrame::Word(0x3005)]), [ParallelFrame::Word(0xd000), ParallelFrame::Word(0x3005)]);
+    assert_eq!(
+        scene.say(&[ParallelFrame::Word(0xd000), ParallelFrame::Word(0x3005)]),
+        [ParallelFrame::Word(0xd000), ParallelFrame::Word(0x3005)]
+    );
 }
 
 #[test]

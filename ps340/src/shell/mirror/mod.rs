@@ -9,7 +9,7 @@ mod traffic;
 
 pub use network::{ArcShown, FunctionShown, InputShown};
 pub use structure::NodeShown;
-pub use traffic::{TrafficEntry, Traffic};
+pub use traffic::{Traffic, TrafficEntry};
 
 use crate::{
     calligraphic::{Drawer, Refresh, Scene, SharedDisplay},

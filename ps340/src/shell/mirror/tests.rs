@@ -62,7 +62,13 @@ fn only_what_is_asked_for_is_copied() {
     let shown = mirror.shown();
     assert!(shown.network.is_empty() && shown.structure.is_empty() && shown.traffic.is_empty());
     assert_eq!(shown.refresh, None);
-    mirror.request(&MirrorRequest { network: Some("A".into()), structure: true, traffic: true, log: true, refresh: true });
+    mirror.request(&MirrorRequest {
+        network: Some("A".into()),
+        structure: true,
+        traffic: true,
+        log: true,
+        refresh: true,
+    });
     mirror.pass(LINE, true, b"SEND 1 TO <1>A;", &machine);
     machine.step([Input::Bytes(LINE, b"SEND 1 TO <1>A;".to_vec())], 0);
     for _ in 0..READ_FRAMES {

@@ -129,7 +129,15 @@ impl WindowedMachine {
             stream
         };
         let operator = BufReader::new(connect(&operator));
-        let mut desk = WindowedMachine { host: None, line, display, positions: places, operator, window: String::new(), _machine: machine };
+        let mut desk = WindowedMachine {
+            host: None,
+            line,
+            display,
+            positions: places,
+            operator,
+            window: String::new(),
+            _machine: machine,
+        };
         assert_eq!(desk.operator_command(&format!("token {TOKEN}")), "ok");
         desk.position_of("vector screen");
         // Without a window manager nobody gives the window the keyboard; it is there a moment after its first picture.

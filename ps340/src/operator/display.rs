@@ -1,6 +1,9 @@
 //! Orders for the display: knobs, phosphor, steadiness, which screen, and pictures in files.
 
-use super::{OperatorCommand, OperatorCommandError, OperatorCommandRow, Screen, DisplayCommand, fault::REFUSED, words::WordReader};
+use super::{
+    DisplayCommand, OperatorCommand, OperatorCommandError, OperatorCommandRow, Screen, fault::REFUSED,
+    word_reader::WordReader,
+};
 use crate::{
     calligraphic::{self, Controls, KNOBS, MAX_SIZE, PHOSPHORS, Phosphor, SCREENS},
     machine::Machine,
@@ -139,7 +142,11 @@ fn size(word: &str) -> Option<[u32; 2]> {
 ///
 /// # Errors
 /// Why a file was not written.
-pub(super) fn perform(order: &DisplayCommand, machine: &mut Machine, files: Option<&Sandbox>) -> Result<String, String> {
+pub(super) fn perform(
+    order: &DisplayCommand,
+    machine: &mut Machine,
+    files: Option<&Sandbox>,
+) -> Result<String, String> {
     let mut controls = *machine.controls();
     match order {
         DisplayCommand::Knob(None) => {}

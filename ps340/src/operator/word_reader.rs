@@ -18,7 +18,10 @@ impl<'a> WordReader<'a> {
         self.next().ok_or(OperatorCommandError::Missing(what))
     }
 
-    pub(super) fn optional<T: std::str::FromStr>(&mut self, expected: &'static str) -> Result<Option<T>, OperatorCommandError> {
+    pub(super) fn optional<T: std::str::FromStr>(
+        &mut self,
+        expected: &'static str,
+    ) -> Result<Option<T>, OperatorCommandError> {
         let word = self.next();
         word.map(|w| w.parse().map_err(|_| OperatorCommandError::Bad { found: w.into(), expected })).transpose()
     }

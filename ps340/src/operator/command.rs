@@ -1,6 +1,6 @@
 //! The orders of the operator as data, and what a row of their table is.
 
-use super::{Language, OperatorCommandError, Subject, words::WordReader};
+use super::{Language, OperatorCommandError, Subject, word_reader::WordReader};
 use crate::{
     calligraphic::{Knob, Phosphor},
     example::ExampleProgram,

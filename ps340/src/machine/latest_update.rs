@@ -1,6 +1,6 @@
 //! The picture that was drawn last, and what functions want of the next.
 
-use super::waiting::PendingRequests;
+use super::pending::PendingRequests;
 use crate::traversal::Update;
 
 /// The latest update, and the requests that wait for another.

@@ -2,12 +2,12 @@
 
 use super::{
     ExitReason, Mirror, Operator, Options,
+    machine_loop::{MachineLoop, WAITING_EVENTS},
     signals::Signals,
-    turns::{MachineLoop, WAITING_EVENTS},
 };
 use crate::line::{
-    Address, Capture, Events, LineAddress, LineEvent, Listener, OperatorLine, HostEndpoint, LineContext, Token, AllowedPeers,
-    serve_operators, serve_stdio, serve_window,
+    Address, AllowedPeers, Capture, Events, HostEndpoint, LineAddress, LineContext, LineEvent, Listener, OperatorLine,
+    Token, serve_operators, serve_stdio, serve_window,
 };
 use files::Sandbox;
 use protocol::address::Endpoint;

@@ -1,10 +1,10 @@
 //! Places where hosts come from: opens them, and serves whoever comes.
 
 use super::{
-    Address, Interface, LineAddress, LineEvent, Listener, PseudoTerminal, LineContext, AllowedPeers,
+    Address, AllowedPeers, Interface, LineAddress, LineContext, LineEvent, Listener, PseudoTerminal,
+    connection_slots::ConnectionSlots,
     hosts::{Host, MAX_HOSTS, serve},
     open_serial,
-    places::ConnectionSlots,
     replay::{PARALLEL, feed, pieces, replay},
     terminal::TerminalStream,
 };

@@ -1,11 +1,11 @@
 //! The thread of the machine: takes what happens on the lines, and lets frames pass when they are due.
 
-use super::{TimeSource, ExitReason, Mirror, Operator, Options};
+use super::{ExitReason, Mirror, Operator, Options, TimeSource};
 use crate::{
     calligraphic::SharedDisplay,
     line::{Capture, Interface, LineEvent, LineId, OperatorLine, Reply, Writer},
     machine::{Input, Machine, Micros, time_of_frame},
-    operator::{OperatorCommand, CommandOutcome, Wait, parse, perform, reply},
+    operator::{CommandOutcome, OperatorCommand, Wait, parse, perform, reply},
 };
 use files::Sandbox;
 use std::{
@@ -183,7 +183,10 @@ impl MachineLoop {
     }
 
     /// Carries out an order of an operator.
-    fn perform_command(&mut self, OperatorLine { text, reply: answer, is_replayed }: OperatorLine) -> Option<ExitReason> {
+    fn perform_command(
+        &mut self,
+        OperatorLine { text, reply: answer, is_replayed }: OperatorLine,
+    ) -> Option<ExitReason> {
         let parsed = parse(&text);
         let mut outcome = match &parsed {
             Ok(order) => {

@@ -64,11 +64,20 @@ impl ConnectionSlots {
     /// - `full`: what one more reads.
     pub(super) fn new(count: usize, full: &str) -> ConnectionSlots {
         let farewells = Arc::new(Semaphore::new(MAX_REJECTIONS));
-        ConnectionSlots { free: Arc::new(Semaphore::new(count)), rejections: farewells, full: full.into(), peers: VecDeque::new() }
+        ConnectionSlots {
+            free: Arc::new(Semaphore::new(count)),
+            rejections: farewells,
+            full: full.into(),
+            peers: VecDeque::new(),
+        }
     }
 
     /// Lets a newcomer in, if there is a place; else tells them why not, and closes the connection.
-    pub(super) async fn admit(&mut self, stream: Box<dyn SocketStream>, peer: &str) -> Option<(Box<dyn SocketStream>, ConnectionSlot)> {
+    pub(super) async fn admit(
+        &mut self,
+        stream: Box<dyn SocketStream>,
+        peer: &str,
+    ) -> Option<(Box<dyn SocketStream>, ConnectionSlot)> {
         if let Some(place) = self.take().await {
             return Some((stream, place));
         }

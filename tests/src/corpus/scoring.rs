@@ -1,6 +1,6 @@
 //! Judges cases.
 
-use super::{CorpusCase, Class, Score, points};
+use super::{Class, CorpusCase, Score, points};
 use crate::simple;
 use host::mesh::Mesh;
 use host::numeric::exact::{ExactNumber, cross, dot};

@@ -6,7 +6,7 @@
 
 use super::{
     Machine,
-    sight::{PictureVersion, VectorDisplay},
+    vector_display::{PictureVersion, VectorDisplay},
 };
 use crate::{
     calligraphic::{Controls, DISPLAY_SIZE, Display, Refresh, Scene, SharedDisplay},
