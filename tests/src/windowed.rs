@@ -103,7 +103,7 @@ impl WindowedMachine {
     /// Opens the window of a program; none where Xvfb or xdotool is not installed and `CI` is not set.
     ///
     /// # Panics
-    /// If there is no window within [`PATIENCE`], or a tool is missing where `CI` is set.
+    /// If there is no window within [`TIMEOUT`], or a tool is missing where `CI` is set.
     pub fn open(program: &str) -> Option<WindowedMachine> {
         let display = Display::open()?;
         let mut machine = display.command(program);

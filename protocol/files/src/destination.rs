@@ -189,7 +189,7 @@ impl Folder {
         &self.path
     }
 
-    /// Writes a file in it, as [`Destination::write_or_keep`] does, also where the name turns out to be taken by a folder or
+    /// Writes a file in it, as [`Destination::write_or_save_elsewhere`] does, also where the name turns out to be taken by a folder or
     /// device; where it is.
     ///
     /// # Errors

@@ -34,7 +34,7 @@ impl AddressList {
     /// Reads a list; also what follows it.
     ///
     /// # Errors
-    /// [`Trouble::ByteCount`] for bytes that end before the list does, or for none or more than [`MAX_BLOCKS`] pieces.
+    /// [`ParallelError::ByteCount`] for bytes that end before the list does, or for none or more than [`MAX_BLOCKS`] pieces.
     pub fn read(bytes: &[u8]) -> Result<(AddressList, &[u8]), ParallelError> {
         let word = |at: usize| {
             let pair = bytes.get(2 * at..2 * at + 2).ok_or(ParallelError::ByteCount)?;

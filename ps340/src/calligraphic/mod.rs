@@ -14,11 +14,11 @@
 //!
 //! From there on: the phosphor gives the light colour and duration (`phosphor`), the length of the list decides how
 //! often it is drawn (`refresh`), and the exposure makes pixels of it (`exposure`); [`Display`] holds all this over time,
-//! and [`Screen`] is the one display that window and files show.
+//! and [`SharedDisplay`] is the one display that window and files show.
 //!
 //! # Energy
 //! A stroke deposits length times mean intensity times colour, whatever its angle, place and the size of
-//! the picture ([`Light::total`]), and whatever the focus. Pixels take the light at their centres. By Poisson's
+//! the picture ([`ScreenLight::total`]), and whatever the focus. Pixels take the light at their centres. By Poisson's
 //! summation formula the error of such a sum is at most 4 exp(-2 pi^2 s^2) for a spot of standard deviation s in
 //! pixels, and so the spot never gets smaller than [`SPOT_FLOOR`] = 0.75 pixels: 6e-5. In a picture too small
 //! for the spot, lines thus stay evenly wide and bright instead of breaking up. The Gaussian ends at 4.5 standard

@@ -29,7 +29,7 @@ pub enum Delivery {
     Left,
 }
 
-/// Who looks on. The methods of [`Nobody`] are empty, so that the compiler leaves them out.
+/// Who looks on. The methods of [`NoObserver`] are empty, so that the compiler leaves them out.
 pub(super) trait Observer {
     /// Whether it wants to know at all.
     const IS_ACTIVE: bool;

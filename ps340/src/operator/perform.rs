@@ -48,7 +48,7 @@ impl Wait {
 
 /// Carries out an order.
 ///
-/// - `files`: the folder below which it writes. Without one, orders that reach out ([`Order::reaches_out`]) are refused.
+/// - `files`: the folder below which it writes. Without one, orders that reach out ([`OperatorCommand::reaches_out`]) are refused.
 pub fn perform(command: &OperatorCommand, machine: &mut Machine, files: Option<&Sandbox>) -> CommandOutcome {
     if command.reaches_out() && files.is_none() {
         return CommandOutcome::Done(Err(REFUSED.into()));

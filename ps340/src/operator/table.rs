@@ -149,7 +149,7 @@ fn meant(word: &str) -> String {
 /// Reads one line.
 ///
 /// # Errors
-/// [`OrderError`] names the word that is wrong.
+/// [`OperatorCommandError`] names the word that is wrong.
 pub fn parse(line: &str) -> Result<OperatorCommand, OperatorCommandError> {
     let mut words = WordReader { rest: line.trim() };
     let word = words.required("an order")?;

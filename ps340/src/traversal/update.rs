@@ -34,7 +34,7 @@ pub enum UpdateFault {
     /// More than [`MAX_VECTORS`] vectors.
     #[error("an update draws at most {MAX_VECTORS} vectors")]
     TooManyVectors,
-    /// More than [`MAX_KEPT`] vectors in a picture whose strokes are kept.
+    /// More than [`MAX_STORED_VECTORS`] vectors in a picture whose strokes are kept.
     #[error("a window and lists of strokes show at most {MAX_STORED_VECTORS} vectors")]
     TooManyStored,
     /// More than [`MAX_GATHERED`] vectors below XFORM VECTOR.

@@ -40,7 +40,7 @@ pub fn update(structures: &Structures, frame: u64, requests: &Requests) -> Updat
 /// Walks everything that is displayed, with the room of the strokes of an earlier update; most of the time of a fresh one
 /// goes into its memory.
 ///
-/// - `most`: vectors that are drawn at most, up to [`MAX_KEPT`]. A picture of more is walked to answer the requests, and
+/// - `most`: vectors that are drawn at most, up to [`MAX_STORED_VECTORS`]. A picture of more is walked to answer the requests, and
 ///   its vectors are counted: [`Update::is_counted_only`].
 pub fn update_into(
     structures: &Structures,

@@ -83,7 +83,7 @@ impl Transport {
     /// Whether the carrier can carry the form.
     ///
     /// # Errors
-    /// [`WayError::NoPackets`].
+    /// [`TransportError::NoPackets`].
     pub fn check(self) -> Result<(), TransportError> {
         if self.form != Form::Text && self.packets == Packets::None { Err(TransportError::NoPackets) } else { Ok(()) }
     }
@@ -114,7 +114,7 @@ impl Sender {
     /// Appends command text in the sender's way. A statement may come in pieces.
     ///
     /// # Errors
-    /// [`WayError`] if the text cannot go this way.
+    /// [`TransportError`] if the text cannot go this way.
     pub fn write(&mut self, text: &[u8], text_only: bool, out: &mut Vec<u8>) -> Result<(), TransportError> {
         if self.transport.form == Form::Text || text_only {
             self.write_text(text, out);

@@ -34,7 +34,7 @@ pub trait Operator {
     /// Does something; returns what is to be seen.
     ///
     /// # Errors
-    /// [`OrderFault`].
+    /// [`OperatorFault`].
     fn give(&mut self, order: &str) -> Result<String, OperatorFault>;
 
     /// Whether what was seen is like a pattern.
@@ -109,7 +109,7 @@ impl Operator for OperatorLine {
 /// What a reply line says.
 ///
 /// # Errors
-/// [`OrderFault::Refused`] if it is no `ok`.
+/// [`OperatorFault::Refused`] if it is no `ok`.
 pub fn understood(reply: &str) -> Result<String, OperatorFault> {
     match reply.strip_prefix("ok") {
         Some(text) if text.is_empty() || text.starts_with(' ') => Ok(unescaped(text.trim_start())),

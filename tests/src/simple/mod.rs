@@ -45,7 +45,7 @@ pub enum NotSimple {
 /// Cost: n log n for triangles of about one size that lie side by side.
 ///
 /// # Errors
-/// [`Fault`].
+/// [`NotSimple`].
 ///
 /// # Panics
 /// If a coordinate is no finite number.

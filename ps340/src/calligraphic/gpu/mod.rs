@@ -7,7 +7,7 @@
 //! an anchor in the picture (`instance`), so that 32 bits suffice, however long the stroke is.
 //!
 //! # Why the light is read back
-//! Only the light is made here. It is read back into [`super::Light`], and phosphor, glow and exposure go on from there
+//! Only the light is made here. It is read back into [`super::ScreenLight`], and phosphor, glow and exposure go on from there
 //! on their one path. That costs 16 MB over the bus for each changed picture of 1024 by 1024 (4 MB with a single gun): a
 //! copy of some milliseconds, while making all of it here would double the code that decides what a picture looks like.
 //!

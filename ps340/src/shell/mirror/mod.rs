@@ -1,6 +1,6 @@
 //! What people see of the machine, copied by its thread for a window.
 //!
-//! The window says what it shows ([`Asked`]), and only that is copied; what has not changed since is shared with the copy
+//! The window says what it shows ([`MirrorRequest`]), and only that is copied; what has not changed since is shared with the copy
 //! before. Neither thread waits for the other longer than a pointer takes to move.
 
 mod network;
