@@ -16,7 +16,7 @@ pub struct StoredPhotons {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PhotonBlock {
     /// The number of the thing that the light was aimed at.
-    pub aim: u32,
+    pub target: u32,
     /// The number of the block among those aimed at that thing.
     pub number: u32,
     /// How many ways of light were followed.

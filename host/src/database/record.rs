@@ -129,7 +129,7 @@ impl RecordContent {
             RecordContent::Material(material) => material.word().into(),
             RecordContent::Light(light) => light.words().into(),
             RecordContent::Spectrum(curves) => curves.summary(),
-            RecordContent::Photons(caught) => caught.summary(),
+            RecordContent::Photons(photons) => photons.summary(),
         }
     }
 
@@ -154,7 +154,7 @@ impl RecordContent {
                 None => light.check().map_err(|error| error.to_string()),
             },
             RecordContent::Spectrum(curves) => curves.check(),
-            RecordContent::Photons(caught) => caught.check(),
+            RecordContent::Photons(photons) => photons.check(),
         }
     }
 
@@ -169,7 +169,7 @@ impl RecordContent {
             RecordContent::Material(material) => encoded(material),
             RecordContent::Light(light) => encoded(light),
             RecordContent::Spectrum(curves) => encoded(curves),
-            RecordContent::Photons(caught) => encoded(caught),
+            RecordContent::Photons(photons) => encoded(photons),
         }
     }
 

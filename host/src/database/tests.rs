@@ -95,7 +95,7 @@ fn many() -> Vec<Record> {
 
 fn beam() -> StoredPhotons {
     let block = PhotonBlock {
-        aim: 1,
+        target: 1,
         number: 2,
         paths: 1024,
         balance: [1.0, 0.5, -0.1, 0.2, 0.9, 0.2, 0.1, 0.0],

@@ -8,9 +8,6 @@ use crate::scene::View;
 
 /// A renderer that has taken up a scene and can make pictures of it.
 pub trait Renderer: Send + Sync {
-    /// Its name in tables.
-    fn name(&self) -> &'static str;
-
     /// What of a scene pictures of a view do not show, in words.
     fn left_out(&self, view: &View) -> Vec<&'static str>;
 

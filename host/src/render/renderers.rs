@@ -223,7 +223,7 @@ pub fn ray_tracer_watched<'a>(
     (watch.stage)("while solving for radiosity");
     let solution = {
         let photons = tracer.photon_estimator(&watch);
-        let sent = photons.as_ref().map(|caught| |triangle, outside, at| caught.exitance(triangle, outside, at));
+        let sent = photons.as_ref().map(|photons| |triangle, outside, at| photons.exitance(triangle, outside, at));
         let exitance: Option<Exitance<'_>> = sent.as_ref().map(|sent| sent as Exitance<'_>);
         Radiosity::new(tracer.world(), plan, &prepared.settings.radiosity, exitance, &watch)?
     };

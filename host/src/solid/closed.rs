@@ -53,7 +53,7 @@ impl Solid {
     }
 
     pub(super) fn operand(&self) -> Operand<'_> {
-        let mates = self.quad_partners.get_or_init(|| Arc::new(quad_partners(&self.mesh)));
-        Operand { mesh: &self.mesh, sorted: self.sorted(), quad_partners: mates, overlaps: &[] }
+        let partners = self.quad_partners.get_or_init(|| Arc::new(quad_partners(&self.mesh)));
+        Operand { mesh: &self.mesh, sorted: self.sorted(), quad_partners: partners, overlaps: &[] }
     }
 }

@@ -62,7 +62,8 @@ fn swept() -> Vec<(&'static str, Box<dyn Surface>)> {
     let path = SplineCurve::new(Basis::clamped(3, 5).unwrap(), &path.map(DVec3::from_array), &[]).unwrap();
     let spine = Arc::new(Spine::new(path).unwrap());
     let edge = [DVec2::new(-0.4, 0.1), DVec2::new(0.3, -0.2)];
-    let part = |widening: TwistAndTaper| Box::new(Swept::new(Arc::clone(&spine), widening, edge, [0.0, 1.0]));
+    let part =
+        |twist_and_taper: TwistAndTaper| Box::new(Swept::new(Arc::clone(&spine), twist_and_taper, edge, [0.0, 1.0]));
     vec![
         ("swept edge", part(TwistAndTaper { twist_turns: 0.0, scale: 1.0 }) as Box<dyn Surface>),
         ("twisted and tapered edge", part(TwistAndTaper { twist_turns: 0.4, scale: 0.0 })),

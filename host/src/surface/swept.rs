@@ -77,14 +77,14 @@ impl Spine {
     }
 
     /// The point of the section `point` at the parameter `t`.
-    pub fn point_at(&self, point: DVec2, widening: TwistAndTaper, t: f64) -> DVec3 {
-        self.jet(point, widening, t)[0]
+    pub fn point_at(&self, point: DVec2, twist_and_taper: TwistAndTaper, t: f64) -> DVec3 {
+        self.jet(point, twist_and_taper, t)[0]
     }
 
     /// The curvature of the curve at `t` as a vector of the section, 1 / model unit: towards the inside of the bend.
-    pub fn curvature_in_section(&self, widening: TwistAndTaper, t: f64) -> DVec2 {
+    pub fn curvature_in_section(&self, twist_and_taper: TwistAndTaper, t: f64) -> DVec2 {
         let bend = self.bend_in_space(t);
-        let [x, y] = self.axes(widening, t);
+        let [x, y] = self.axes(twist_and_taper, t);
         DVec2::new(bend.dot(x), bend.dot(y))
     }
 
@@ -113,26 +113,26 @@ impl Spine {
     }
 
     /// Where x and y of the section point.
-    fn axes(&self, widening: TwistAndTaper, t: f64) -> [DVec3; 2] {
+    fn axes(&self, twist_and_taper: TwistAndTaper, t: f64) -> [DVec3; 2] {
         let Frame { along, x, .. } = self.frame(t);
         let y = along.cross(x);
-        let [sine, cosine] = sine_and_cosine((widening.twist_turns + self.closing) * self.fraction(t));
+        let [sine, cosine] = sine_and_cosine((twist_and_taper.twist_turns + self.closing) * self.fraction(t));
         [x * cosine + y * sine, y * cosine - x * sine]
     }
 
     /// The place of a point of the section, its derivative by t, and the axes of the section.
-    fn jet(&self, point: DVec2, widening: TwistAndTaper, t: f64) -> [DVec3; 4] {
+    fn jet(&self, point: DVec2, twist_and_taper: TwistAndTaper, t: f64) -> [DVec3; 4] {
         let [low, high] = self.curve.domain();
         // A closed curve ends where it begins, to the bit.
         let t = if t == high && self.curve.basis().is_closed() { low } else { t };
-        let (frame, [x, y]) = (self.frame(t), self.axes(widening, t));
-        let scale = between(1.0, widening.scale, self.fraction(t));
+        let (frame, [x, y]) = (self.frame(t), self.axes(twist_and_taper, t));
+        let scale = between(1.0, twist_and_taper.scale, self.fraction(t));
         let offset = x * point.x + y * point.y;
         let rate = 1.0 / (high - low);
-        let turning = (widening.twist_turns + self.closing) * TAU * rate * scale;
+        let turning = (twist_and_taper.twist_turns + self.closing) * TAU * rate * scale;
         let first = self.curve.derivatives(t)[0];
         let carried = first * (1.0 - self.bend_in_space(t).dot(offset) * scale);
-        let by_t = carried + offset * ((widening.scale - 1.0) * rate) + (y * point.x - x * point.y) * turning;
+        let by_t = carried + offset * ((twist_and_taper.scale - 1.0) * rate) + (y * point.x - x * point.y) * turning;
         [frame.point + offset * scale, by_t, x * scale, y * scale]
     }
 }
@@ -168,15 +168,15 @@ fn direction(curve: &SplineCurve, t: f64) -> Option<DVec3> {
 #[derive(Clone, Debug)]
 pub struct Swept {
     spine: Arc<Spine>,
-    widening: TwistAndTaper,
+    twist_and_taper: TwistAndTaper,
     edge: [DVec2; 2],
     part: [f64; 2],
 }
 
 impl Swept {
     /// The surface over a part of the parameters of the curve.
-    pub fn new(spine: Arc<Spine>, widening: TwistAndTaper, edge: [DVec2; 2], part: [f64; 2]) -> Swept {
-        Swept { spine, widening, edge, part }
+    pub fn new(spine: Arc<Spine>, twist_and_taper: TwistAndTaper, edge: [DVec2; 2], part: [f64; 2]) -> Swept {
+        Swept { spine, twist_and_taper, edge, part }
     }
 
     fn section(&self, u: f64) -> DVec2 {
@@ -191,18 +191,18 @@ impl Surface for Swept {
     }
 
     fn point(&self, uv: DVec2) -> DVec3 {
-        self.spine.point_at(self.section(uv.x), self.widening, uv.y)
+        self.spine.point_at(self.section(uv.x), self.twist_and_taper, uv.y)
     }
 
     fn derivatives(&self, uv: DVec2) -> [DVec3; 2] {
-        let [_, by_t, x, y] = self.spine.jet(self.section(uv.x), self.widening, uv.y);
+        let [_, by_t, x, y] = self.spine.jet(self.section(uv.x), self.twist_and_taper, uv.y);
         let along = self.edge[1] - self.edge[0];
         [x * along.x + y * along.y, by_t]
     }
 
     /// Also where the section has shrunk to a point, or the parameter of the curve stands still.
     fn normal(&self, uv: DVec2) -> DVec3 {
-        let [x, y] = self.spine.axes(self.widening, uv.y);
+        let [x, y] = self.spine.axes(self.twist_and_taper, uv.y);
         let along = (self.edge[1] - self.edge[0]).normalize_or_zero();
         let by_t = self.derivatives(uv)[1];
         (x * along.x + y * along.y).cross(by_t.normalize_or(self.spine.frame(uv.y).along)).normalize_or_zero()

@@ -138,12 +138,12 @@ impl Emulator {
 ///
 /// # Errors
 /// What it did instead.
-fn until_ready(said: &mpsc::Receiver<String>, patience: Duration) -> Result<Address, String> {
-    let end = Instant::now() + patience;
+fn until_ready(said: &mpsc::Receiver<String>, timeout: Duration) -> Result<Address, String> {
+    let end = Instant::now() + timeout;
     let mut line = None;
     loop {
         let text = said.recv_timeout(end.saturating_duration_since(Instant::now())).map_err(|error| match error {
-            mpsc::RecvTimeoutError::Timeout => format!("it does not get ready within {} s", patience.as_secs()),
+            mpsc::RecvTimeoutError::Timeout => format!("it does not get ready within {} s", timeout.as_secs()),
             mpsc::RecvTimeoutError::Disconnected => "it ended at once".into(),
         })?;
         match text.as_str() {

@@ -69,7 +69,7 @@ impl ParallelListing {
         let expected = if side == Side::Host { self.from_host.pop() } else { self.from_machine.pop() };
         match expected {
             Some("error") => match ParallelError::from_number(word) {
-                Some(trouble) => format!("error {word}: {trouble}"),
+                Some(error) => format!("error {word}: {error}"),
                 None => format!("error {word}"),
             },
             Some(what) => format!("{what} {word}"),

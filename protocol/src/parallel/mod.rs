@@ -155,7 +155,7 @@ impl ParallelError {
 
     /// The trouble with a number.
     pub fn from_number(number: u16) -> Option<ParallelError> {
-        ParallelError::ALL.into_iter().find(|trouble| *trouble as u16 == number)
+        ParallelError::ALL.into_iter().find(|error| *error as u16 == number)
     }
 }
 

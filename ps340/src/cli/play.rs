@@ -104,13 +104,13 @@ pub(super) fn run(arguments: &PlayArguments) -> Result<ExitCode, ToolError> {
         return Ok(ExitCode::from(2));
     }
     let picture = arguments.picture.as_deref().map(Picture::destination).transpose()?;
-    let patience = PlayOptions { frames: arguments.patience, keep_going: arguments.keep_going };
+    let options = PlayOptions { frames: arguments.patience, keep_going: arguments.keep_going };
     let below = || {
         let folder = &arguments.below;
         Sandbox::open(folder).map_err(|error| ToolError::File { file: folder.display().to_string(), error })
     };
     let files = arguments.orders.then(below).transpose()?;
-    let mut player = Player::new(Settings::default(), patience, files);
+    let mut player = Player::new(Settings::default(), options, files);
     let mut screen = Transcript::new(arguments, &scripts)?;
     let end = play(&mut player, &scripts, arguments.frames, &mut screen);
     screen.clear();

@@ -39,10 +39,10 @@ pub struct Painter {
 impl Painter {
     /// Starts the thread, which draws on `screen`; it asks `context` for a repaint after each picture.
     pub fn new(context: egui::Context, screen: Arc<SharedDisplay>) -> Painter {
-        let easel = Arc::new((Mutex::new(PainterState::default()), Condvar::new()));
-        let shared = easel.clone();
+        let painter_state = Arc::new((Mutex::new(PainterState::default()), Condvar::new()));
+        let shared = painter_state.clone();
         std::thread::spawn(move || paint(&shared, &context, &screen));
-        Painter { state: easel, last_request: None }
+        Painter { state: painter_state, last_request: None }
     }
 
     /// Says what is to be seen. A picture that is drawn already, or being drawn, is not drawn again.
@@ -55,8 +55,8 @@ impl Painter {
             return;
         }
         self.last_request = Some(wanted.clone());
-        let (easel, changed) = &*self.state;
-        lock(easel).request = Some(wanted);
+        let (painter_state, changed) = &*self.state;
+        lock(painter_state).request = Some(wanted);
         changed.notify_one();
     }
 
@@ -68,17 +68,17 @@ impl Painter {
 
 impl Drop for Painter {
     fn drop(&mut self) {
-        let (easel, changed) = &*self.state;
-        lock(easel).closed = true;
+        let (painter_state, changed) = &*self.state;
+        lock(painter_state).closed = true;
         changed.notify_one();
     }
 }
 
 /// The thread.
-fn paint((easel, changed): &(Mutex<PainterState>, Condvar), context: &egui::Context, screen: &SharedDisplay) {
+fn paint((painter_state, changed): &(Mutex<PainterState>, Condvar), context: &egui::Context, screen: &SharedDisplay) {
     let mut latest = None;
     loop {
-        let mut guard = lock(easel);
+        let mut guard = lock(painter_state);
         let wanted = loop {
             if guard.closed {
                 return;
@@ -96,7 +96,7 @@ fn paint((easel, changed): &(Mutex<PainterState>, Condvar), context: &egui::Cont
             (is_new.then(image), seen.is_animated)
         });
         let again = remembers || image.is_some();
-        let mut guard = lock(easel);
+        let mut guard = lock(painter_state);
         guard.remembers = remembers;
         if image.is_some() {
             guard.painted = image;

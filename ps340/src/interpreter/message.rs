@@ -176,7 +176,7 @@ impl std::fmt::Display for Message {
             Message::Function { .. } => Ok(()),
             Message::Node { name, fault, hint } => write!(f, "{}{hint}", fault.text(name)),
             Message::Refused(refusal) => write!(f, "{refusal}"),
-            Message::Update(trouble) => write!(f, "Picture incomplete: {trouble}"),
+            Message::Update(fault) => write!(f, "Picture incomplete: {fault}"),
             Message::Line(text) => f.write_str(text),
             Message::Diagnostic(text) => write!(f, "Host says: {text}"),
             Message::Rendering { name, fault } => f.write_str(&fault.text(name)),

@@ -63,13 +63,8 @@ impl ConnectionSlots {
     /// - `count`: visitors who may be there at once.
     /// - `full`: what one more reads.
     pub(super) fn new(count: usize, full: &str) -> ConnectionSlots {
-        let farewells = Arc::new(Semaphore::new(MAX_REJECTIONS));
-        ConnectionSlots {
-            free: Arc::new(Semaphore::new(count)),
-            rejections: farewells,
-            full: full.into(),
-            peers: VecDeque::new(),
-        }
+        let rejections = Arc::new(Semaphore::new(MAX_REJECTIONS));
+        ConnectionSlots { free: Arc::new(Semaphore::new(count)), rejections, full: full.into(), peers: VecDeque::new() }
     }
 
     /// Lets a newcomer in, if there is a place; else tells them why not, and closes the connection.
@@ -82,8 +77,8 @@ impl ConnectionSlots {
             return Some((stream, place));
         }
         tracing::warn!("{peer} was turned away: {}", self.full.trim_end());
-        if let Ok(farewell) = self.rejections.clone().try_acquire_owned() {
-            tokio::spawn(reject(stream, self.full.clone(), farewell));
+        if let Ok(rejection) = self.rejections.clone().try_acquire_owned() {
+            tokio::spawn(reject(stream, self.full.clone(), rejection));
         }
         None
     }

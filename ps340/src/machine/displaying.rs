@@ -106,7 +106,7 @@ impl Machine {
         }
         self.renew_picture();
         let current_size = self.vector_display.screen.size();
-        if let Some(size) = size.filter(|size| current_size.is_some_and(|standing| standing != *size)) {
+        if let Some(size) = size.filter(|size| current_size.is_some_and(|current| current != *size)) {
             let drawer = self.vector_display.screen.drawer().clone();
             let mut display = Display::drawn_by(drawer, self.vector_display.controls, size);
             display.show(&self.visible_strokes(), 0, self.frame);

@@ -100,8 +100,8 @@ impl Machine {
             _ => Update::default(),
         };
         // What was said of the cursor before is not said again.
-        if let Some(trouble) = self.tube.cursor.fault.filter(|trouble| before != Some(*trouble)) {
-            self.report(Message::Update(trouble));
+        if let Some(fault) = self.tube.cursor.fault.filter(|fault| before != Some(*fault)) {
+            self.report(Message::Update(fault));
         }
     }
 

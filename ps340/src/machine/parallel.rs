@@ -46,7 +46,7 @@ impl ParallelLine {
         match std::mem::replace(&mut self.state, ParallelState::Idle) {
             ParallelState::Count(command) => match check_count(command.code, word) {
                 Ok(()) => self.state = ParallelState::Flag(command, word),
-                Err(trouble) => fail(command.word(), trouble, out),
+                Err(error) => fail(command.word(), error, out),
             },
             ParallelState::Flag(command, count) if command.code == Code::ReadNet => {
                 self.read_net(command, count, word != 0, machine, out);
@@ -170,8 +170,8 @@ impl ParallelLine {
             }
             _ => Err(ParallelError::Command),
         };
-        if let Err(trouble) = result {
-            fail(command.word(), trouble, out);
+        if let Err(error) = result {
+            fail(command.word(), error, out);
         }
     }
 
@@ -181,7 +181,7 @@ impl ParallelLine {
             ParallelState::Refresh(command, block) => {
                 match self.write_memory(block, machine) {
                     Ok(()) => done(*command, out),
-                    Err(trouble) => fail(command.word(), trouble, out),
+                    Err(error) => fail(command.word(), error, out),
                 }
                 self.state = ParallelState::Idle;
             }

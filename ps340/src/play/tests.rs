@@ -27,9 +27,9 @@ fn everywhere() -> Option<Sandbox> {
     Sandbox::open("/").ok()
 }
 
-fn run_with(text: &str, patience: PlayOptions) -> (PlayEnd, Vec<String>, String) {
+fn run_with(text: &str, options: PlayOptions) -> (PlayEnd, Vec<String>, String) {
     let script = Script::read("a.ps300", text.as_bytes()).unwrap();
-    let mut player = Player::new(Settings::default(), patience, everywhere());
+    let mut player = Player::new(Settings::default(), options, everywhere());
     let mut heard = Heard::default();
     let end = player.play(&script, &mut heard);
     (end, player.take_failures().iter().map(Failure::to_string).collect(), heard.text)

@@ -277,13 +277,13 @@ impl Occluder {
 }
 
 impl Grid {
-    fn new(hiders: Vec<Occluder>) -> Grid {
-        let mut cells = (hiders.len().max(1).ilog2() / 2 + 1).min(MOST_CELLS);
+    fn new(occluders: Vec<Occluder>) -> Grid {
+        let mut cells = (occluders.len().max(1).ilog2() / 2 + 1).min(MOST_CELLS);
         let entries = |cells: u32| -> usize {
-            hiders.iter().map(|occluder| columns_of(occluder, cells).len() * rows_of(occluder, cells).len()).sum()
+            occluders.iter().map(|occluder| columns_of(occluder, cells).len() * rows_of(occluder, cells).len()).sum()
         };
         // Large triangles are in many cells; there may be no more entries than this for each of them.
-        while cells > 0 && entries(cells) > 64 + 16 * hiders.len() {
+        while cells > 0 && entries(cells) > 64 + 16 * occluders.len() {
             cells -= 1;
         }
         let mut starts = vec![0_u32; (1 << (2 * cells)) + 1];
@@ -292,7 +292,7 @@ impl Grid {
                 columns_of(occluder, cells).for_each(|column| visit((row << cells) + column));
             }
         };
-        for occluder in &hiders {
+        for occluder in &occluders {
             each_cell(occluder, &mut |cell| starts[cell + 1] += 1);
         }
         for cell in 1..starts.len() {
@@ -300,13 +300,13 @@ impl Grid {
         }
         let mut free = starts.clone();
         let mut lists = vec![0; starts.last().map_or(0, |end| *end as usize)];
-        for (number, occluder) in hiders.iter().enumerate() {
+        for (number, occluder) in occluders.iter().enumerate() {
             each_cell(occluder, &mut |cell| {
                 lists[free[cell] as usize] = number as u32;
                 free[cell] += 1;
             });
         }
-        Grid { occluders: hiders, cells, starts, lists }
+        Grid { occluders, cells, starts, lists }
     }
 
     /// The seen parts of an edge, and the number of tests that they took.

@@ -15,9 +15,9 @@ pub(super) fn show(record: &Record, json: bool) -> Result<(), CommandFailure> {
             RecordContent::Texture(picture) => {
                 serde_json::json!({ "width": picture.width(), "height": picture.height(), "mean": mean(picture) })
             }
-            RecordContent::Photons(caught) => {
-                let bounds = caught.bounds().map(|corners| corners.map(|corner| corner.to_array()));
-                serde_json::json!({ "ways": caught.paths(), "caught": caught.len(), "bounds": bounds })
+            RecordContent::Photons(photons) => {
+                let bounds = photons.bounds().map(|corners| corners.map(|corner| corner.to_array()));
+                serde_json::json!({ "ways": photons.paths(), "caught": photons.len(), "bounds": bounds })
             }
             _ => serde_json::Value::Null,
         };
@@ -49,8 +49,8 @@ pub(super) fn show(record: &Record, json: bool) -> Result<(), CommandFailure> {
             }
         },
         RecordContent::Material(material) => say!("{}", serde_json::to_string_pretty(material)?),
-        RecordContent::Photons(caught) => {
-            if let Some([low, high]) = caught.bounds() {
+        RecordContent::Photons(photons) => {
+            if let Some([low, high]) = photons.bounds() {
                 say!("bounds    {low} to {high}");
             }
         }

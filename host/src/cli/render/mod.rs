@@ -54,7 +54,7 @@ fn run(arguments: &RenderArguments) -> Result<(), CommandFailure> {
     let every = Duration::from_secs_f64(arguments.checkpoint.min(1e9));
     let intermediate = Intermediate::of(arguments, &plan);
     let keeps = |(path, lasts): (&Path, bool)| PhotonStore::new(path, &scene, &prepared, every, lasts);
-    let shelf = intermediate.light(arguments).map(keeps).transpose()?;
+    let photon_store = intermediate.light(arguments).map(keeps).transpose()?;
     // Only what is kept has to be known again.
     let fingerprint = state.as_ref().map(|_| Fingerprint::of(&scene, &prepared, &order));
     let memo = intermediate.memo(arguments, fingerprint.as_ref())?;
@@ -78,7 +78,7 @@ fn run(arguments: &RenderArguments) -> Result<(), CommandFailure> {
     if let (true, Some(state), Some(fingerprint)) = (row.adds_samples, &state, fingerprint) {
         all.saved = Some(Saved::read(arguments, every, state, fingerprint, &order)?);
     }
-    let task = Task { prepared: &prepared, plan: &plan, photon_store: shelf.as_ref(), watch };
+    let task = Task { prepared: &prepared, plan: &plan, photon_store: photon_store.as_ref(), watch };
     let PreparedRenderer { renderer, radiosity } = in_pool(arguments, || arguments.renderer.prepare(&task))?;
     all.radiosity = radiosity;
     if let (Some(pixel), AnyRenderer::BySamples(tracer)) = (arguments.pixel, &renderer) {

@@ -131,19 +131,19 @@ fn refraction_follows_snell_and_the_way_back_is_the_same() {
         let interface = Dielectric::new(1.0, ratio).expect("an index");
         let sine = (1.0 - cosine * cosine).sqrt();
         let towards = DVec3::new(sine, cosine, 0.0);
-        let Some(onward) = interface.refracted(towards, DVec3::Y) else {
+        let Some(refracted) = interface.refracted(towards, DVec3::Y) else {
             assert!(sine > ratio - 1e-15 && interface.reflectance(cosine).mean() == 1.0);
             continue;
         };
-        assert!((sine - ratio * -onward.x).abs() < 1e-14 && onward.y <= 0.0, "{ratio} {cosine}: {onward}");
-        assert!((onward.length() - 1.0).abs() < 1e-15);
-        let (forth, back) = (interface.transmittance(cosine), interface.inverted().transmittance(-onward.y));
+        assert!((sine - ratio * -refracted.x).abs() < 1e-14 && refracted.y <= 0.0, "{ratio} {cosine}: {refracted}");
+        assert!((refracted.length() - 1.0).abs() < 1e-15);
+        let (forth, back) = (interface.transmittance(cosine), interface.inverted().transmittance(-refracted.y));
         // The cosine of a direction near the normal has no digits for its sine: at 1000 to 1 they are missed.
         let tolerance = if (0.1..10.0).contains(&ratio) { 1e-8 } else { 1e-2 };
         let differences = [forth.perpendicular - back.perpendicular, forth.parallel - back.parallel];
         assert!(differences.iter().all(|d| d.abs() < tolerance), "{ratio} {cosine}: {differences:?}");
-        if let Some(again) = interface.inverted().refracted(-onward, DVec3::Y)
-            && -onward.y > 1e-3
+        if let Some(again) = interface.inverted().refracted(-refracted, DVec3::Y)
+            && -refracted.y > 1e-3
         {
             assert!((again + towards).length() < 1e-9, "{ratio} {cosine}: {again} {towards}");
         }

@@ -270,16 +270,16 @@ fn flags_tell_what_lobes_do() {
             if flags.has(Flags::DELTA) {
                 let is_nothing = |l: &DVec3| lobe.value(&context, *l).max() == 0.0 && lobe.pdf(&context, *l) == 0.0;
                 assert!(lights.iter().all(is_nothing), "{kind}");
-                assert!(sample.is_none_or(|onward| onward.pdf.is_none()), "{kind}");
+                assert!(sample.is_none_or(|sample| sample.pdf.is_none()), "{kind}");
             } else {
                 assert!(lobe.specular_samples(&context).iter().all(Option::is_none), "{kind}");
-                assert!(sample.is_none_or(|onward| onward.pdf.is_some()), "{kind}");
+                assert!(sample.is_none_or(|sample| sample.pdf.is_some()), "{kind}");
             }
             let above = lights.map(|light| DVec3::new(light.x, light.y, light.z.abs()));
             let values = above.map(|light| lobe.value(&context, light).0[0]);
             assert!(!flags.has(Flags::EVEN) || values.iter().all(|value| *value == values[0]), "{kind}");
             assert!(!flags.has(Flags::DIFFUSE) || lobe.diffuse_albedo(&context).max() > 0.0, "{kind}");
-            assert!(!flags.has(Flags::STRAIGHT) || sample.is_some_and(|onward| onward.is_straight), "{kind}");
+            assert!(!flags.has(Flags::STRAIGHT) || sample.is_some_and(|sample| sample.is_straight), "{kind}");
         }
     }
 }

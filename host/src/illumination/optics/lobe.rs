@@ -57,21 +57,28 @@ impl BitOr for Flags {
     }
 }
 
-/// A part of what a surface scatters: a term of its BSDF with a way to draw directions of light.
+/// A part of what a surface scatters: a term of its BSDF with a way to draw directions of light. What is not written for a
+/// kind is that of a delta lobe, which knows single directions only.
 pub(super) trait Lobe {
     /// What is known of it for all directions.
     fn flags(&self) -> Flags;
 
     /// Radiance towards the viewer for a unit of flux density, 1/sr: D K / (N·V); 0 for what only knows single directions.
-    fn value(&self, context: &ShadingContext, light: DVec3) -> Channels;
+    fn value(&self, _: &ShadingContext, _: DVec3) -> Channels {
+        Channels::ZERO
+    }
 
     /// The density of its samples, 1/sr.
-    fn pdf(&self, context: &ShadingContext, light: DVec3) -> f64;
+    fn pdf(&self, _: &ShadingContext, _: DVec3) -> f64 {
+        0.0
+    }
 
     /// Draws a direction to light; its weight is right for single directions only, the others have a density.
     ///
     /// - `choice`: uniform in 0..1. `point`: uniform in the unit square.
-    fn sample(&self, context: &ShadingContext, choice: f64, point: [f64; 2]) -> Option<BsdfSample>;
+    fn sample(&self, context: &ShadingContext, _choice: f64, _point: [f64; 2]) -> Option<BsdfSample> {
+        self.specular_samples(context)[0]
+    }
 
     /// About what it reflects to the viewer of all the light; more than 0 where it reflects anything.
     fn strength(&self, context: &ShadingContext) -> f64;

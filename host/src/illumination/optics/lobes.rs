@@ -47,43 +47,43 @@ macro_rules! lobes {
             }
 
             #[inline]
-            fn value(&self, sighting: &ShadingContext, light: DVec3) -> Channels {
-                match self { $(AnyLobe::$kind(lobe) => lobe.value(sighting, light),)* }
+            fn value(&self, context: &ShadingContext, light: DVec3) -> Channels {
+                match self { $(AnyLobe::$kind(lobe) => lobe.value(context, light),)* }
             }
 
             #[inline]
-            fn pdf(&self, sighting: &ShadingContext, light: DVec3) -> f64 {
-                match self { $(AnyLobe::$kind(lobe) => lobe.pdf(sighting, light),)* }
+            fn pdf(&self, context: &ShadingContext, light: DVec3) -> f64 {
+                match self { $(AnyLobe::$kind(lobe) => lobe.pdf(context, light),)* }
             }
 
             #[inline]
-            fn sample(&self, sighting: &ShadingContext, choice: f64, point: [f64; 2]) -> Option<BsdfSample> {
-                match self { $(AnyLobe::$kind(lobe) => lobe.sample(sighting, choice, point),)* }
+            fn sample(&self, context: &ShadingContext, choice: f64, point: [f64; 2]) -> Option<BsdfSample> {
+                match self { $(AnyLobe::$kind(lobe) => lobe.sample(context, choice, point),)* }
             }
 
             #[inline]
-            fn strength(&self, sighting: &ShadingContext) -> f64 {
-                match self { $(AnyLobe::$kind(lobe) => lobe.strength(sighting),)* }
+            fn strength(&self, context: &ShadingContext) -> f64 {
+                match self { $(AnyLobe::$kind(lobe) => lobe.strength(context),)* }
             }
 
             #[inline]
-            fn specular_samples(&self, sighting: &ShadingContext) -> [Option<BsdfSample>; 2] {
-                match self { $(AnyLobe::$kind(lobe) => lobe.specular_samples(sighting),)* }
+            fn specular_samples(&self, context: &ShadingContext) -> [Option<BsdfSample>; 2] {
+                match self { $(AnyLobe::$kind(lobe) => lobe.specular_samples(context),)* }
             }
 
             #[inline]
-            fn diffuse_albedo(&self, sighting: &ShadingContext) -> Channels {
-                match self { $(AnyLobe::$kind(lobe) => lobe.diffuse_albedo(sighting),)* }
+            fn diffuse_albedo(&self, context: &ShadingContext) -> Channels {
+                match self { $(AnyLobe::$kind(lobe) => lobe.diffuse_albedo(context),)* }
             }
 
             #[inline]
-            fn glossy_albedo(&self, sighting: &ShadingContext) -> Channels {
-                match self { $(AnyLobe::$kind(lobe) => lobe.glossy_albedo(sighting),)* }
+            fn glossy_albedo(&self, context: &ShadingContext) -> Channels {
+                match self { $(AnyLobe::$kind(lobe) => lobe.glossy_albedo(context),)* }
             }
 
             #[inline]
-            fn clear_transmittance(&self, sighting: &ShadingContext) -> Channels {
-                match self { $(AnyLobe::$kind(lobe) => lobe.clear_transmittance(sighting),)* }
+            fn clear_transmittance(&self, context: &ShadingContext) -> Channels {
+                match self { $(AnyLobe::$kind(lobe) => lobe.clear_transmittance(context),)* }
             }
         }
     };

@@ -4,7 +4,6 @@ use super::context::{BsdfSample, ShadingContext};
 use super::lobe::{Flags, Lobe};
 use super::prepared_textures::PreparedPaint;
 use crate::color::Channels;
-use glam::DVec3;
 
 /// Reflects a fraction of light in one direction.
 #[derive(Clone, Debug)]
@@ -13,18 +12,6 @@ pub(super) struct MirrorLobe(pub(super) PreparedPaint);
 impl Lobe for MirrorLobe {
     fn flags(&self) -> Flags {
         Flags::DELTA | Flags::BLACK.when(self.0.is_black())
-    }
-
-    fn value(&self, _: &ShadingContext, _: DVec3) -> Channels {
-        Channels::ZERO
-    }
-
-    fn pdf(&self, _: &ShadingContext, _: DVec3) -> f64 {
-        0.0
-    }
-
-    fn sample(&self, context: &ShadingContext, _: f64, _: [f64; 2]) -> Option<BsdfSample> {
-        self.specular_samples(context)[0]
     }
 
     #[inline]

@@ -4,7 +4,6 @@ use super::context::{BsdfSample, ShadingContext};
 use super::lobe::{Flags, Lobe};
 use crate::color::{Channels, LANES};
 use crate::illumination::fresnel::Conductor;
-use glam::DVec3;
 use std::sync::Arc;
 
 /// Reflects Fresnel's part of light in one direction.
@@ -22,18 +21,6 @@ pub(super) fn reflectance(metal: &[Conductor; LANES], cosine: f64) -> Channels {
 impl Lobe for SmoothConductor {
     fn flags(&self) -> Flags {
         Flags::DELTA
-    }
-
-    fn value(&self, _: &ShadingContext, _: DVec3) -> Channels {
-        Channels::ZERO
-    }
-
-    fn pdf(&self, _: &ShadingContext, _: DVec3) -> f64 {
-        0.0
-    }
-
-    fn sample(&self, context: &ShadingContext, _: f64, _: [f64; 2]) -> Option<BsdfSample> {
-        self.specular_samples(context)[0]
     }
 
     fn strength(&self, _: &ShadingContext) -> f64 {

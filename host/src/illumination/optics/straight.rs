@@ -3,8 +3,6 @@
 use super::context::{BsdfSample, ShadingContext};
 use super::lobe::{Flags, Lobe};
 use super::prepared_textures::PreparedPaint;
-use crate::color::Channels;
-use glam::DVec3;
 
 /// Lets a fraction of light straight through.
 #[derive(Clone, Debug)]
@@ -13,18 +11,6 @@ pub(super) struct StraightLobe(pub(super) PreparedPaint);
 impl Lobe for StraightLobe {
     fn flags(&self) -> Flags {
         Flags::DELTA | Flags::STRAIGHT | Flags::BLACK.when(self.0.is_black())
-    }
-
-    fn value(&self, _: &ShadingContext, _: DVec3) -> Channels {
-        Channels::ZERO
-    }
-
-    fn pdf(&self, _: &ShadingContext, _: DVec3) -> f64 {
-        0.0
-    }
-
-    fn sample(&self, context: &ShadingContext, _: f64, _: [f64; 2]) -> Option<BsdfSample> {
-        self.specular_samples(context)[0]
     }
 
     #[inline]

@@ -208,7 +208,7 @@ fn densities_are_those_with_which_directions_are_drawn() {
             let mut inside = 0.0;
             for _ in 0..count {
                 let sample = bsdf.sample(&context, stream.uniform(), stream.point(), LobeSelection::All);
-                inside += f64::from(u8::from(sample.is_some_and(|onward| onward.light.dot(axis) > cosine)));
+                inside += f64::from(u8::from(sample.is_some_and(|sample| sample.light.dot(axis) > cosine)));
             }
             let frame = crate::illumination::distribution::ShadingFrame::from_normal(axis);
             let term = |[x, y]: [f64; 2]| {

@@ -186,8 +186,7 @@ fn light(
     (tolerance, stopped): (f64, &dyn Fn() -> bool),
     report: &mut RadiosityReport,
 ) -> Result<(Vec<Channels>, Vec<Channels>), RenderError> {
-    let links: Vec<ExchangeLink> =
-        assessed.iter().map(|judged| judged.link).filter(|link| link.exchange > 0.0).collect();
+    let links: Vec<ExchangeLink> = assessed.iter().map(|one| one.link).filter(|link| link.exchange > 0.0).collect();
     let mut exchange = Exchange::new(&elements.hierarchy, &links);
     let leaves = exchange.leaves.clone();
     let of = |values: &[Channels]| -> Vec<Channels> { leaves.iter().map(|leaf| values[*leaf as usize]).collect() };

@@ -223,10 +223,6 @@ impl<'a> RayTracer<'a> {
 }
 
 impl Renderer for RayTracer<'_> {
-    fn name(&self) -> &'static str {
-        "ray tracing"
-    }
-
     fn left_out(&self, _: &View) -> Vec<&'static str> {
         Vec::new()
     }

@@ -360,7 +360,7 @@ impl<'a> PathTracer<'a> {
         if segment.for_lights {
             let sample = bsdf.straight_sample(&context);
             waiting
-                .extend(sample.and_then(|onward| self.straight_segment(&segment, interaction, (onward, 0), sampler)));
+                .extend(sample.and_then(|sample| self.straight_segment(&segment, interaction, (sample, 0), sampler)));
             return;
         }
         if segment.records_features {

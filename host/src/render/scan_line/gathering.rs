@@ -104,7 +104,7 @@ impl<'a> Shader<'a> {
         surface: &PixelSurface,
         parts: impl Iterator<Item = &'p SampleFragment>,
         pixel: &StripPixel,
-        (founds, last): (&mut Vec<PixelInteraction<'a>>, &mut Option<PixelInteraction<'a>>),
+        (interactions, last): (&mut Vec<PixelInteraction<'a>>, &mut Option<PixelInteraction<'a>>),
     ) -> Option<usize> {
         let part = f64::from(surface.count).recip();
         let middle = surface.sum.map(|sum| sum * part);
@@ -120,15 +120,15 @@ impl<'a> Shader<'a> {
         if let Some(interaction) = last
             && interaction.move_to(triangle, &bounded.ray)
         {
-            founds.push(*interaction);
+            interactions.push(*interaction);
         } else {
             let interaction = self.element(triangle, &bounded, least)?;
-            founds.push(interaction);
+            interactions.push(interaction);
             if interaction.is_flat {
                 *last = Some(interaction);
             }
         }
-        Some(founds.len() - 1)
+        Some(interactions.len() - 1)
     }
 
     /// The element that a line of sight meets in a triangle.

@@ -384,10 +384,6 @@ fn mean_chord(prepared: &Prepared, object: u32) -> f64 {
 }
 
 impl Renderer for ScanLine<'_> {
-    fn name(&self) -> &'static str {
-        "scan line"
-    }
-
     /// Takes all samples at once: a target of the error is not looked at.
     fn left_out(&self, view: &View) -> Vec<&'static str> {
         let mut left_out = Vec::new();

@@ -32,11 +32,11 @@ impl<'a> Shader<'a> {
         }
         self.gather(pixel, strip, scratch);
         self.find_visible(pixel, (strip, counts), scratch);
-        let PixelScratch { surfaces, parts, interactions: founds, mixtures, contributions: lit, samples, .. } = scratch;
+        let PixelScratch { surfaces, parts, interactions, mixtures, contributions: lit, samples, .. } = scratch;
         for wavelength_set in 0..self.appearance.wavelengths.count() {
             for surface in surfaces.iter_mut() {
                 let Some(index) = surface.interaction else { continue };
-                let interaction = &founds[index];
+                let interaction = &interactions[index];
                 let texture_values = mixtures[index].as_ref().map(|mixture| mixture.at(wavelength_set));
                 let context = self.context(
                     interaction,
@@ -52,7 +52,7 @@ impl<'a> Shader<'a> {
             for i in 0..samples.len() {
                 if samples[i].like == i {
                     let light = self.sample(
-                        (surfaces, founds, lit),
+                        (surfaces, interactions, lit),
                         (samples, parts),
                         (strip, counts),
                         (pixel, i),
@@ -72,16 +72,15 @@ impl<'a> Shader<'a> {
         (strip, counts): (&Strip, &[Vec<i32>]),
         scratch: &mut PixelScratch<'a>,
     ) {
-        let PixelScratch { surfaces, parts, interactions: founds, mixtures, contributions: lit, samples, last } =
-            scratch;
-        founds.clear();
+        let PixelScratch { surfaces, parts, interactions, mixtures, contributions: lit, samples, last } = scratch;
+        interactions.clear();
         mixtures.clear();
         lit.clear();
         for (index, surface) in surfaces.iter_mut().enumerate() {
             let own = || parts.iter().filter(|part| part.surface == index);
-            surface.interaction = self.find_interaction(surface, own(), pixel, (founds, last));
+            surface.interaction = self.find_interaction(surface, own(), pixel, (interactions, last));
             let begin = lit.len();
-            if let Some(interaction) = surface.interaction.map(|interaction| &founds[interaction]) {
+            if let Some(interaction) = surface.interaction.map(|interaction| &interactions[interaction]) {
                 mixtures.push(
                     interaction
                         .bsdf
@@ -98,9 +97,9 @@ impl<'a> Shader<'a> {
         for i in 0..samples.len() {
             let own = fragments_of(samples, parts, i);
             samples[i].before_light = if self.has_surfaces {
-                let before = own
-                    .iter()
-                    .map(|part| (part, surfaces[part.surface].interaction.map(|interaction| &founds[interaction])));
+                let before = own.iter().map(|part| {
+                    (part, surfaces[part.surface].interaction.map(|interaction| &interactions[interaction]))
+                });
                 self.fragments_before_light(pixel.place(i), before, strip)
             } else {
                 None
@@ -120,7 +119,7 @@ impl<'a> Shader<'a> {
 
     /// Adds up what was found sample by sample.
     fn add_samples(&self, pixel: &StripPixel<'_>, scratch: &PixelScratch<'a>, tally: &mut Tally) {
-        let PixelScratch { surfaces, parts, interactions: founds, samples, .. } = scratch;
+        let PixelScratch { surfaces, parts, interactions, samples, .. } = scratch;
         let scale = (self.appearance.wavelengths.count() as f64).recip();
         let mut last: Option<(PixelSample, u32)> = None;
         for i in 0..pixel.count() {
@@ -132,7 +131,8 @@ impl<'a> Shader<'a> {
                 continue;
             }
             let first = fragments_of(samples, parts, i).first().map(|part| &surfaces[part.surface]);
-            let interaction = first.and_then(|seen| seen.interaction.map(|interaction| (seen, &founds[interaction])));
+            let interaction =
+                first.and_then(|seen| seen.interaction.map(|interaction| (seen, &interactions[interaction])));
             let before_light = samples[i].before_light;
             let first = interaction.filter(|_| before_light != Some(0)).map(|(seen, found)| self.first(seen, found));
             let covered = first.is_some() || before_light.is_some();
@@ -213,7 +213,7 @@ impl<'a> Shader<'a> {
     /// The light that comes to one sample.
     fn sample(
         &self,
-        (surfaces, founds, lit): (&[PixelSurface], &[PixelInteraction<'a>], &[LampContribution]),
+        (surfaces, interactions, lit): (&[PixelSurface], &[PixelInteraction<'a>], &[LampContribution]),
         (samples, parts): (&[SampleSight], &[SampleFragment]),
         (strip, counts): (&Strip, &[Vec<i32>]),
         (pixel, i): (&StripPixel<'_>, usize),
@@ -232,7 +232,7 @@ impl<'a> Shader<'a> {
                 return sum + transmittance * shines();
             }
             let surface = &surfaces[part.surface];
-            let Some(interaction) = surface.interaction.map(|interaction| &founds[interaction]) else { continue };
+            let Some(interaction) = surface.interaction.map(|interaction| &interactions[interaction]) else { continue };
             if let Some((interior, from)) = &mut inside {
                 let length = interaction.distance - std::mem::replace(from, interaction.distance);
                 transmittance *=

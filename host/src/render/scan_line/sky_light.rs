@@ -30,7 +30,7 @@ impl SkyLight {
         let skies: Vec<&LightSource> =
             appearance.sources.iter().map(|(_, source)| source).filter(|source| source.is_sky()).collect();
         let sequence = SobolSequence::new(0, 0);
-        let of_comb = |wavelength_set: usize| {
+        let of_set = |wavelength_set: usize| {
             let mut sums = [Channels::ZERO; 9];
             for sky in &skies {
                 for index in 0..DIRECTIONS {
@@ -48,7 +48,7 @@ impl SkyLight {
             sums
         };
         let sets = 0..appearance.wavelengths.count();
-        (!skies.is_empty()).then(|| SkyLight { coefficients: sets.map(of_comb).collect() })
+        (!skies.is_empty()).then(|| SkyLight { coefficients: sets.map(of_set).collect() })
     }
 
     /// The radiance of an even sky that lights a surface as much as the skies of the scene do: E(n)/π.

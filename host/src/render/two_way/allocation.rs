@@ -73,7 +73,7 @@ impl PhotonMapper<'_> {
         }
         let chunks = (0..self.lamps.len())
             .flat_map(|lamp| (0..self.lamps[lamp].targets.len()).map(move |target| (lamp, target)));
-        let chunks: Vec<PathBatch> = chunks.map(|(lamp, target)| PathBatch { lamp, aim: target, number: 0 }).collect();
+        let chunks: Vec<PathBatch> = chunks.map(|(lamp, target)| PathBatch { lamp, target, number: 0 }).collect();
         let found: Vec<PilotResult> = chunks.par_iter().map(|chunk| self.trace_pilot(world, chunk, wide)).collect();
         let all: f64 = found.iter().map(|explored| explored.deviation).sum();
         if all <= 0.0 {
@@ -104,7 +104,7 @@ impl PhotonMapper<'_> {
 
     /// Follows a few ways from a lamp to a ball: what they bring, and where they have to be sent.
     fn trace_pilot(&self, world: &World<'_>, chunk: &PathBatch, wide: Option<usize>) -> PilotResult {
-        let PhotonTarget { sphere, count, part, .. } = self.lamps[chunk.lamp].targets[chunk.aim];
+        let PhotonTarget { sphere, count, part, .. } = self.lamps[chunk.lamp].targets[chunk.target];
         let mut used = Vec::new();
         let (mut sum, mut squares) = (0.0, 0.0);
         for index in 0..count {

@@ -84,7 +84,7 @@ pub(in crate::render) struct PhotonMapper<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct PathBatch {
     lamp: usize,
-    aim: usize,
+    target: usize,
     number: u32,
 }
 
@@ -203,11 +203,11 @@ impl<'s> PhotonMapper<'s> {
         let mut wanted: Vec<PathBatch> = Vec::new();
         for (lamp, PhotonSource { targets, .. }) in self.lamps.iter().enumerate() {
             for (target, PhotonTarget { count, .. }) in targets.iter().enumerate() {
-                wanted.extend((0..count.div_ceil(CHUNK)).map(|number| PathBatch { lamp, aim: target, number }));
+                wanted.extend((0..count.div_ceil(CHUNK)).map(|number| PathBatch { lamp, target, number }));
             }
         }
         let paths = |chunk: &PathBatch| {
-            let count = self.lamps[chunk.lamp].targets[chunk.aim].count;
+            let count = self.lamps[chunk.lamp].targets[chunk.target].count;
             chunk.number * CHUNK..((chunk.number + 1) * CHUNK).min(count)
         };
         let is_whole = |chunk: &PathBatch| paths(chunk).len() == CHUNK as usize;
@@ -246,7 +246,7 @@ impl<'s> PhotonMapper<'s> {
         }
         let blocks = blocks.into_iter().flatten();
         let scaled = |(chunk, block): (&PathBatch, BatchResult)| {
-            let PhotonTarget { count, part, .. } = self.lamps[chunk.lamp].targets[chunk.aim];
+            let PhotonTarget { count, part, .. } = self.lamps[chunk.lamp].targets[chunk.target];
             block.scaled(part / f64::from(count))
         };
         let blocks: Vec<BatchResult> = wanted.iter().zip(blocks).map(scaled).collect();
@@ -301,7 +301,7 @@ impl<'s> PhotonMapper<'s> {
         let sequence = self.sequence(world, pass, chunk);
         for index in paths {
             let sampler = PhotonSampler::new(sequence, index);
-            match self.emit(world, lamp, &lamp.targets[chunk.aim], &sampler) {
+            match self.emit(world, lamp, &lamp.targets[chunk.target], &sampler) {
                 Some(start) if start.flux.max() > 0.0 && start.flux.is_finite() => flight.trace(&start, &sampler),
                 _ => flight.balance.paths += 1,
             }
@@ -315,7 +315,7 @@ impl<'s> PhotonMapper<'s> {
     /// The choices of a pass for ways from a lamp.
     fn sequence(&self, world: &World<'_>, pass: u64, chunk: &PathBatch) -> SobolSequence {
         let light = world.appearance.sources[self.lamps[chunk.lamp].source].0;
-        let number = (light as u64) << 32 | chunk.aim as u64;
+        let number = (light as u64) << 32 | chunk.target as u64;
         SobolSequence::new(self.seed ^ pass.wrapping_mul(0x9e37_79b9_7f4a_7c15), number)
     }
 

@@ -161,7 +161,7 @@ impl PhotonStore {
         };
         let blocks = stored_photons.blocks.into_iter().filter(|_| usize::from(stored_photons.lanes) == lanes);
         blocks
-            .map(|block| (PathBatch { lamp, aim: block.aim as usize, number: block.number }, read(&block, lanes)))
+            .map(|block| (PathBatch { lamp, target: block.target as usize, number: block.number }, read(&block, lanes)))
             .collect()
     }
 
@@ -170,7 +170,7 @@ impl PhotonStore {
     /// - `what`: the lamp and the pass in words.
     pub(super) fn save(&self, name: &str, what: String, lanes: usize, blocks: &HashMap<PathBatch, &BatchResult>) {
         let mut sorted: Vec<_> = blocks.iter().collect();
-        sorted.sort_by_key(|(chunk, _)| (chunk.number, chunk.aim));
+        sorted.sort_by_key(|(chunk, _)| (chunk.number, chunk.target));
         let blocks: Vec<PhotonBlock> = sorted.into_iter().map(|(chunk, block)| written(chunk, block, lanes)).collect();
         let content = RecordContent::Photons(Box::new(StoredPhotons { lanes: lanes as u8, blocks }));
         let origin = Origin { what, source: "two-way ray tracing".into(), terms: String::new() };
@@ -207,7 +207,7 @@ fn written(chunk: &PathBatch, block: &BatchResult, lanes: usize) -> PhotonBlock 
     } = block.balance;
     let all = || block.photons.iter();
     PhotonBlock {
-        aim: chunk.aim as u32,
+        target: chunk.target as u32,
         number: chunk.number,
         paths: u64::from(CHUNK),
         balance: [sent, again, gained, straight, stored, absorbed, escaped, stopped],

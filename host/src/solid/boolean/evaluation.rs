@@ -67,10 +67,10 @@ impl Lattice {
         let filed =
             laid.par_iter().map(|(mesh, _)| (TriangleBvh::new(&mesh.vertices, &mesh.triangles), quad_partners(mesh)));
         let filed: Vec<(TriangleBvh, Vec<u32>)> = filed.collect();
-        let operands = laid.iter().zip(&filed).map(|((mesh, _), (sorted, mates))| Operand {
+        let operands = laid.iter().zip(&filed).map(|((mesh, _), (sorted, partners))| Operand {
             mesh,
             sorted,
-            quad_partners: mates,
+            quad_partners: partners,
             overlaps: &[],
         });
         let mut outcome = evaluate_on_lattice(operands.collect(), expression).map_err(back)?;

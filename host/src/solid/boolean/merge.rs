@@ -49,21 +49,21 @@ pub fn result_triangles(
     merged.concat()
 }
 
-fn result_triangle(facet: &Facet, fate: FaceClassification) -> Option<ResultTriangle> {
+fn result_triangle(facet: &Facet, classification: FaceClassification) -> Option<ResultTriangle> {
     // Of faces that coincide the first that looks the right way gives its surface.
-    let wanted = match fate {
+    let wanted = match classification {
         FaceClassification::Discarded => return None,
         FaceClassification::Kept => true,
         FaceClassification::Reversed => false,
     };
     let cover = facet.cover().find(|c| c.is_along == wanted);
     let [a, b, c] = facet.corners;
-    let (corners, face, fate) = match cover {
+    let (corners, face, classification) = match cover {
         Some(cover) if !cover.is_along => ([a, c, b], cover.face, FaceClassification::Kept),
-        Some(cover) => ([a, b, c], cover.face, fate),
-        None => ([a, b, c], facet.face, fate),
+        Some(cover) => ([a, b, c], cover.face, classification),
+        None => ([a, b, c], facet.face, classification),
     };
-    Some(ResultTriangle { corners, face, corner_faces: [face; 3], classification: fate })
+    Some(ResultTriangle { corners, face, corner_faces: [face; 3], classification })
 }
 
 /// The pieces that belong together, and the points that are not needed.

@@ -24,12 +24,12 @@ pub struct Operand<'a> {
 impl Operand<'_> {
     /// The triangle with which another makes one face.
     fn quad_partner(&self, triangle: u32) -> Option<u32> {
-        self.quad_partners.get(triangle as usize).copied().filter(|mate| *mate != NONE)
+        self.quad_partners.get(triangle as usize).copied().filter(|partner| *partner != NONE)
     }
 
     /// The lower triangle of the face that a triangle belongs to.
     fn first_half(&self, triangle: u32) -> u32 {
-        self.quad_partner(triangle).map_or(triangle, |mate| mate.min(triangle))
+        self.quad_partner(triangle).map_or(triangle, |partner| partner.min(triangle))
     }
 }
 
@@ -128,8 +128,8 @@ impl<'a> Operands<'a> {
         let triangle = triangle - self.first_triangle(operand);
         let numbered = |vertex: u32| vertex + self.first_vertex(operand);
         let at = |vertex: u32| mesh.vertices[vertex as usize];
-        let mate = self.operands[operand as usize].quad_partner(triangle);
-        if let Some([a, b, c, d]) = mate.and_then(|mate| ring(mesh, triangle, mate)) {
+        let partner = self.operands[operand as usize].quad_partner(triangle);
+        if let Some([a, b, c, d]) = partner.and_then(|partner| ring(mesh, triangle, partner)) {
             let face = ConvexFace::new(id, [a, b, c].map(numbered), [a, b, c].map(at))?;
             return Some(face.with(numbered(d), at(d)));
         }
@@ -141,10 +141,10 @@ impl<'a> Operands<'a> {
     pub fn halves(&self, triangle: u32) -> impl Iterator<Item = u32> + use<> {
         let operand = self.of_triangle(triangle);
         let first = self.first_triangle(operand);
-        let mate = self.operands[operand as usize].quad_partner(triangle - first).map(|mate| mate + first);
-        let (low, high) = match mate {
-            Some(mate) if mate < triangle => (mate, Some(triangle)),
-            _ => (triangle, mate),
+        let partner = self.operands[operand as usize].quad_partner(triangle - first).map(|partner| partner + first);
+        let (low, high) = match partner {
+            Some(partner) if partner < triangle => (partner, Some(triangle)),
+            _ => (triangle, partner),
         };
         std::iter::once(low).chain(high)
     }

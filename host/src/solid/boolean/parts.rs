@@ -87,7 +87,7 @@ impl Parts {
         }
         join_neighbours(&mut nodes, operands, arrangement, facets);
         let samples = samples(operands, &mut nodes, facets, is_whole);
-        let judged: Vec<(FaceClassification, i32, u64)> = samples
+        let classified: Vec<(FaceClassification, i32, u64)> = samples
             .par_iter()
             .map(|sample| {
                 let mut rays = 0;
@@ -96,38 +96,42 @@ impl Parts {
                 (classify(&windings, &inside), odd.unwrap_or(0), rays)
             })
             .collect();
-        let rays = judged.iter().map(|(.., rays)| rays).sum();
+        let rays = classified.iter().map(|(.., rays)| rays).sum();
         let count = samples.len() as u64;
-        let all_odd = samples.iter().zip(&judged).filter(|(_, (_, odd, _))| *odd != 0);
+        let all_odd = samples.iter().zip(&classified).filter(|(_, (_, odd, _))| *odd != 0);
         let odd = all_odd.min_by_key(|(_, (_, odd, _))| *odd > 0);
         let odd = odd.map(|(sample, (_, odd, _))| (*odd, sample.position(operands, arrangement, facets)));
-        let fates = samples.iter().zip(&judged).map(|(sample, (fate, ..))| (sample.root, *fate)).collect();
-        Parts { nodes, vertices, classifications: fates, count, rays, improper_winding: odd }
+        let classifications = samples
+            .iter()
+            .zip(&classified)
+            .map(|(sample, (classification, ..))| (sample.root, *classification))
+            .collect();
+        Parts { nodes, vertices, classifications, count, rays, improper_winding: odd }
     }
 
     /// Whether all are borders of the result, with the result behind them.
     pub fn keep_everything(&self) -> bool {
-        self.classifications.values().all(|fate| *fate == FaceClassification::Kept)
+        self.classifications.values().all(|classification| *classification == FaceClassification::Kept)
     }
 
     /// What becomes of each triangle, counted over all operands; those that are not whole are dropped.
     pub fn of_triangles(&self, operands: &Operands, is_whole: &[bool]) -> Vec<FaceClassification> {
-        let mut fates = vec![FaceClassification::Discarded; is_whole.len()];
+        let mut classifications = vec![FaceClassification::Discarded; is_whole.len()];
         for (operand, mesh) in (0..).zip(operands.meshes()) {
             let [first_vertex, first] = [operands.first_vertex(operand), operands.first_triangle(operand)];
             // Neighbours in the list are mostly of one part.
             let mut last = (u32::MAX, FaceClassification::Discarded);
             let own = first as usize..first as usize + mesh.triangles.len();
-            let slots = fates[own.clone()].iter_mut().zip(&is_whole[own]);
-            for (triangle, (fate, _)) in mesh.triangles.iter().zip(slots).filter(|(_, (_, whole))| **whole) {
+            let slots = classifications[own.clone()].iter_mut().zip(&is_whole[own]);
+            for (triangle, (classification, _)) in mesh.triangles.iter().zip(slots).filter(|(_, (_, whole))| **whole) {
                 let root = self.nodes.root(triangle[0] + first_vertex);
                 if root != last.0 {
                     last = (root, self.of_root(root));
                 }
-                *fate = last.1;
+                *classification = last.1;
             }
         }
-        fates
+        classifications
     }
 
     /// What becomes of a facet.

@@ -36,14 +36,19 @@ pub fn assemble(
 ) -> (Outcome, NewTriangles, bool) {
     let tables = CornerTables::of(operands.meshes());
     let mut outcome = Outcome { counts, ..Outcome::default() };
-    let fates = parts.of_triangles(operands, is_whole);
-    outcome.reserve(fates.iter().filter(|fate| **fate != FaceClassification::Discarded).count() + facets.len());
+    let classifications = parts.of_triangles(operands, is_whole);
+    outcome.reserve(
+        classifications.iter().filter(|classification| **classification != FaceClassification::Discarded).count()
+            + facets.len(),
+    );
     let mut of_vertex = vec![u32::MAX; operands.vertex_count()];
     for (operand, mesh) in operands.meshes().iter().enumerate() {
         let operand = operand as u32;
         let [first_vertex, first] = [operands.first_vertex(operand), operands.first_triangle(operand)];
-        for (index, (triangle, &fate)) in mesh.triangles.iter().zip(&fates[first as usize..]).enumerate() {
-            if fate == FaceClassification::Discarded {
+        for (index, (triangle, &classification)) in
+            mesh.triangles.iter().zip(&classifications[first as usize..]).enumerate()
+        {
+            if classification == FaceClassification::Discarded {
                 continue;
             }
             let corners = triangle.map(|vertex| {
@@ -54,8 +59,8 @@ pub fn assemble(
                 }
                 *number
             });
-            outcome.push(corners, fate, [operand, index as u32]);
-            tables.copy(&mut outcome.mesh, mesh, operand, index, fate);
+            outcome.push(corners, classification, [operand, index as u32]);
+            tables.copy(&mut outcome.mesh, mesh, operand, index, classification);
         }
     }
     let first_facet = outcome.mesh.triangles.len();
@@ -87,7 +92,7 @@ pub fn assemble(
         let mesh = operands.meshes()[operand as usize];
         tables.interpolate(&mut outcome.mesh, mesh, operand, source as usize, at);
     }
-    let kept = WholeTriangles { classifications: fates, of_vertex };
+    let kept = WholeTriangles { classifications, of_vertex };
     let crosses = rounding::crosses(operands, &outcome.mesh, first_facet, &is_moved, &kept);
     let is_free = vec![true; is_moved.len() - first_vertex as usize];
     (outcome, NewTriangles { first: first_facet, first_vertex, is_free, whole: Some(kept) }, crosses)
@@ -125,8 +130,8 @@ impl Outcome {
         self.mesh.vertices.reserve(triangles / 2 + 2);
     }
 
-    fn push(&mut self, [a, b, c]: [u32; 3], fate: FaceClassification, source: [u32; 2]) {
-        self.mesh.triangles.push(if fate == FaceClassification::Reversed { [a, c, b] } else { [a, b, c] });
+    fn push(&mut self, [a, b, c]: [u32; 3], classification: FaceClassification, source: [u32; 2]) {
+        self.mesh.triangles.push(if classification == FaceClassification::Reversed { [a, c, b] } else { [a, b, c] });
         self.sources.push(source);
     }
 }
@@ -169,8 +174,8 @@ impl CornerTables {
     }
 
     /// For a whole triangle.
-    fn copy(&self, result: &mut Mesh, mesh: &Mesh, operand: u32, triangle: usize, fate: FaceClassification) {
-        let is_turned = fate == FaceClassification::Reversed;
+    fn copy(&self, result: &mut Mesh, mesh: &Mesh, operand: u32, triangle: usize, classification: FaceClassification) {
+        let is_turned = classification == FaceClassification::Reversed;
         if self.normals {
             let [a, b, c] = mesh.corner_normals[triangle];
             result.corner_normals.push(if is_turned { [-a, -c, -b] } else { [a, b, c] });

@@ -36,9 +36,9 @@ pub fn path(control: &[DVec3], is_closed: bool) -> Result<SplineCurve, Primitive
 pub fn sweep<C: AsRef<[DVec2]>>(
     contours: &[C],
     curve: SplineCurve,
-    widening: TwistAndTaper,
+    twist_and_taper: TwistAndTaper,
 ) -> Result<Body, PrimitiveError> {
-    let TwistAndTaper { twist_turns: turns, scale } = widening;
+    let TwistAndTaper { twist_turns: turns, scale } = twist_and_taper;
     let is_closed = curve.basis().is_closed();
     let refused = |what, value, range| Err(PrimitiveError::Measure { what, value, range });
     if !(0.0..=1e6).contains(&scale) {
@@ -57,16 +57,16 @@ pub fn sweep<C: AsRef<[DVec2]>>(
     let breaks = curve.basis().breaks().to_vec();
     count("surfaces", border.len() * (breaks.len() - 1), 1, MAX_SURFACES)?;
     let spine = Arc::new(Spine::new(curve).ok_or(PrimitiveError::NoDirection)?);
-    check_bend(&spine, &corners, widening, &breaks)?;
+    check_bend(&spine, &corners, twist_and_taper, &breaks)?;
     let mut curved: Vec<Arc<dyn Surface>> = Vec::new();
     for edge in border {
         let edge = edge.map(|corner| corners[corner as usize]);
         for part in breaks.windows(2) {
-            curved.push(Arc::new(Swept::new(Arc::clone(&spine), widening, edge, [part[0], part[1]])));
+            curved.push(Arc::new(Swept::new(Arc::clone(&spine), twist_and_taper, edge, [part[0], part[1]])));
         }
     }
     let mut faces = Vec::new();
-    let cap = |t: f64| corners.iter().map(|corner| spine.point_at(*corner, widening, t)).collect::<Vec<_>>();
+    let cap = |t: f64| corners.iter().map(|corner| spine.point_at(*corner, twist_and_taper, t)).collect::<Vec<_>>();
     if !is_closed {
         let turned = base.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
         faces.push(Face::new(cap(breaks[0]), turned));
@@ -79,17 +79,22 @@ pub fn sweep<C: AsRef<[DVec2]>>(
 
 /// # Errors
 /// [`PrimitiveError::Bend`] at the first place where a corner of the section is at the center of the bend or beyond.
-fn check_bend(spine: &Spine, corners: &[DVec2], widening: TwistAndTaper, breaks: &[f64]) -> Result<(), PrimitiveError> {
+fn check_bend(
+    spine: &Spine,
+    corners: &[DVec2],
+    twist_and_taper: TwistAndTaper,
+    breaks: &[f64],
+) -> Result<(), PrimitiveError> {
     let [low, high] = [breaks[0], breaks[breaks.len() - 1]];
     for part in breaks.windows(2) {
         for look in 0..=BEND_SAMPLES {
             let t = part[0] + (part[1] - part[0]) * look as f64 / BEND_SAMPLES as f64;
-            let bend = spine.curvature_in_section(widening, t);
-            let scale = 1.0 + (widening.scale - 1.0) * (t - low) / (high - low);
+            let bend = spine.curvature_in_section(twist_and_taper, t);
+            let scale = 1.0 + (twist_and_taper.scale - 1.0) * (t - low) / (high - low);
             let most = corners.iter().map(|corner| corner.dot(bend) * scale).fold(0.0, f64::max);
             if most >= 1.0 {
                 let radius = 1.0 / bend.length();
-                let at = spine.point_at(DVec2::ZERO, widening, t);
+                let at = spine.point_at(DVec2::ZERO, twist_and_taper, t);
                 return Err(PrimitiveError::Bend { at, radius, reach: most * radius });
             }
         }

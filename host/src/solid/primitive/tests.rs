@@ -264,16 +264,16 @@ fn closed_sweeps_come_back_to_where_they_began() {
         let solid = solid(&body, 0.02);
         assert_eq!(solid.mesh().edge_report().euler_characteristic(), 0);
     }
-    let widening = TwistAndTaper { twist_turns: 0.3, scale: 1.0 };
-    assert!(sweep(&[square(0.5)], path(&control, true).unwrap(), widening).is_err());
+    let twist_and_taper = TwistAndTaper { twist_turns: 0.3, scale: 1.0 };
+    assert!(sweep(&[square(0.5)], path(&control, true).unwrap(), twist_and_taper).is_err());
 }
 
 #[test]
 fn sweeps_that_fold_are_refused_with_the_place() {
     let bent = [DVec3::ZERO, DVec3::new(1.0, 0.0, 0.0), DVec3::new(1.0, 1.0, 0.0)];
     let words = |size: f64, scale: f64| {
-        let widening = TwistAndTaper { twist_turns: 0.0, scale };
-        sweep(&[square(size)], path(&bent, false).unwrap(), widening).err().map(|error| error.to_string())
+        let twist_and_taper = TwistAndTaper { twist_turns: 0.0, scale };
+        sweep(&[square(size)], path(&bent, false).unwrap(), twist_and_taper).err().map(|error| error.to_string())
     };
     assert_eq!(words(0.5, 1.0), None);
     assert!(words(2.0, 1.0).unwrap().starts_with("the path bends with the radius"), "{:?}", words(2.0, 1.0));

@@ -151,19 +151,19 @@ fn logical_writes_are_the_host_line_and_logical_reads_its_messages() {
 fn what_is_not_allowed_is_an_error_and_the_next_command_works() {
     let mut scene = Scene::new(V);
     let address = scene.address("V");
-    for (name, trouble) in
+    for (name, fault) in
         [(&b"NOBODY"[..], ParallelError::Name), (b"1", ParallelError::Name), (b"\xff", ParallelError::Name)]
     {
-        assert_eq!(scene.transfer(0x8000, name), error(0x8000, trouble));
+        assert_eq!(scene.transfer(0x8000, name), error(0x8000, fault));
     }
-    for (at, words, trouble) in [
+    for (at, words, fault) in [
         (address, 19, ParallelError::Address),
         (address + 1, 1, ParallelError::Address),
         (address + 0x100, 0, ParallelError::Address),
         (0, 1, ParallelError::Address),
         (u32::MAX, 1, ParallelError::Address),
     ] {
-        assert_eq!(scene.transfer(0x9000, &list(at, words)), error(0x9000, trouble), "{at:x} {words}");
+        assert_eq!(scene.transfer(0x9000, &list(at, words)), error(0x9000, fault), "{at:x} {words}");
     }
     assert_eq!(scene.transfer(0x9000, &list(address, 18)[..6]), error(0x9000, ParallelError::ByteCount));
     assert_eq!(scene.transfer(0xb000, &list(address, 18)), error(0xb000, ParallelError::ByteCount));

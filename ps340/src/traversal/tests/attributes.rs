@@ -242,7 +242,7 @@ fn screen_oriented_text_does_not_turn() {
 
 #[test]
 fn structures_a_thousand_levels_deep_are_drawn_and_deeper_than_the_limit_are_reported() {
-    for (levels, trouble) in [(1000, None), (MAX_DEPTH + 5, Some(UpdateFault::TooDeep))] {
+    for (levels, fault) in [(1000, None), (MAX_DEPTH + 5, Some(UpdateFault::TooDeep))] {
         let mut structures = Structures::default();
         structures.define(ObjectId::new(0), point());
         for level in 1..=levels {
@@ -250,7 +250,7 @@ fn structures_a_thousand_levels_deep_are_drawn_and_deeper_than_the_limit_are_rep
         }
         structures.display(ObjectId::new(levels));
         let update = update(&structures, 0, &Requests::default());
-        assert_eq!((update.strokes.len(), update.fault), (usize::from(trouble.is_none()), trouble));
+        assert_eq!((update.strokes.len(), update.fault), (usize::from(fault.is_none()), fault));
     }
 }
 
