@@ -61,12 +61,44 @@ pub fn read(path: &Path) -> String {
     fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// The code without comments, and with the contents of texts and characters left out.
+/// The code without comments, and with the contents of texts and characters left out; its lines are those of the source.
 pub fn code(source: &str) -> String {
     let mut code = String::with_capacity(source.len());
-    let mut rest = source;
-    while let Some(first) = rest.chars().next() {
-        let skipped = if rest.starts_with("//") {
+    walk(source, |part| match part {
+        Part::Code(text) => code.push_str(text),
+        Part::Comment(text) | Part::Literal(text) => {
+            code.push(' ');
+            code.extend(text.matches('\n'));
+        }
+    });
+    code
+}
+
+/// The comments without the code; their lines are those of the source.
+pub fn comments(source: &str) -> String {
+    let mut comments = String::new();
+    walk(source, |part| match part {
+        Part::Comment(text) => comments.push_str(text),
+        Part::Code(text) | Part::Literal(text) => comments.extend(text.matches('\n')),
+    });
+    comments
+}
+
+/// A part of a source file.
+enum Part<'a> {
+    Code(&'a str),
+    Comment(&'a str),
+    /// A text or a character in quotes.
+    Literal(&'a str),
+}
+
+/// Hands over the parts of a source file in their order.
+fn walk<'a>(source: &'a str, mut take: impl FnMut(Part<'a>)) {
+    let (mut begin, mut at) = (0, 0);
+    while let Some(first) = source[at..].chars().next() {
+        let rest = &source[at..];
+        let is_comment = rest.starts_with("//") || rest.starts_with("/*");
+        let length = if rest.starts_with("//") {
             rest.find('\n').unwrap_or(rest.len())
         } else if rest.starts_with("/*") {
             rest.find("*/").map_or(rest.len(), |at| at + 2)
@@ -78,14 +110,16 @@ pub fn code(source: &str) -> String {
         } else if rest.starts_with("'\\") || rest.starts_with("'\"'") {
             quoted(rest, '\'')
         } else {
-            code.push(first);
-            rest = &rest[first.len_utf8()..];
+            at += first.len_utf8();
             continue;
         };
-        code.push(' ');
-        rest = &rest[skipped..];
+        take(Part::Code(&source[begin..at]));
+        let part = &rest[..length];
+        take(if is_comment { Part::Comment(part) } else { Part::Literal(part) });
+        at += length;
+        begin = at;
     }
-    code
+    take(Part::Code(&source[begin..]));
 }
 
 /// The number of `#` of a raw text that begins here.
