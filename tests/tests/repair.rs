@@ -171,7 +171,7 @@ fn a_body_that_faces_inwards_beside_another_is_an_error_until_it_is_turned() {
     for arguments in [&["check", "a.obj"][..], &["boolean", "union", "a.obj", "a.obj", "-o", "b.obj"]] {
         let ended = run(PERIS, arguments, &[], folder.path(), TIMEOUT);
         assert_eq!(ended.code, Some(1), "{arguments:?}: {}", ended.errors);
-        assert!(ended.errors.contains("1 of 2 bodies face inwards"), "{arguments:?}: {}", ended.errors);
+        assert!(ended.errors.contains("1 of 2 shells face inwards"), "{arguments:?}: {}", ended.errors);
     }
     let (code, report, errors) = repair(folder.path(), "a.obj", "b.obj");
     assert_eq!((code, &report["repair"]["bodies"]), (Some(0), &1.into()), "{errors}");

@@ -6,7 +6,7 @@ use glam::DVec3;
 use std::collections::BTreeMap;
 
 /// A closed loop of edges through vertices that are all different, in the direction in which triangles that are missing
-/// there run through them. A vertex is the lowest of those at its place.
+/// there would traverse them. A vertex is the lowest of those at its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BoundaryLoop(pub Vec<u32>);
 
@@ -19,17 +19,18 @@ impl BoundaryLoop {
 
     /// The sum of the lengths of its edges, units.
     ///
-    /// - `places`: of the vertices of the mesh.
+    /// - `positions`: of the vertices of the mesh.
     pub fn length(&self, positions: &[DVec3]) -> f64 {
         self.edges().map(|[from, to]| positions[from as usize].distance(positions[to as usize])).sum()
     }
 }
 
 impl Mesh {
-    /// The loops of edges that more triangles run through one way than the other; an edge belongs to as many as it lacks
+    /// The loops of edges that more triangles traverse one way than the other; an edge belongs to as many as it lacks
     /// triangles. Vertices at one place count as one, and triangles that use a place twice have no part in it.
     ///
-    /// Loops that touch in a vertex are parted there. Triangles that are turned against their neighbours bring loops too.
+    /// Loops that touch in a vertex are parted there. Triangles that are oriented against their neighbours bring loops
+    /// too.
     pub fn boundary_loops(&self) -> Vec<BoundaryLoop> {
         let table = EdgeTable::of(self);
         let mut following: BTreeMap<u32, Vec<u32>> = BTreeMap::new();

@@ -11,13 +11,13 @@ pub struct EdgeReport {
     pub edges: usize,
     /// Edges with a triangle on one side only.
     pub boundary: usize,
-    /// Edges of more than two triangles.
+    /// Non-manifold edges: those of more than two triangles.
     pub non_manifold: usize,
-    /// Edges of two triangles that run through it in the same direction.
+    /// Edges of two triangles that traverse it in the same direction.
     pub misoriented: usize,
     /// Triangles that use one position twice; they have no part in the counts above.
     pub collapsed: usize,
-    /// Other triangles without area: all corners on one line.
+    /// Degenerate triangles: others without area, all corners on one line.
     pub degenerate: usize,
     /// Vertices at different positions that a triangle uses.
     pub vertices: usize,
@@ -26,7 +26,7 @@ pub struct EdgeReport {
 }
 
 impl EdgeReport {
-    /// Whether every edge has exactly two triangles, which run through it in opposite directions.
+    /// Whether every edge has exactly two triangles, which traverse it in opposite directions.
     pub fn is_closed(&self) -> bool {
         self.edges > 0 && self.boundary + self.non_manifold + self.misoriented == 0
     }
@@ -71,7 +71,7 @@ impl Mesh {
         }
     }
 
-    /// Counts triangles that have the same three positions as an earlier one, however they are turned.
+    /// Counts triangles that have the same three positions as an earlier one, however they are oriented.
     pub fn duplicate_triangles(&self) -> usize {
         let same = self.first_of_each_position();
         let corners = |triangle: &[u32; 3]| {

@@ -1,4 +1,4 @@
-//! Edges of a mesh as vectors: each once, classified by what they are to the eye.
+//! Edges of a mesh as vectors: each once, classified by what they are to the viewer.
 
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
@@ -50,7 +50,7 @@ pub enum Viewer {
     Direction(DVec3),
 }
 
-/// The edges inside smooth parts that are wanted.
+/// The edges inside smooth parts that are selected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SmoothEdges {
     /// None.
@@ -68,16 +68,16 @@ pub enum SmoothEdges {
 pub struct EdgeSelection {
     /// Edges of one triangle. (Edges of more than two are always creases.)
     pub boundary: bool,
-    /// Edges where the two surfaces meet at more than this angle, degrees, 0..=180; `None` for no creases. The planes of
-    /// the triangles must do so, and the normals that the mesh has there: coarse triangles are no creases.
+    /// Edges where the two surfaces meet at more than this angle, degrees, 0..=180; `None` for no creases. The planes
+    /// of the triangles must do so, and the normals that the mesh has there: coarse triangles are no creases.
     pub crease_degrees: Option<f64>,
     /// Edges between triangles of different surfaces, whatever their angle.
     pub seams: bool,
     /// Edges that are none of the above.
     pub smooth: SmoothEdges,
-    /// The outline that this eye sees. Where the mesh has normals that are the same on both sides of its edges, it is made of
-    /// lines through triangles, along which these normals turn away; else of edges between a triangle that faces the eye and
-    /// one that does not.
+    /// The outline that this viewer sees. Where the mesh has normals that are the same on both sides of its edges, it
+    /// is made of lines through triangles, along which these normals turn away; else of edges between a triangle that
+    /// faces the viewer and one that does not.
     pub outline: Option<Viewer>,
 }
 
@@ -211,7 +211,7 @@ impl EdgeTable {
     }
 }
 
-/// For each triangle whether `eye` sees its outside; edge-on counts as not. Exact for an eye at a point.
+/// For each triangle whether `eye` sees its outside; edge-on counts as not. Exact for a viewer at a point.
 fn facing(mesh: &Mesh, eye: Viewer) -> Vec<bool> {
     let coord = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
     let faces = |triangle| {

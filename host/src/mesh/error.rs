@@ -34,7 +34,7 @@ pub enum MeshError {
     Write(#[from] files::WriteError),
 }
 
-/// One thing wrong, and its place in the text, in the bytes or in the mesh.
+/// One thing wrong, and its location in the text, in the bytes or in the mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{location}: {problem}")]
 pub struct Fault {
@@ -44,7 +44,7 @@ pub struct Fault {
     pub problem: MeshProblem,
 }
 
-/// A place in a file or in a mesh.
+/// A location in a file or in a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaultLocation {
     /// A line of a text, from 1.
@@ -62,7 +62,7 @@ pub enum FaultLocation {
 }
 
 impl FaultLocation {
-    /// The fault `problem` at this place.
+    /// The fault `problem` at this location.
     pub(super) fn fault(self, problem: MeshProblem) -> Fault {
         Fault { location: self, problem }
     }

@@ -21,7 +21,8 @@ pub enum Format {
     Stl,
     /// Stanford polygon file: text and binary of both byte orders are read, little-endian double precision is written.
     Ply,
-    /// glTF 2.0 as JSON: single precision, metres; buffers in the file or beside it are read, one in the file is written.
+    /// glTF 2.0 as JSON: single precision, metres; buffers in the file or beside it are read, one in the file is
+    /// written.
     Gltf,
     /// glTF 2.0, binary.
     Glb,
@@ -56,9 +57,9 @@ pub fn read(path: impl AsRef<Path>) -> Result<Mesh, MeshError> {
 /// Reads a mesh and the names of its groups; the extension of `path` names the format.
 ///
 /// Polygons become fans of triangles around their first corner, which is right for convex polygons and for those that
-/// are star-shaped from that corner; other concave polygons come out with overlapping triangles. Vertices of STL and glTF
-/// files that have the same bits become one. Groups are those of OBJ files (`o`, `g` and `usemtl` together), the property
-/// `surface` of the faces of PLY files, and the primitives of glTF files.
+/// are star-shaped from that corner; other concave polygons come out with overlapping triangles. Vertices of STL and
+/// glTF files that have the same bits become one. Groups are those of OBJ files (`o`, `g` and `usemtl` together), the
+/// property `surface` of the faces of PLY files, and the primitives of glTF files.
 ///
 /// # Errors
 /// [`MeshError`], with the line or byte where the content is wrong. Whatever is returned has finite vertices and
@@ -88,18 +89,18 @@ pub fn destination(path: impl AsRef<Path>) -> Result<Destination, MeshError> {
 
 /// Writes a mesh; the extension of the file names the format.
 ///
-/// OBJ keeps positions to the last bit, corner normals, parameters and surfaces; PLY keeps positions to the last bit and
-/// surfaces; glTF keeps all of them but in single precision; STL rounds positions to single precision; the compact form
-/// rounds them to 1/65535 of the longest side.
+/// OBJ keeps positions to the last bit, corner normals, parameters and surfaces; PLY keeps positions to the last bit
+/// and surfaces; glTF keeps all of them but in single precision; STL rounds positions to single precision; the compact
+/// form rounds them to 1/65535 of the longest side.
 ///
 /// # Errors
-/// [`MeshError`] if the mesh is not valid, does not fit the format, or the file cannot be written; it may be kept elsewhere
-/// then.
+/// [`MeshError`] if the mesh is not valid, does not fit the format, or the file cannot be written; it may be kept
+/// elsewhere then.
 pub fn write(mesh: &Mesh, destination: &Destination) -> Result<(), MeshError> {
     write_grouped(&Grouped::from(mesh.clone()), destination)
 }
 
-/// Writes a mesh with names for its surfaces, as [`write()`] does; glTF keeps what they look like, too.
+/// Writes a mesh with names for its surfaces, as [`write()`] does; glTF keeps their materials, too.
 ///
 /// # Errors
 /// [`MeshError`] if the mesh is not valid, does not fit the format, or the file cannot be written.

@@ -12,11 +12,11 @@ pub struct Grouped {
     pub mesh: Mesh,
     /// What the surfaces are called, by their numbers. There may be fewer names than surfaces.
     pub names: Vec<String>,
-    /// What the surfaces look like, by their numbers; none where that is not known. There may be fewer than surfaces.
+    /// The materials of the surfaces, by their numbers; none where that is not known. There may be fewer than surfaces.
     pub materials: Vec<Option<MetallicRoughness>>,
 }
 
-/// What a surface looks like, in the terms of glTF.
+/// A metallic-roughness material, in the terms of glTF.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MetallicRoughness {
     /// Reflected fraction of red, green and blue, linear, each 0..=1.
@@ -57,7 +57,8 @@ pub(super) struct Groups {
 }
 
 impl Groups {
-    /// Notes that the triangles from the last noted one up to `count` are of the group `name`, which looks so if it is new.
+    /// Notes that the triangles from the last noted one up to `count` are of the group `name`, which has that material
+    /// if it is new.
     pub fn extend(&mut self, name: &str, look: Option<MetallicRoughness>, count: usize) {
         if count <= self.of_triangles.len() {
             return;

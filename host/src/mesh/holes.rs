@@ -8,7 +8,7 @@ impl Mesh {
     ///
     /// Right for holes whose border is nearly flat and star-shaped; in others the fan may cut through the mesh, which
     /// is closed nevertheless. Vertices at the same position become one; tables per corner are dropped if anything was
-    /// added. A border that cannot be followed (its triangles are turned against each other) stays open.
+    /// added. A border that cannot be followed (its triangles are oriented against each other) stays open.
     pub fn with_holes_filled(&self) -> Mesh {
         let mut mesh = self.welded();
         let loops = mesh.boundary_loops();

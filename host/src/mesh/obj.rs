@@ -2,7 +2,8 @@
 //!
 //! Triangles with the same object, group and material (`o`, `g` and `usemtl`) are a group.
 //!
-//! Not modelled: free-form curves and surfaces, what materials look like, lines and points; their statements are skipped.
+//! Not modelled: free-form curves and surfaces, properties of materials, lines and points; their statements are
+//! skipped.
 //!
 //! # Source
 //! Wavefront Technologies, Advanced Visualizer manual, appendix B1.

@@ -5,7 +5,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::Mesh;
 
 impl Mesh {
-    /// The mesh moved by `placement`. A reflection turns the triangles round, so that outside stays outside.
+    /// The mesh moved by `placement`. A reflection reverses the triangles, so that outside stays outside.
     pub fn transformed(&self, placement: &DAffine3) -> Mesh {
         let mut mesh = self.clone();
         mesh.vertices.iter_mut().for_each(|vertex| *vertex = placement.transform_point3(*vertex));
@@ -19,7 +19,7 @@ impl Mesh {
         mesh
     }
 
-    /// The mesh inside out: triangles and normals turned round.
+    /// The mesh inside out: triangles and normals reversed.
     pub fn reversed(mut self) -> Mesh {
         self.reverse_corners();
         for corners in &mut self.corner_normals {

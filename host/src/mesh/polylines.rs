@@ -111,7 +111,7 @@ impl<'a> Trails<'a> {
         polylines
     }
 
-    /// All edges that hang together with `start`, as a closed trail: vertices, each with the edge that led to it.
+    /// All edges that are connected with `start`, as a closed trail: vertices, each with the edge that led to it.
     fn closed_trail(&mut self, start: u32) -> Vec<(u32, Option<u32>)> {
         let mut stack = vec![(start, None)];
         let mut trail = Vec::new();

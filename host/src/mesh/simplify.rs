@@ -1,7 +1,7 @@
 //! A mesh with fewer triangles: edges collapse to points, those first with which least changes.
 //!
 //! # Model
-//! Each vertex knows the planes of the triangles that went into it; the error of a place is the sum of squared
+//! Each vertex knows the planes of the triangles that went into it; the error of a position is the sum of squared
 //! distances to them, by their areas. Planes that stand on the border hold it. A part of the distances to the vertices
 //! themselves counts too, which keeps triangles compact where the surface is flat. An edge does not collapse if that
 //! would join the surface to itself elsewhere, or turn a triangle over.
@@ -28,7 +28,7 @@ const BORDER: f64 = 10.0;
 const LEAST_COSINE: f64 = 0.2;
 
 impl Mesh {
-    /// The mesh with at most so many triangles, if that can be had without changing how it hangs together. Vertices at
+    /// The mesh with at most so many triangles, if that can be had without changing how it is connected. Vertices at
     /// one position become one; normals, parameters and surfaces are dropped.
     pub fn simplified(&self, triangles: usize) -> Mesh {
         let mut collapse = Collapse::new(self.welded());

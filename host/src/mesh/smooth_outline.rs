@@ -1,4 +1,4 @@
-//! The outline of a smooth surface, smooth itself: where the normals, not the triangles, turn away from the eye.
+//! The outline of a smooth surface, smooth itself: where the normals, not the triangles, turn away from the viewer.
 
 use super::Mesh;
 use super::edges::{EdgeSelection, EdgeTable, Viewer};
@@ -21,7 +21,8 @@ impl EdgeTable {
     }
 }
 
-/// The lines in which normals are at right angles to the way to the eye, linear between the corners of each triangle.
+/// The lines in which normals are at right angles to the direction to the viewer, linear between the corners of each
+/// triangle.
 ///
 /// Where triangles are joined smoothly they continue each other.
 ///

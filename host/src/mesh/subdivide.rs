@@ -19,8 +19,8 @@ impl Mesh {
     }
 
     /// Each triangle divided into four, and all vertices moved towards a smooth surface (C2 but for the vertices that
-    /// do not have six neighbours). Boundaries and crowded edges become cubic B-spline curves of their own. Vertices at
-    /// the same position move as one; tables per corner are dropped, surfaces are kept.
+    /// do not have six neighbours). Boundaries and non-manifold edges become cubic B-spline curves of their own.
+    /// Vertices at the same position move as one; tables per corner are dropped, surfaces are kept.
     ///
     /// # Source
     /// Loop 1987, with the weights of Warren 1995 (3/16 for three neighbours, 3/8n for more).

@@ -7,9 +7,9 @@ use crate::numeric::predicates::turn;
 /// No link.
 const NONE: u32 = u32::MAX;
 
-/// The left boundary of an interval inside of the polygon: corners from the left end of its lower edge to that of its
-/// upper edge. On both sides of its rightmost corner it turns away from the interval, so that each new corner sees
-/// every corner that it cuts off.
+/// A reflex chain, the left boundary of an interval inside of the polygon: corners from the left end of its lower edge
+/// to that of its upper edge. On both sides of its rightmost corner it turns away from the interval, so that each new
+/// corner sees every corner that it cuts off.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ReflexChain {
     /// The link at the lower edge.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// Why a polygon has no triangulation.
+/// A fault that keeps a polygon from having a triangulation.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PolygonError {
     /// A corner is not a point.

@@ -1,4 +1,4 @@
-//! The contours of a polygon made ready for the sweep: scaled, without useless corners, sorted.
+//! The contours of a polygon prepared for the sweep: scaled, without useless corners, sorted.
 
 use glam::DVec2;
 
@@ -110,7 +110,7 @@ impl Outline {
         }
     }
 
-    /// Sorts the kept corners and links them by rank. `ends`: where each contour ends in `kept`.
+    /// Sorts the corners where contours turn and links them by rank. `ends`: where each contour ends in `turning`.
     fn rank(&mut self, turning: &[u32], ends: &[usize]) {
         let order = sorted(&self.corners, turning);
         let mut rank_of = vec![0_u32; turning.len()];
@@ -185,7 +185,7 @@ fn exponent(number: f64) -> i32 {
     ((number.to_bits() >> 52 & 0x7ff) as i32 - 1023).max(-1022)
 }
 
-/// The positions in `kept` in the order of the sweep.
+/// The positions in `turning` in the order of the sweep.
 fn sorted(corners: &[DVec2], turning: &[u32]) -> Vec<u32> {
     // Whole numbers compare without branches: the sort is several times faster than by coordinates.
     let key = |number: f64| {

@@ -1,4 +1,4 @@
-//! What is put right in meshes before they bound a solid and after they were rounded, and whether they are closed.
+//! What is repaired in meshes before they bound a solid and after they were rounded, and whether they are closed.
 
 use super::SolidError;
 use super::union_find::UnionFind;
@@ -10,7 +10,7 @@ use std::collections::HashMap;
 /// Edges that an error names.
 const NAMED: usize = 8;
 
-/// Puts right what rounding did to a closed mesh: vertices that fell together, and triangles that lost their area.
+/// Repairs what rounding did to a closed mesh: vertices that fell together, and triangles that lost their area.
 pub fn cleaned(mesh: Mesh) -> Mesh {
     let mut mesh = without_collapsed(mesh);
     dissolve(&mut mesh);
@@ -45,12 +45,12 @@ pub fn retain(mesh: &mut Mesh, keep: &[bool]) {
     of(&mut mesh.surfaces, keep);
 }
 
-/// Whether all edges are run through both ways alike.
+/// Whether all edges are traversed both ways alike.
 pub fn is_closed(mesh: &Mesh) -> bool {
     check_edges(mesh).is_ok()
 }
 
-/// Checks that all edges are run through both ways alike; returns the number of sheets that edges of two triangles join.
+/// Checks that all edges are traversed both ways alike; returns the number of sheets that edges of two triangles join.
 pub fn check_edges(mesh: &Mesh) -> Result<usize, SolidError> {
     // An edge as one number, its direction in the last bit.
     let mut sides: Vec<(u64, u32)> = Vec::with_capacity(3 * mesh.triangles.len());
@@ -142,8 +142,8 @@ fn is_between(mesh: &Mesh, a: u32, b: u32, c: u32) -> bool {
     (a.min(c).cmple(b) & b.cmple(a.max(c))).all()
 }
 
-/// Gives a slot what the corners of triangle `from` (with vertices `old`) have; a new corner between two of them has the
-/// mean of theirs.
+/// Gives a slot what the corners of triangle `from` (with vertices `old`) have; a new corner between two of them has
+/// the mean of theirs.
 fn copy_tables(
     mesh: &mut Mesh,
     from: u32,

@@ -7,21 +7,22 @@ use std::sync::{Arc, OnceLock};
 
 /// What a closed surface bounds.
 ///
-/// Its mesh is closed and consistently oriented: every edge is run through as often one way as the other. No triangle
-/// lacks an area. The surface is simple: it winds once around what is inside and not at all around what is outside. It may
+/// Its mesh is closed and consistently oriented: every edge is traversed as often one way as the other. No triangle
+/// lacks an area. The surface is simple: its winding number is 1 inside and 0 outside. It may
 /// touch itself, as where two cubes share an edge.
 ///
 /// Results have rounded points. Where surfaces lie within a few roundings of each other, that could make a result cross
-/// itself; it is then made simple again, for which points move by a few roundings more, or refused. An expression that is
-/// given to [`Solid::evaluate`] as a whole is rounded only once.
+/// itself; it is then freed of self-intersections, for which points move by a few roundings more, or refused. An
+/// expression that is given to [`Solid::evaluate`] as a whole is rounded only once.
 ///
-/// Coordinates below 8e-62 of the largest, of one solid or of all operands of an operation, are rounded to 9e-78 of that.
+/// Coordinates below 8e-62 of the largest, of one solid or of all operands of an operation, are rounded to 9e-78 of
+/// that.
 #[derive(Clone, Debug, Default)]
 pub struct Solid {
     pub(super) mesh: Mesh,
-    /// Its triangles by place, once someone asked for them.
+    /// Its triangles by location, once someone asked for them.
     sorted: OnceLock<Arc<TriangleBvh>>,
-    /// Those that make one face with another, once an operation asked for them.
+    /// The quad partners of its triangles, once an operation asked for them.
     quad_partners: OnceLock<Arc<Vec<u32>>>,
 }
 
@@ -47,7 +48,7 @@ impl Solid {
         self.mesh
     }
 
-    /// Its triangles by place.
+    /// Its triangles by location.
     pub fn sorted(&self) -> &TriangleBvh {
         self.sorted.get_or_init(|| Arc::new(TriangleBvh::new(&self.mesh.vertices, &self.mesh.triangles)))
     }

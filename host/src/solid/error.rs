@@ -1,4 +1,4 @@
-//! Why a mesh is no solid.
+//! Errors of meshes that are no solids.
 
 use crate::mesh::Fault;
 use glam::DVec3;
@@ -6,13 +6,13 @@ use glam::DVec3;
 /// Loops that an error names.
 const NAMED_LOOPS: usize = 4;
 
-/// Why a mesh is no solid.
+/// A fault that keeps a mesh from being a solid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SolidError {
     /// A number or an index is wrong.
     #[error(transparent)]
     Mesh(#[from] Fault),
-    /// Edges are run through more often one way than the other: there is a hole, or triangles are turned against each
+    /// Edges are traversed more often one way than the other: there is a hole, or triangles are oriented against each
     /// other.
     #[error("{count} edges are not closed or not consistently oriented, the first {}", list(edges))]
     NotClosed {
@@ -27,27 +27,27 @@ pub enum SolidError {
         /// The loops that stay open, the longest first.
         loops: Vec<OpenLoop>,
     },
-    /// Triangles face inwards: all, or those of bodies that lie in no other.
+    /// Triangles face inwards: all, or those of shells that lie in no other.
     #[error("{}", turned(*bodies, *of, *volume, *near))]
     InsideOut {
-        /// Bodies that face inwards.
+        /// Shells that face inwards.
         bodies: usize,
-        /// Bodies in all.
+        /// Shells in all.
         of: usize,
         /// The volume of the largest of these, cubic units.
         volume: f64,
         /// A corner of it.
         near: DVec3,
     },
-    /// The surface winds around nothing: its triangles lie back to back or have no area.
+    /// The winding number of the surface is 0 everywhere: its triangles lie back to back or have no area.
     #[error("the surface bounds nothing: its triangles lie back to back or have no area")]
     BoundsNothing,
     /// The surface crosses or covers itself, or parts of it lie in each other.
     #[error(
-        "the surface crosses or covers itself ({overlaps} pairs of triangles): near {near} it winds {winding} times around a point"
+        "the surface crosses or covers itself ({overlaps} pairs of triangles): near {near} a point has the winding number {winding}"
     )]
     Crossing {
-        /// How often it winds; once behind the surface of a solid.
+        /// The winding number there; 1 behind the surface of a solid.
         winding: i32,
         /// Where.
         near: DVec3,
@@ -69,8 +69,8 @@ pub enum SolidError {
         /// How far points might be moved, in units in the last place of the largest coordinate.
         most: f64,
     },
-    /// The surface crosses itself so often that it is not put right, nor told how.
-    #[error("the surface crosses itself too often to be taken for one: more than {most} {what}")]
+    /// The surface crosses itself so often that it is neither repaired nor are all crossings counted.
+    #[error("the surface crosses itself too often to be repaired: more than {most} {what}")]
     TooManyIntersections {
         /// Of what there are too many.
         what: &'static str,
@@ -109,6 +109,6 @@ fn list_loops(loops: &[OpenLoop]) -> String {
 fn turned(bodies: usize, of: usize, volume: f64, near: DVec3) -> String {
     match of {
         1 => format!("the surface faces inwards: its volume is {volume}"),
-        _ => format!("{bodies} of {of} bodies face inwards, the largest near {near}: its volume is {volume}"),
+        _ => format!("{bodies} of {of} shells face inwards, the largest near {near}: its volume is {volume}"),
     }
 }

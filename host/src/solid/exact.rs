@@ -19,8 +19,8 @@ pub struct ExactSolid {
 }
 
 impl ExactSolid {
-    /// Takes a mesh and the surfaces that its triangles name. A mesh that crosses itself is taken for all that it winds
-    /// around, with a warning.
+    /// Takes a mesh and the surfaces that its triangles name. A mesh that crosses itself is taken for all points of
+    /// positive winding number, with a warning.
     ///
     /// # Errors
     /// [`SolidError`] if the mesh bounds no solid.
@@ -55,7 +55,7 @@ impl ExactSolid {
         }
         let (solid, crossing) = Solid::resolved(mesh)?;
         if let Some(crossing) = crossing {
-            tracing::warn!("{crossing}; taken for all that it winds around");
+            tracing::warn!("{crossing}; taken for all points of positive winding number");
         }
         Ok(ExactSolid { solid, surfaces })
     }
@@ -87,9 +87,9 @@ impl ExactSolid {
         ExactSolid::new_at(mesh, surfaces, placement)
     }
 
-    /// Evaluates an expression over some solids at once, as [`Solid::evaluate`] does. The surfaces of the result are those
-    /// of all operands, one operand after the other; each corner has the normal and the parameters of the point of its
-    /// surface that is nearest. Where the result lies on the other side of a surface, normals are turned.
+    /// Evaluates an expression over some solids at once, as [`Solid::evaluate`] does. The surfaces of the result are
+    /// those of all operands, one operand after the other; each corner has the normal and the parameters of the point
+    /// of its surface that is nearest. Where the result lies on the other side of a surface, normals are reversed.
     ///
     /// # Errors
     /// As of [`Solid::evaluate`].
@@ -117,7 +117,8 @@ impl ExactSolid {
         Ok((ExactSolid { solid: Solid::of(mesh), surfaces }, outcome))
     }
 
-    /// Normals and parameters at the corners of a triangle of a result that is a part of triangle `source` of this solid.
+    /// Normals and parameters at the corners of a triangle of a result that is a part of triangle `source` of this
+    /// solid.
     pub(super) fn corners_of(&self, result: &Mesh, triangle: usize, source: usize) -> [(DVec3, DVec2); 3] {
         let mesh = self.solid.mesh();
         let (corners, normals, uvs) =
@@ -148,7 +149,7 @@ pub fn moved(
 ) -> (Mesh, Vec<Option<Arc<dyn Surface>>>) {
     let mut mesh = mesh.transformed(placement);
     if placement.matrix3.determinant() < 0.0 {
-        // A mirrored surface is run through with u reversed.
+        // A mirrored surface is traversed with u reversed.
         for (corners, surface) in mesh.corner_parameters.iter_mut().zip(&mesh.surfaces) {
             let Some(surface) = surfaces.get(*surface as usize).and_then(Option::as_ref) else { continue };
             let [low, high] = surface.domain();
@@ -172,7 +173,7 @@ mod tests {
         body.solid(Tolerance::new(2e-3, 30.0)).unwrap().transformed(&placement).unwrap()
     }
 
-    /// Which surfaces the result has, and how far its normals are from closed forms.
+    /// The surfaces that the result has, and how far its normals are from closed forms.
     fn check(solid: &ExactSolid, closed_forms: &[(u32, &dyn Fn(DVec3) -> DVec3)]) {
         let mesh = solid.solid().mesh();
         let mut seen = vec![0; closed_forms.len()];

@@ -6,7 +6,7 @@ use glam::DVec3;
 use robust::{Coord3D, orient3d};
 use std::collections::HashMap;
 
-/// Why solids cannot be glued.
+/// A fault that keeps solids from being glued.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GlueError {
     /// No face of one lies on a face of the other.
@@ -29,7 +29,7 @@ type Side = [[u64; 3]; 2];
 impl ExactSolid {
     /// Both solids in one, without the faces that they have in common. Nothing is divided and no point is made.
     ///
-    /// A face is what lies in one plane and hangs together; two are the same if their borders are.
+    /// A face is what lies in one plane and is connected; two are the same if their borders are.
     ///
     /// # Errors
     /// [`GlueError`] if there are no such faces or the solids overlap.

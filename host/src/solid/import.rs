@@ -1,4 +1,4 @@
-//! From meshes to solids: what must hold is checked, what does no harm is put right.
+//! From meshes to solids: what must hold is checked, what does no harm is repaired.
 
 use super::boolean::{Lattice, Resolution, resolve};
 use super::cleaning::{check_edges, dissolve, without_collapsed};
@@ -11,15 +11,15 @@ impl Solid {
     /// Takes a mesh; vertices at the same place become one, and triangles without an area are dissolved.
     ///
     /// # Errors
-    /// [`SolidError`], which names the places, if the mesh is not closed, is not consistently oriented, faces inwards, or
-    /// crosses itself.
+    /// [`SolidError`], which names the places, if the mesh is not closed, is not consistently oriented, faces inwards,
+    /// or crosses itself.
     pub fn new(mesh: Mesh) -> Result<Solid, SolidError> {
         let (solid, crossing) = Solid::resolved(mesh)?;
         crossing.map_or(Ok(solid), Err)
     }
 
-    /// Takes a mesh whose surface may cross itself: the solid is all that it winds around more than not at all. Gives the
-    /// error too that [`Solid::new`] would have given.
+    /// Takes a mesh whose surface may cross itself: the solid is all points where its winding number is positive. Gives
+    /// the error too that [`Solid::new`] would have given.
     ///
     /// # Errors
     /// [`SolidError`] as for [`Solid::new`], but for crossings.
@@ -77,7 +77,7 @@ pub fn imported_on_lattice(mesh: Mesh) -> Result<(Solid, Option<SolidError>), So
     Ok((if is_same { solid } else { Solid::of(outcome.mesh) }, crossing))
 }
 
-/// The error of a solid of which bodies face inwards, if some do.
+/// The error of a solid of which shells face inwards, if some do.
 fn inside_out(solid: &Solid) -> Option<SolidError> {
     let mesh = solid.mesh();
     let bodies = Shells::of(mesh);

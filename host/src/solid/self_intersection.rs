@@ -1,13 +1,13 @@
-//! Surfaces that cross themselves so often that putting them right would take no one knows how long.
+//! Surfaces that cross themselves so often that to repair them would take no one knows how long.
 
 use super::SolidError;
 use super::boolean::overlapping_up_to;
 use crate::mesh::Mesh;
 use crate::octree::TriangleBvh;
 
-/// Most places where three triangles cross each other. Putting a surface right takes about 50 us for each, and 1 kB.
+/// Most places where three triangles cross each other. Repairing a surface takes about 50 us for each, and 1 kB.
 const MOST_TRIPLES: usize = 1_000_000;
-/// Most pairs of triangles that cross. Putting a surface right takes about 100 us for each, and 2 kB.
+/// Most pairs of triangles that cross. Repairing a surface takes about 100 us for each, and 2 kB.
 const MOST_PAIRS: usize = 500_000;
 
 /// Pairs of triangles of a mesh, the lower first, that have more in common than corners and the edges between.

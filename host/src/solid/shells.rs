@@ -1,4 +1,4 @@
-//! Bodies of a closed surface, and those of them that face inwards beside others.
+//! Shells of a closed surface, and those of them that face inwards beside others.
 
 use super::boolean::passes;
 use super::union_find::UnionFind;
@@ -15,24 +15,25 @@ const NEAR: f64 = 1e-9;
 /// Triangles at an edge lie on each other if their angles differ by less, radians.
 const SAME_ANGLE: f64 = 1e-9;
 
-/// The bodies of a closed surface: triangles that hang together by edges. Where more than two share an edge, those belong
-/// together that have the inside of one body between them.
+/// The shells of a closed surface: triangles that are connected by edges. Where more than two share an edge, those
+/// belong together that have the inside of one shell between them.
 pub(super) struct Shells {
-    /// The body of each triangle.
+    /// The shell of each triangle.
     of: Vec<u32>,
-    /// The triangles of each body.
+    /// The triangles of each shell.
     triangles: Vec<Vec<u32>>,
     /// Volume of each, cubic units; its sign is that of the true one.
     volumes: Vec<f64>,
 }
 
 impl Shells {
-    /// The bodies of a mesh in which all edges are run through both ways alike, so that each body has a volume.
+    /// The shells of a mesh in which all edges are traversed both ways alike, so that each shell has a volume.
     ///
     /// Cost: n log n.
     pub(super) fn of(mesh: &Mesh) -> Shells {
         let mut joined = UnionFind::new(mesh.triangles.len());
-        // An edge as one number, from its lower vertex to its higher, and the triangle and corner that are opposite to it.
+        // An edge as one number, from its lower vertex to its higher, and the triangle and corner that are opposite to
+        // it.
         let mut sides: Vec<(u64, u32, u32)> = Vec::with_capacity(3 * mesh.triangles.len());
         for (t, triangle) in mesh.triangles.iter().zip(0..) {
             for k in 0..3 {
@@ -65,27 +66,28 @@ impl Shells {
         Shells { of, triangles, volumes }
     }
 
-    /// Number of bodies.
+    /// Number of shells.
     pub(super) fn count(&self) -> usize {
         self.triangles.len()
     }
 
-    /// The triangles of a body.
+    /// The triangles of a shell.
     pub(super) fn triangles(&self, body: usize) -> &[u32] {
         &self.triangles[body]
     }
 
-    /// The volume of a body, cubic units, negative if it faces inwards.
+    /// The volume of a shell, cubic units, negative if it faces inwards.
     pub(super) fn volume(&self, body: usize) -> f64 {
         self.volumes[body]
     }
 
-    /// The bodies that face inwards and lie in no other: all but the walls of cavities. Bodies are judged from the outer to
-    /// the inner, each as if those around it had been turned already.
+    /// The shells that face inwards and lie in no other: all but the walls of cavities. Shells are tested from the
+    /// outer to the inner, each as if those around it had been reversed already.
     ///
-    /// A body is a cavity if others wind around a corner or middle of one of its triangles that is not near their surface.
+    /// A shell is the wall of a cavity if others wind around a corner or middle of one of its triangles that is not
+    /// near their surface.
     ///
-    /// Cost: a ray for each triangle of the bodies that face inwards.
+    /// Cost: a ray for each triangle of the shells that face inwards.
     pub(super) fn inside_out(&self, mesh: &Mesh, sorted: &TriangleBvh) -> Vec<usize> {
         if !self.volumes.iter().any(|volume| *volume < 0.0) {
             return Vec::new();
@@ -97,7 +99,7 @@ impl Shells {
         };
         let mut order: Vec<(f64, usize)> = (0..self.count()).map(|body| (extent(body), body)).collect();
         order.sort_by(|one, two| two.0.total_cmp(&one.0).then(one.1.cmp(&two.1)));
-        // How each body counts: as it is, turned, or not yet.
+        // How each shell counts: as it is, reversed, or not yet.
         let mut signs = vec![0; self.count()];
         let mut inside_out = Vec::new();
         for (_, body) in order {
@@ -119,7 +121,7 @@ impl Shells {
         inside_out
     }
 
-    /// How often the other bodies that count wind around a point; `None` near one of them.
+    /// The winding number at a point of the other shells that count; `None` near one of them.
     fn winding_of_others(
         &self,
         mesh: &Mesh,
@@ -145,11 +147,11 @@ impl Shells {
     }
 }
 
-/// Joins triangles at an edge in pairs that bound the same body there.
+/// Joins triangles at an edge in pairs that bound the same shell there.
 ///
-/// Counter-clockwise around an edge, the inside of a body begins at a triangle that runs back along the edge, and ends at
-/// one that runs forth: they are matched as brackets are. Of those that lie on each other, the one is taken that is joined
-/// already.
+/// Counter-clockwise around an edge, the inside of a shell begins at a triangle that runs back along the edge, and ends
+/// at one that runs forth: they are matched as brackets are. Of those that lie on each other, the one is taken that is
+/// joined already.
 fn join_around(mesh: &Mesh, around: &[(u64, u32, u32)], joined: &mut UnionFind) {
     let Some(&(edge, first, opposite)) = around.first() else { return };
     let ends = [(edge >> 32) as u32, edge as u32];
@@ -191,7 +193,7 @@ fn join_around(mesh: &Mesh, around: &[(u64, u32, u32)], joined: &mut UnionFind) 
     }
 }
 
-/// A triangle at an edge.
+/// A triangle at an edge, to be sorted radially around it.
 #[derive(Clone, Copy)]
 struct RadialTriangle {
     /// Around the edge from the first triangle, radians.
@@ -201,8 +203,8 @@ struct RadialTriangle {
     triangle: u32,
 }
 
-/// The volume inside some triangles of a mesh that make a closed surface, cubic units. Its sign is that of the true one,
-/// however thin that is.
+/// The volume inside some triangles of a mesh that make a closed surface, cubic units. Its sign is that of the true
+/// one, however thin that is.
 pub fn certain_volume(mesh: &Mesh, triangles: impl Iterator<Item = usize> + Clone) -> f64 {
     let bounds = Bounds::of(triangles.clone().flat_map(|triangle| mesh.corners(triangle)));
     let (center, mut count) = (bounds.center(), 0);

@@ -23,7 +23,7 @@ fn moved(mesh: &Mesh, by: DAffine3) -> Mesh {
     mesh
 }
 
-/// Whether each edge is run through as often one way as the other.
+/// Whether each edge is traversed as often one way as the other.
 fn balanced(mesh: &Mesh) -> bool {
     let mut edges = std::collections::HashMap::new();
     for t in &mesh.triangles {
@@ -305,7 +305,7 @@ fn what_is_buried_is_not_missed() {
 fn results_serve_as_operands() {
     let mut random = rand_pcg::Pcg64Mcg::seed_from_u64(32);
     for round in 0..14 {
-        // Cubes that nearly coincide, turned by little or by much.
+        // Cubes that nearly coincide, rotated by little or by much.
         let power = [-12.0, -15.0, -9.0, -14.0, -6.0, -1.0, -15.5][round % 7];
         let mut turned = || {
             let mut number = || random.random_range(-1.0..1.0);

@@ -97,7 +97,7 @@ struct Patch {
     points: Vec<Point>,
     /// The sides from each limit point to the next.
     sides: Vec<u32>,
-    /// Which of the first patches it is a part of.
+    /// The one of the first patches that it is a part of.
     whole: u32,
 }
 
@@ -398,8 +398,8 @@ impl Surface {
         self.push_between(far, (middle, normal, uv), to, outline);
     }
 
-    /// Makes an outline ready for triangles from its first point: the better diagonal of four points, else a new point in
-    /// the middle of the patch.
+    /// Makes an outline ready for triangles from its first point: the better diagonal of four points, else a new point
+    /// in the middle of the patch.
     fn lead(&mut self, patch: &Patch, outline: &mut Vec<Point>) {
         let (_, center) = middles(patch);
         let at = |k: usize| self.vertices[outline[k].0 as usize].point;

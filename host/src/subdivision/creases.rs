@@ -15,7 +15,7 @@ pub(super) struct Creases<'a> {
     /// other; where a vertex has no crease, all corners around it.
     sectors: Vec<Sector>,
     ring: Vec<u32>,
-    /// For each vertex how much it is held: 1 where the surface has a corner.
+    /// For each vertex how much it is pinned: 1 where the surface has a corner.
     pub vertex_pinning: Vec<f64>,
     /// The corners of faces that alone fill the angle of a crease: the face is cut there along the crease.
     pub cut: Vec<bool>,
@@ -79,10 +79,10 @@ impl<'a> Creases<'a> {
         }
     }
 
-    /// Where three creases meet, and where a border has one face only, the surface has a corner. Where one face fills the
-    /// angle of a crease, it is cut, unless the other side has one face, too.
+    /// Where three creases meet, and where a border has one face only, the surface has a corner. Where one face fills
+    /// the angle of a crease, it is cut, unless the other side has one face, too.
     fn pin_corners(&mut self) {
-        // How much the three sharpest edges at each vertex hold, the third first.
+        // How much the three sharpest edges at each vertex pin, the third first.
         let mut sharpest = vec![[0.0_f64; 3]; self.mesh.points.len()];
         for side in 0..self.mesh.corners.len() as u32 {
             let hold = pinning(self.mesh.sharpness(side));
@@ -113,7 +113,7 @@ impl<'a> Creases<'a> {
         }
     }
 
-    /// How a corner of a face is held.
+    /// The pinning of a corner of a face.
     pub fn pinning_of(&self, corner: u32) -> Pinning {
         let next = self.mesh.next[corner as usize];
         let last = self.last[corner as usize];
@@ -136,7 +136,7 @@ impl<'a> Creases<'a> {
         })
     }
 
-    /// Joins the corners that coincide after this step: across creases, and around held vertices.
+    /// Joins the corners that coincide after this step: across creases, and around pinned vertices.
     pub fn join(&self, joined: &mut CornerSets) {
         for side in 0..self.mesh.corners.len() as u32 {
             let twin = self.mesh.twins[side as usize];
@@ -210,7 +210,7 @@ impl<'a> Creases<'a> {
         }
     }
 
-    /// What becomes of the creases: their ends as old corners, and their sharpness.
+    /// The child creases: their ends as old corners, and their sharpness.
     pub fn child_creases(&self) -> Vec<([u32; 2], f64)> {
         let mut heirs = Vec::new();
         for side in 0..self.mesh.corners.len() as u32 {

@@ -1,6 +1,6 @@
 //! What can be wrong with a polyhedron, and where.
 
-/// Why a polyhedron cannot be made.
+/// A fault that keeps a polyhedron from being made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SubdivisionError {
     /// A position is not finite, or so far out that its square would not be.

@@ -1,8 +1,8 @@
 //! The limit surface: where the faces shrink to, and its normals there.
 //!
 //! In every step a smooth face shrinks towards its centroid, which stays where it is: it is a point of the limit
-//! surface. A face at a crease or a border shrinks towards the middle of that side, a face at a sharp vertex towards the
-//! vertex. So the limit points are the vertices of a mesh with a face for each vertex of the polyhedron.
+//! surface. A face at a crease or a border shrinks towards the middle of that side, a face at a sharp vertex towards
+//! the vertex. So the limit points are the vertices of a mesh with a face for each vertex of the polyhedron.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -13,7 +13,7 @@ use super::rings::{Rings, by_face};
 use super::weights::{Pinning, held, step, waves};
 use crate::mesh::Mesh;
 
-/// So many steps bring the corners of a face that is held in several places to the limit within rounding.
+/// So many steps bring the corners of a face that is pinned in several places to the limit within rounding.
 const PINNED_STEPS: usize = 80;
 
 /// A limit point and a vector along the surface normal there.
@@ -134,7 +134,7 @@ impl Limits {
 pub(super) struct SharpRim {
     /// Whether the side behind each corner is a crease or a border.
     pub creases: Vec<bool>,
-    /// Whether each corner is held.
+    /// Whether each corner is pinned.
     pub pinned: Vec<bool>,
 }
 

@@ -1,4 +1,4 @@
-//! Which corners lie around each vertex.
+//! Rings: the corners that lie around each vertex.
 
 use rayon::prelude::*;
 

@@ -9,7 +9,7 @@ use super::error::SubdivisionError;
 use super::face_cuts;
 use super::polyhedron::Polyhedron;
 
-/// A step of sharp rules: cuts corners and grinds edges except where they are sharp, and leaves strips at both sides of
+/// A step of sharp rules: cuts corners and edges except where they are sharp, and leaves strips at both sides of
 /// creases, which it uses up by one.
 ///
 /// # Errors
@@ -21,7 +21,7 @@ pub(super) fn refined(mesh: &Polyhedron) -> Result<Polyhedron, SubdivisionError>
     Ok(refined)
 }
 
-/// Cuts corners and grinds edges, except where they are sharp. Creases keep their sharpness.
+/// Cuts corners and edges, except where they are sharp. Creases keep their sharpness.
 fn ground(mesh: &Polyhedron) -> Result<Polyhedron, SubdivisionError> {
     let creases = Creases::of(mesh);
     let mut joined = CornerSets::new(mesh.corners.len());

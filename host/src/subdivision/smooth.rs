@@ -7,11 +7,11 @@ use super::polyhedron::Polyhedron;
 use super::rings::{Rings, by_face, edges, fill};
 use super::weights::step;
 
-/// Cuts all corners and grinds all edges.
+/// Cuts all corners and edges.
 ///
 /// Corner h becomes vertex h. The new corners come in three parts: those of the faces within the old ones, in their
-/// order; four for each edge; and those of a face for each vertex. All sides and their twins follow by counting, so that
-/// nothing is searched.
+/// order; four for each edge; and those of a face for each vertex. All sides and their twins follow by counting, so
+/// that nothing is searched.
 pub(super) fn refined(mesh: &Polyhedron) -> Polyhedron {
     let count = mesh.corners.len() as u32;
     let rings = Rings::of(mesh);

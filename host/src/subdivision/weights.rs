@@ -4,15 +4,15 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-/// How much a sharpness below 1 holds what would be cut: half as much as is cut elsewhere as it comes near 1, where a step
-/// of sharp rules gives the same. From 1 on, all is held.
+/// How much a sharpness below 1 pins what would be cut: half as much as is cut elsewhere as it comes near 1, where a
+/// step of sharp rules gives the same. From 1 on, all is pinned.
 pub(super) fn pinning(sharpness: f64) -> f64 {
     if sharpness >= 1.0 { 1.0 } else { 1.0 - (-sharpness).exp2() }
 }
 
-/// How far a corner gives way, one after each side of it; zero everywhere on smooth faces.
+/// How far a corner and its neighbours are pinned along the sides between them; zero everywhere on smooth faces.
 ///
-/// A value of 1 at the beginning or end of a side holds that end: the curve along the side begins there, as a B-spline
+/// A value of 1 at the beginning or end of a side pins that end: the curve along the side begins there, as a B-spline
 /// with a double knot at its end does.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Pinning {
@@ -30,18 +30,18 @@ impl Pinning {
     /// Nowhere.
     pub const NOT: Pinning = Pinning { here_forward: 0.0, there_forward: 0.0, here_backward: 0.0, there_backward: 0.0 };
 
-    /// How a corner is held by the sides and corners around it.
+    /// How a corner is pinned by the sides and corners around it.
     ///
-    /// Along a side, an end is held by the other side of the face there. Along a crease only the vertex holds, so that
+    /// Along a side, an end is pinned by the other side of the face there. Along a crease only the vertex pins, so that
     /// the faces at both sides agree.
     ///
-    /// - `sides`: sharpness of the second side before the corner, of the one before it, of the one behind it, and of the
-    ///   next.
-    /// - `vertices`: how much the corner before, this one and the next one are held.
+    /// - `sides`: sharpness of the second side before the corner, of the one before it, of the one behind it, and of
+    ///   the next.
+    /// - `vertices`: how much the corner before, this one and the next one are pinned.
     pub fn by(sides: [f64; 4], vertices: [f64; 3]) -> Pinning {
         let [before_last, last, here, next] = sides;
         let along = |side: f64, vertex: f64, other: f64| {
-            // Between two sides that are nearly creases the corner is nearly cut: half as much is held.
+            // Between two sides that are nearly creases the corner is nearly cut: half as much is pinned.
             if side >= 1.0 { vertex } else { vertex.max(pinning(other) * (1.0 - 0.5 * side)) }
         };
         Pinning {
@@ -100,10 +100,10 @@ pub(super) fn waves(corners: &[DVec3]) -> [DVec3; 2] {
     }
 }
 
-/// The new position of corner `index` of a face that is held at some of its sides.
+/// The new position of corner `index` of a face that is pinned at some of its sides.
 ///
 /// On a face of four corners this is the product of two rules for curves; on others it is its like with the centroid,
-/// and goes over into the smooth rule as nothing is held. All weights are positive and their sum is 1.
+/// and goes over into the smooth rule as nothing is pinned. All weights are positive and their sum is 1.
 ///
 /// - `smooth`: the new position by [`step`].
 pub(super) fn held(corners: &[DVec3], index: usize, held: Pinning, smooth: DVec3) -> DVec3 {
@@ -111,7 +111,7 @@ pub(super) fn held(corners: &[DVec3], index: usize, held: Pinning, smooth: DVec3
         return smooth;
     }
     let count = corners.len();
-    // What is held more gets what the other end loses.
+    // What is pinned more gets what the other end loses.
     let fraction = |here: f64, there: f64| (1.0 - here) * (1.0 + (there - here).max(0.0)) * 0.25;
     let forward = fraction(held.here_forward, held.there_forward);
     let backward = fraction(held.here_backward, held.there_backward);

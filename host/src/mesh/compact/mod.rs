@@ -4,8 +4,9 @@
 //! The triangles are taken in the order of a growing region. Its border is a set of loops; each step attaches the
 //! triangle outside one border edge, the *gate* a-b, whose third vertex is new (`0`), the next border vertex after b
 //! (`10`), the last before a (`110`), another vertex of the same loop (`1110` and the number of steps to it), or closes
-//! the loop (`1111`). A new vertex is predicted at a + b - c, with c the vertex behind the gate; the three differences
-//! are written as Golomb-Rice numbers whose parameter follows their mean. All positions are integers of 16 bits.
+//! the loop (`1111`). A new vertex is predicted at a + b - c, with c the apex, the vertex behind the gate; the three
+//! differences are written as Golomb-Rice numbers whose parameter follows their mean. All positions are integers of 16
+//! bits.
 //!
 //! Not modelled: boundaries, handles (tori), normals and parameters; the order of vertices and triangles is not kept.
 //!
@@ -156,7 +157,8 @@ pub(super) fn print(mesh: &Mesh) -> Result<Vec<u8>, Fault> {
     }
     let bounds = mesh.bounds().ok_or_else(|| unsuited("the mesh is empty"))?;
     let step = bounds.size().max_element() / STEPS;
-    // The step of a mesh that is smaller than the least normal number is rounded so much that the far side lies beyond it.
+    // The step of a mesh that is smaller than the least normal number is rounded so much that the far side lies beyond
+    // it.
     let far = I64Vec3::splat(STEPS as i64);
     let quantised = |p: &DVec3| ((*p - bounds.min) / step).round().as_i64vec3().clamp(I64Vec3::ZERO, far);
     let positions = mesh.vertices.iter().map(quantised).collect();

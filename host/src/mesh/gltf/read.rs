@@ -269,7 +269,7 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// What a material looks like, textures left out; none if it does not say.
+/// The metallic-roughness material of a file, textures left out; none if it does not say.
 fn material_of(material: LocatedValue<'_>) -> Result<Option<MetallicRoughness>, Fault> {
     let Some(at) = material.get("pbrMetallicRoughness") else { return Ok(None) };
     let factor = |key| Ok::<f64, Fault>(at.number(key)?.unwrap_or(1.0).clamp(0.0, 1.0));

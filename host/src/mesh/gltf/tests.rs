@@ -126,7 +126,7 @@ fn sparse_tables_and_placed_nodes_are_read() {
         found.iter().zip(expected).all(|(a, b)| a.distance(DVec3::from_array(b)) < 1e-14)
     };
     assert!(near(mesh.corners(0), [[2.0, 0.0, 0.0], [2.0, 6.0, 0.0], [0.0, 0.0, 0.0]]), "{:?}", mesh.corners(0));
-    // Mirrored: turned round, so that the outside stays outside.
+    // Mirrored: reversed, so that the outside stays outside.
     assert!(near(mesh.corners(1), [[0.0, 0.0, 10.0], [0.0, 2.0, 10.0], [-6.0, 0.0, 10.0]]), "{:?}", mesh.corners(1));
     assert_eq!(mesh.surfaces, [0, 1]);
 }

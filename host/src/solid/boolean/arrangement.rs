@@ -40,7 +40,7 @@ pub struct Segment {
     ends: [u32; 2],
 }
 
-/// What lies in a face that something touches.
+/// The arrangement in a face that something touches: what lies in it.
 #[derive(Clone, Debug, Default)]
 pub struct FaceArrangement {
     /// Points inside it.
@@ -74,17 +74,17 @@ pub struct Counts {
     pub parts: u64,
     /// Rays that were sent to classify them.
     pub rays: u64,
-    /// If rounding made the result cross itself: the attempt that made it simple again, the first as 1.
+    /// If rounding made the result cross itself: the attempt that freed it of self-intersections, the first as 1.
     pub repair_attempt: u64,
 }
 
-/// The points, carriers and contents of the faces near other operands.
+/// The points, carriers and face arrangements of the faces near other operands.
 pub struct Arrangement {
-    /// Faces that may touch others. Their names are their places here.
+    /// Faces that may touch others. Their names are their indices here.
     pub faces: Vec<ConvexFace>,
     /// The lower triangle, counted over all operands, of each face.
     pub triangles: Vec<u32>,
-    /// Contents of each face.
+    /// The face arrangement of each face.
     pub face_arrangements: Vec<FaceArrangement>,
     /// The points; several may be one, see [`Arrangement::point`].
     pub points: Vec<ImplicitPoint>,
@@ -92,7 +92,7 @@ pub struct Arrangement {
     pub vertices: Vec<Option<u32>>,
     /// Whether something of another operand passes through the point.
     pub on_other: Vec<bool>,
-    /// Faces that overlap in one plane, joined.
+    /// Coplanar groups: faces that overlap in one plane, joined.
     pub coplanar_groups: UnionFind,
     /// For each triangle, counted over all operands, whether it may matter.
     pub is_relevant: Vec<bool>,
@@ -416,7 +416,8 @@ impl Arrangement {
         }
     }
 
-    /// The turn from a segment to a point, seen along an axis, by [`turn`]; 0 for a point that is known to be an end of it.
+    /// The turn from a segment to a point, seen along an axis, by [`turn`]; 0 for a point that is known to be an end of
+    /// it.
     fn turn(&self, axis: usize, segment: &Segment, point: u32) -> f64 {
         let [from, to, same] = [segment.ends[0], segment.ends[1], point].map(|p| self.same.root(p));
         if same == from || same == to {

@@ -1,8 +1,8 @@
 //! Triangles that lie so deep in other operands that they need not even be compared with others.
 //!
-//! In a union of many solids most of the surface of each lies deep inside others. A triangle in the [`InteriorGrid`] of operands
-//! is known to lie in these; where the expression then no longer depends on its own operand, it is buried. What would
-//! cross it draws no line that matters: on both sides of that the result is the same.
+//! In a union of many solids most of the surface of each lies deep inside others. A triangle in the [`InteriorGrid`] of
+//! operands is known to lie in these; where the expression then no longer depends on its own operand, it is buried.
+//! What would cross it draws no line that matters: on both sides of that the result is the same.
 
 use super::interior_grid::InteriorGrid;
 use super::operand::Operands;
@@ -16,7 +16,7 @@ use rayon::prelude::*;
 pub struct BuriedTriangles {
     /// For each triangle, counted over all operands; empty if none is.
     is_buried: Vec<bool>,
-    /// Of each operand with buried triangles, the others by place; empty if there is none.
+    /// Of each operand with buried triangles, the others by location; empty if there is none.
     visible: Vec<Option<TriangleBvh>>,
     /// Of each operand, its cells, those marked that its buried triangles touch.
     interiors: Vec<Option<InteriorGrid>>,
@@ -25,7 +25,7 @@ pub struct BuriedTriangles {
 impl BuriedTriangles {
     /// Finds buried triangles. With two operands there are none.
     ///
-    /// - `standing`: of a point outside all operands.
+    /// - `evaluation`: of the expression at a point outside all operands.
     pub fn of(operands: &Operands, evaluation: &PartialEvaluation) -> BuriedTriangles {
         let count = operands.meshes().len() as u32;
         if count < 3 {
@@ -65,7 +65,7 @@ impl BuriedTriangles {
         self.is_buried.get(triangle as usize).is_some_and(|is_buried| *is_buried)
     }
 
-    /// The triangles of an operand that are not buried, by place.
+    /// The triangles of an operand that are not buried, by location.
     pub fn visible<'a>(&'a self, operands: &'a Operands, operand: u32) -> &'a TriangleBvh {
         let visible = self.visible.get(operand as usize).and_then(|visible| visible.as_ref());
         visible.unwrap_or_else(|| operands.sorted(operand))

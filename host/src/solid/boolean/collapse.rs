@@ -1,16 +1,16 @@
-//! Edge collapses within a few roundings.
+//! Edge collapses within a few units in the last place.
 //!
 //! A point of a result that bounds nothing but for roundings is moved onto a neighbour, which takes two triangles away:
-//! one on the line that divides a flat side of which the corners are rounded, or one a rounding beside another. All faces
-//! that meet in it pass through the neighbour too, but for a few units in the last place; and no triangle that is changed
-//! has more in common with others than before, nor is there anything between the old surface and the new one. That is
-//! looked at exactly. Corners of triangles that stayed whole stay.
+//! one on the line that divides a flat side of which the corners are rounded, or one a rounding beside another. All
+//! faces that meet in it pass through the neighbour too, but for a few units in the last place; and no triangle that is
+//! changed has more in common with others than before, nor is there anything between the old surface and the new one.
+//! That is looked at exactly. Corners of triangles that stayed whole stay.
 //!
 //! # Source
 //! Hoppe 1996 for the collapse of edges.
 //!
 //! # Cost
-//! n log n in the triangles that were made by the operation, of which most only show that they are needed; and what the
+//! n log n in the new triangles, of which most only show that they are needed; and what the
 //! search for pairs of triangles near each other costs for those that are changed, in each of a few rounds.
 
 use super::fan::{Collapse, CollapseCriteria};
@@ -45,7 +45,7 @@ pub fn all_new(operands: &Operands, outcome: &Outcome) -> NewTriangles {
     NewTriangles { first: 0, first_vertex: 0, is_free, whole: None }
 }
 
-/// Leaves out points of triangles that were made by the operation which no face needs.
+/// Leaves out points of new triangles that no face needs.
 pub fn collapse(operands: &Operands, outcome: &mut Outcome, new_triangles: &NewTriangles) {
     let mut work = Collapsing::new(operands, outcome, new_triangles);
     let mut open: Vec<u32> = work.candidates();
@@ -75,7 +75,7 @@ pub fn collapse(operands: &Operands, outcome: &mut Outcome, new_triangles: &NewT
     work.finish();
 }
 
-/// What became of a triangle that was made.
+/// What became of a new triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
     /// It is as it was.
@@ -93,7 +93,7 @@ struct Collapsing<'a> {
     new: &'a NewTriangles,
     /// The largest coordinate of the operands.
     largest: f64,
-    /// Triangles from the first that was made on; those that were changed before are not where it says.
+    /// Triangles from the first new one on; those that were changed before are not where it says.
     sorted: OnceLock<TriangleBvh>,
     /// What became of each of them.
     states: Vec<State>,
@@ -241,7 +241,7 @@ impl<'a> Collapsing<'a> {
         verdicts
     }
 
-    /// Pairs of some boxes and triangles that were made and are still as they were, near each other, that `keep` accepts.
+    /// Pairs of some boxes and new triangles that are still as they were, near each other, that `keep` accepts.
     fn near_still(&self, boxes: &TriangleBvh, keep: impl Fn(u32, u32) -> bool + Sync) -> Vec<[u32; 2]> {
         let first = self.new.first as u32;
         let mesh = &self.outcome.mesh;
@@ -366,8 +366,8 @@ impl New {
         [a.min(b).min(c).min(self.from), a.max(b).max(c).max(self.from)]
     }
 
-    /// Whether it has more in common with another triangle than corners and edges, lies on it, or has swept over a corner of
-    /// it.
+    /// Whether it has more in common with another triangle than corners and edges, is folded onto it, or has swept over
+    /// a corner of it.
     fn meets(&self, other: &NamedTriangle) -> bool {
         nearly_overlap(&self.tile, other, || other.with_plane())
             || (0..3).any(|k| self.sweeps_over(other.names[k], other.corners[k]))
@@ -440,8 +440,8 @@ mod tests {
         let mut random = Pcg64Mcg::seed_from_u64(1);
         for _ in 0..20 {
             let by = some_turn(&mut random);
-            // A corner in a corner: 7 corners of each, 1 and 1 inside the other, and 6 points where edges pierce faces. A
-            // surface like a sphere has twice as many triangles as points, less four.
+            // A corner in a corner: 7 corners of each, 1 and 1 inside the other, and 6 points where edges pierce faces.
+            // A surface like a sphere has twice as many triangles as points, less four.
             let corners = [cuboid([0.0; 3], [1.0; 3]), cuboid([0.4, 0.5, 0.6], [1.5, 1.6, 1.7])];
             assert_eq!(counts(&corners, by), [36, 24, 12, 48], "{by}");
             // A plate and a bar through it: 16 points of what is like a torus, and 24 of the union.

@@ -2,8 +2,8 @@
 //!
 //! A face is a triangle, or two in one plane that make a convex quadrilateral.
 //!
-//! Every common point is named by the features of lowest dimension that it lies on: a vertex, two edges, or an edge and a
-//! face. The same point found from a neighbouring triangle has the same name, which is how neighbours agree.
+//! Every common point is named by the features of lowest dimension that it lies on: a vertex, two edges, or an edge and
+//! a face. The same point found from a neighbouring triangle has the same name, which is how neighbours agree.
 
 use crate::numeric::implicit::{others, projection, side};
 use crate::numeric::plane::Plane;
@@ -100,7 +100,7 @@ impl ConvexFace {
         if a < b { [a, b] } else { [b, a] }
     }
 
-    /// Which way its corners turn, seen along an axis.
+    /// The way in which its corners turn, seen along an axis.
     pub fn orientation_along(&self, axis: usize) -> f64 {
         let [a, b, c] = self.plane();
         planar_orientation(axis, a, b, c)
@@ -294,7 +294,7 @@ pub fn crossing(one: EdgeKey, two: EdgeKey) -> PointKey {
     if one < two { PointKey::Edges(one, two) } else { PointKey::Edges(two, one) }
 }
 
-/// Which way three given points turn, seen along an axis.
+/// The way in which three given points turn, seen along an axis.
 pub fn planar_orientation(axis: usize, a: DVec3, b: DVec3, c: DVec3) -> f64 {
     let [x, y] = others(axis);
     let coord = |p: DVec3| Coord { x: p[x], y: p[y] };

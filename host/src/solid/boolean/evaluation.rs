@@ -1,4 +1,5 @@
-//! Evaluates expressions: on a lattice where that must be, made simple again where rounding made the result cross itself.
+//! Evaluates expressions: on a lattice where that must be, freed of self-intersections where rounding made the result
+//! cross itself.
 
 use super::collapse::{all_new, collapse};
 use super::expression::Expression;

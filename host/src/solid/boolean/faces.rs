@@ -41,7 +41,7 @@ pub struct CandidateFaces {
     of_triangle: Vec<u32>,
     /// Where the vertices are, by name.
     pub positions: FxHashMap<u32, DVec3>,
-    /// The names by place.
+    /// The names by location.
     first_at: FxHashMap<[u64; 3], u32>,
     /// Names that several vertices share.
     pub ambiguous: FxHashSet<u32>,

@@ -12,7 +12,8 @@ use rustc_hash::{FxHashMap, FxHashSet};
 pub struct Facet {
     /// Points, in the order of the first face that it belongs to.
     pub corners: [u32; 3],
-    /// The face that it is part of, that of the lowest operand if there are several, so that neighbours are turned alike.
+    /// The face that it is part of, that of the lowest operand if there are several, so that neighbours are oriented
+    /// alike.
     pub face: u32,
     /// Others that it is part of.
     pub others: Vec<Covering>,
@@ -200,7 +201,7 @@ pub struct PlanarRegion<'a> {
 }
 
 impl PlanarRegion<'_> {
-    /// Triangles that cover it, turned as the face.
+    /// Triangles that cover it, oriented as the face.
     pub fn triangles(&self, arrangement: &Arrangement) -> Vec<[u32; 3]> {
         let face = &arrangement.faces[self.face as usize];
         let places = self.points.iter().map(|&p| arrangement.points[p as usize].near());

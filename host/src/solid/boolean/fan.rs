@@ -31,8 +31,8 @@ struct FanTriangle {
     is_border: bool,
 }
 
-/// All triangles around a vertex: disks, each counter-clockwise from outside, in which each triangle has an edge in common
-/// with the next.
+/// All triangles around a vertex: disks, each counter-clockwise from outside, in which each triangle has an edge in
+/// common with the next.
 #[derive(Clone, Debug)]
 pub struct Fan {
     vertex: u32,
@@ -61,7 +61,7 @@ pub struct Collapse {
     pub like: Vec<Option<u32>>,
 }
 
-/// What fans are judged by.
+/// The criteria of collapses.
 #[derive(Clone, Copy)]
 pub struct CollapseCriteria<'a> {
     /// The operands.
@@ -172,8 +172,8 @@ impl CollapseCriteria<'_> {
         Some(Fan { vertex, disks })
     }
 
-    /// The angle from the triangle between a vertex, `second` and `third`, through what is behind it, to another one beyond
-    /// the side to `third`, with the corner `other`; 0..2 pi.
+    /// The angle from the triangle between a vertex, `second` and `third`, through what is behind it, to another one
+    /// beyond the side to `third`, with the corner `other`; 0..2 pi.
     fn angle(&self, vertex: u32, second: u32, third: u32, other: u32) -> f64 {
         let [from, axis, to] = [second, third, other].map(|end| self.at(end) - self.at(vertex));
         let inward = axis.cross(from);
@@ -243,7 +243,8 @@ impl CollapseCriteria<'_> {
             })
     }
 
-    /// What roundings of corners may make of the parameters in a triangle: much where it is part of a long and thin one.
+    /// What roundings of corners may make of the parameters in a triangle: much where it is part of a long and thin
+    /// one.
     fn parameter_error(&self, triangle: usize) -> f64 {
         let [operand, source] = self.outcome.sources[triangle];
         let corners = self.source(triangle as u32);
@@ -273,8 +274,8 @@ impl CollapseCriteria<'_> {
         }
     }
 
-    /// The sine of the angle between the faces that two triangles are part of, by which the line in which they meet is known
-    /// worse than they are; 1 if it is so small that they count as one plane.
+    /// The sine of the angle between the faces that two triangles are part of, by which the line in which they meet is
+    /// known worse than they are; 1 if it is so small that they count as one plane.
     fn sine(&self, triangles: [u32; 2]) -> f64 {
         let [one, two] = triangles.map(|triangle| {
             let [a, b, c] = self.source(triangle);
@@ -284,8 +285,8 @@ impl CollapseCriteria<'_> {
         if sine < LEAST_SINE { 1.0 } else { sine }
     }
 
-    /// The vertex moved onto a neighbour, and how well shaped the worst triangle then is; `None` if one is turned over or
-    /// a border is moved.
+    /// The vertex moved onto a neighbour, and how well shaped the worst triangle then is; `None` if one is turned over
+    /// or a border is moved.
     fn onto(&self, fan: &Fan, onto: u32, reach: f64) -> Option<(f64, Collapse)> {
         let is_short = self.at(fan.vertex).distance(self.at(onto)) <= reach;
         let mut worst = f64::INFINITY;
@@ -319,7 +320,8 @@ impl CollapseCriteria<'_> {
         Some((worst, Collapse { vertex: fan.vertex, onto, gone, stay, like }))
     }
 
-    /// How well shaped a triangle is with other corners; `None` if it has no area then, faces another way, or becomes thin.
+    /// How well shaped a triangle is with other corners; `None` if it has no area then, faces another way, or becomes
+    /// thin.
     ///
     /// - `is_short`: whether the vertex is moved by roundings only, for which what is thin may stay so.
     fn shape(&self, fan: &Fan, triangle: u32, corners: [u32; 3], is_short: bool) -> Option<f64> {
@@ -337,7 +339,7 @@ impl CollapseCriteria<'_> {
         (area.dot(normal) > 0.5 * area.length() * normal.length()).then_some(area.length() / longest)
     }
 
-    /// The normal of the face that a triangle is part of, as the triangle is turned, as far as that is known.
+    /// The normal of the face that a triangle is part of, as the triangle is oriented, as far as that is known.
     fn normal(&self, fan: &Fan, triangle: u32) -> Option<DVec3> {
         let [a, b, c] = self.source(triangle);
         let normal = (b - a).cross(c - a);

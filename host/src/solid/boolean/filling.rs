@@ -7,12 +7,12 @@ use crate::numeric::implicit::{ImplicitPoint, PointDefinition, others};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
-/// Triangles whose boundary is that of some loops, seen along an axis: where the loops wind around a place, as many times
-/// and in that direction. So a loop that turns the other way within another leaves a hole. `None` where sides of the loops,
-/// seen so, have more in common than the corners between them: then there are none without further points.
+/// Triangles whose boundary is that of some loops, seen along an axis: where the loops wind around a place, as many
+/// times and in that direction. So a loop that turns the other way within another leaves a hole. `None` where sides of
+/// the loops, seen so, have more in common than the corners between them: then there are none without further points.
 ///
 /// - `axis`: 0, 1 or 2, along which the loops are seen.
-/// - `loops`: closed loops of points, counted through `places`.
+/// - `loops`: closed loops of points, by their numbers in `places`.
 ///
 /// Cost: n log n, where few sides have others beside them.
 pub fn filled(axis: usize, places: &[DVec3], loops: &[&[u32]]) -> Option<Vec<[u32; 3]>> {
@@ -113,7 +113,7 @@ fn meet(axis: usize, places: &[DVec3], one: [u32; 2], two: [u32; 2]) -> bool {
     own[0] * own[1] <= 0.0 && other[0] * other[1] <= 0.0
 }
 
-/// How often loops wind around each triangle; `None` if they are not closed.
+/// The winding number of loops at each triangle; `None` if they are not closed.
 fn windings(triangulation: &IncrementalTriangulation, runs: &FxHashMap<(u32, u32), i32>) -> Option<Vec<i32>> {
     let mut windings: Vec<Option<i32>> = vec![None; triangulation.triangles.len()];
     // Nothing winds around a triangle with a corner that helps.

@@ -1,15 +1,15 @@
-//! Sides of triangles by the edges that they lie on.
+//! Half-edges: sides of triangles by the edges that they lie on.
 
-/// Sides, those on one edge beside each other.
+/// Half-edges, those on one edge beside each other.
 pub struct HalfEdges {
-    /// By lower end: the first of its sides.
+    /// By lower end: the first of its half-edges.
     firsts: Vec<u32>,
-    /// The upper end of each side, and what is beside it.
+    /// The upper end of each half-edge, and what is beside it.
     half_edges: Vec<(u32, u32)>,
 }
 
 impl HalfEdges {
-    /// Sorts sides by their ends and then by what is beside them.
+    /// Sorts half-edges by their ends and then by what is beside them.
     ///
     /// - `ends`: number of points that may be ends.
     /// - `sides`: two ends in either order, and a number of what is beside the side, which never falls.
@@ -46,7 +46,7 @@ impl HalfEdges {
     }
 }
 
-/// The sides of triangles that are counted from a number on.
+/// The half-edges of triangles that are counted from a number on.
 pub fn of_triangles(
     triangles: impl Iterator<Item = [u32; 3]> + Clone,
     first: u32,

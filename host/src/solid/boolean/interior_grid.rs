@@ -1,8 +1,9 @@
-//! The inside of an operand by cells: a first, coarse answer to where a triangle lies.
+//! Interior grids: cells that lie in an operand as a whole, for a first, coarse answer to where a triangle lies.
 //!
-//! A grid is laid over the operand. The boxes of its triangles mark the cells that its surface may pass. Cells that are not
-//! marked are filled from the border of the grid, through common sides, as far as outside reaches; what is left lies in
-//! the operand or in a hollow of it, and one ray from each connected part tells which. A row of cells is one word.
+//! A grid is laid over the operand. The boxes of its triangles mark the cells that its surface may pass. Cells that are
+//! not marked are filled from the border of the grid, through common sides, as far as outside reaches; what is left
+//! lies in the operand or in a hollow of it, and one ray from each connected part tells which. A row of cells is one
+//! word.
 
 use super::operand::Operands;
 use super::winding::winding;
@@ -62,7 +63,7 @@ impl Rows {
         Some([self.rows[row].trailing_zeros() as usize, row % self.size[1], row / self.size[1]])
     }
 
-    /// All cells of this that hang together with cells of `seeds` through common sides.
+    /// All cells of this that are connected with cells of `seeds` through common sides.
     fn flooded(&self, seeds: &Rows) -> Rows {
         let [_, width, height] = self.size;
         let mut wet = Rows::none(self.size);
@@ -112,7 +113,7 @@ fn along(bits: u64, free: u64) -> u64 {
     up | down
 }
 
-/// A grid over an operand.
+/// The interior grid of an operand.
 #[derive(Clone, Debug)]
 pub struct InteriorGrid {
     min: DVec3,

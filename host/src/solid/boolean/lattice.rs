@@ -1,13 +1,14 @@
 //! The numbers that an operation can be exact with, and the way there and back for those that it cannot.
 //!
-//! Predicates multiply three differences of coordinates. Where such products fall below the least number, nothing is exact
-//! any more: neighbours disagree, and what depends on them breaks. So the coordinates of all operands together are on a
-//! lattice: multiples of 2^-256 of the power of two above the largest of them, which is between 2^-100 and 2^100.
+//! Predicates multiply three differences of coordinates. Where such products fall below the least number, nothing is
+//! exact any more: neighbours disagree, and what depends on them breaks. So the coordinates of all operands together
+//! are on a lattice: multiples of 2^-256 of the power of two above the largest of them, which is between 2^-100 and
+//! 2^100.
 //!
 //! - Models that are larger or smaller are multiplied by a power of two first, and divided by it again.
-//! - Coordinates of at least 2^-203, or 8e-62, of the largest are on the lattice as they are. Those below it are rounded to
-//!   it, and a solid of which corners were rounded is made simple again: it stays closed and oriented, and what is thinner
-//!   than the lattice is gone.
+//! - Coordinates of at least 2^-203, or 8e-62, of the largest are on the lattice as they are. Those below it are
+//!   rounded to it, and a solid of which corners were rounded is freed of self-intersections: it stays closed and
+//!   oriented, and what is thinner than the lattice is gone.
 
 use crate::mesh::Mesh;
 use crate::solid::SolidError;

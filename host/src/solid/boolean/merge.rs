@@ -1,8 +1,8 @@
 //! Facets of one plane, joined again where the lines that divided them bound nothing.
 //!
-//! Facets of one operand that lie beside each other in one plane are a region. A point that was made by the operation and
-//! in which two regions of different planes meet, and no third, lies inside a straight edge; one with a single region
-//! around it lies inside that. Neither is needed. All neighbours see the same points, so all leave out the same.
+//! Facets of one operand that lie beside each other in one plane are a region. A point that was made by the operation
+//! and in which two regions of different planes meet, and no third, lies inside a straight edge; one with a single
+//! region around it lies inside that. Neither is needed. All neighbours see the same points, so all leave out the same.
 
 use super::arrangement::Arrangement;
 use super::facets::{Facet, PlanarRegion};
@@ -27,7 +27,7 @@ pub struct ResultTriangle {
     pub classification: FaceClassification,
 }
 
-/// The facets that stay, in as few pieces as their points and borders allow.
+/// The facets that stay, in as few result triangles as their points and borders allow.
 pub fn result_triangles(
     operands: &Operands,
     arrangement: &Arrangement,
@@ -66,9 +66,9 @@ fn result_triangle(facet: &Facet, classification: FaceClassification) -> Option<
     Some(ResultTriangle { corners, face, corner_faces: [face; 3], classification })
 }
 
-/// The pieces that belong together, and the points that are not needed.
+/// The result triangles that belong together, and the points that are not needed.
 struct MergePlan {
-    /// Pieces of one region.
+    /// Result triangles of one region.
     regions: UnionFind,
     needless: FxHashSet<u32>,
 }
@@ -102,7 +102,7 @@ impl MergePlan {
         }
         for (ends, beside) in sides.edges() {
             let is_inner = matches!(beside, [one, two] if regions.find(one.1) == regions.find(two.1));
-            // A border of one region with itself, or of several pieces, stays as it is.
+            // A border of one region with itself, or of several result triangles, stays as it is.
             let weight = if is_inner { 0 } else { if beside.len() == 2 { 1 } else { 3 } };
             for point in ends {
                 if let Some((.., borders)) = around.get_mut(&point) {
@@ -120,9 +120,9 @@ impl MergePlan {
         MergePlan { regions, needless }
     }
 
-    /// Adds the pieces of a region, made anew if a point is not needed.
+    /// Adds the result triangles of a region, made anew if a point is not needed.
     ///
-    /// - `members`: the old pieces, each after the number of the region.
+    /// - `members`: the old result triangles, each after the number of the region.
     fn merge(
         &self,
         arrangement: &Arrangement,
@@ -140,7 +140,7 @@ impl MergePlan {
         merged.extend(self.straightened(arrangement, &old).unwrap_or(old));
     }
 
-    /// The pieces of a region without the points that are not needed, if its borders allow.
+    /// The result triangles of a region without the points that are not needed, if its borders allow.
     fn straightened(&self, arrangement: &Arrangement, old: &[ResultTriangle]) -> Option<Vec<ResultTriangle>> {
         let sides = |piece: &ResultTriangle| [0, 1, 2].map(|k| [piece.corners[k], piece.corners[(k + 1) % 3]]);
         let all: FxHashSet<[u32; 2]> = old.iter().flat_map(sides).collect();
@@ -172,7 +172,7 @@ impl MergePlan {
     }
 }
 
-/// Whether two pieces beside each other are of one surface and in one plane.
+/// Whether two result triangles beside each other are of one surface and in one plane.
 fn are_one(operands: &Operands, arrangement: &Arrangement, one: &ResultTriangle, two: &ResultTriangle) -> bool {
     if one.face == two.face {
         return one.classification == two.classification;

@@ -1,9 +1,9 @@
 //! Moving rounded points by a few units in the last place until triangles no longer overlap.
 //!
 //! A point that two sheets have in common is rounded to where it is on the wrong side of a third one, by less than a
-//! rounding. Of the places around it some are on the right sides of all. They are tried in turn; one is taken if no more
-//! triangles overlap with those at the point than before. What no place is right for stays, for others to be moved or for
-//! [`snapped`](super::snapping::snapped) to draw together.
+//! rounding. Of the places around it some are on the right sides of all. They are tried in turn; one is taken if no
+//! more triangles overlap with those at the point than before. What no place is right for stays, for others to be moved
+//! or for [`snapped`](super::snapping::snapped) to snap.
 //!
 //! # Source
 //! The sequence of places: Roberts 2018, the additive recurrence of the generalised golden ratio in three dimensions.
@@ -104,8 +104,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// How many triangles overlap with those at a vertex, up to more than `limit`; as many as there can be if one of these
-    /// has no area.
+    /// How many triangles overlap with those at a vertex, up to more than `limit`; as many as there can be if one of
+    /// these has no area.
     fn overlaps(&mut self, vertex: u32, limit: usize) -> usize {
         let mut count = 0;
         for place in 0..self.triangles_at[&vertex].len() {

@@ -1,4 +1,4 @@
-//! The solids of an operation, with their vertices and triangles counted through.
+//! The solids of an operation, with their vertices and triangles numbered consecutively.
 
 use super::contact::ConvexFace;
 use super::quads::{NONE, ring};
@@ -13,16 +13,16 @@ use rayon::prelude::*;
 pub struct Operand<'a> {
     /// Its surface.
     pub mesh: &'a Mesh,
-    /// The triangles of it by place.
+    /// The triangles of it by location.
     pub sorted: &'a TriangleBvh,
-    /// For each triangle the one with which it makes one face, or [`NONE`]; empty if all are on their own.
+    /// For each triangle its quad partner, with which it makes one face, or [`NONE`]; empty if all are on their own.
     pub quad_partners: &'a [u32],
     /// Pairs of its triangles that overlap, the lower first; none if its surface is simple.
     pub overlaps: &'a [[u32; 2]],
 }
 
 impl Operand<'_> {
-    /// The triangle with which another makes one face.
+    /// The quad partner of a triangle, with which it makes one face.
     fn quad_partner(&self, triangle: u32) -> Option<u32> {
         self.quad_partners.get(triangle as usize).copied().filter(|partner| *partner != NONE)
     }
@@ -35,7 +35,7 @@ impl Operand<'_> {
 
 /// The operands.
 pub struct Operands<'a> {
-    /// Whether their surfaces bound them simply: they wind once or not at all around any point off them. If not, contacts
+    /// Whether their surfaces bound them simply: their winding number is 1 or 0 at any point off them. If not, contacts
     /// within each are looked for too.
     pub are_simple: bool,
     meshes: Vec<&'a Mesh>,
@@ -46,7 +46,7 @@ pub struct Operands<'a> {
 }
 
 impl<'a> Operands<'a> {
-    /// Counts through the vertices and triangles of some meshes.
+    /// Numbers the vertices and triangles of some meshes consecutively.
     ///
     /// - `are_simple`: whether their surfaces are known to bound them simply.
     pub fn new(operands: Vec<Operand<'a>>, are_simple: bool) -> Operands<'a> {
@@ -71,7 +71,7 @@ impl<'a> Operands<'a> {
         &self.meshes
     }
 
-    /// The triangles of an operand by place.
+    /// The triangles of an operand by location.
     pub fn sorted(&self, operand: u32) -> &TriangleBvh {
         self.operands[operand as usize].sorted
     }

@@ -1,8 +1,8 @@
 //! Whether triangles of a surface have more in common than corners and edges.
 //!
-//! Of the triangles that are near each other in a surface most are neighbours. What they have in common is seen from the
-//! names of their corners; that they have no more, from the side on which the others lie, from which way they face, or from
-//! a line that parts them.
+//! Of the triangles that are near each other in a surface most are neighbours. What they have in common is seen from
+//! the names of their corners; that they have no more, from the side on which the others lie, from which way they face,
+//! or from a line that separates them.
 
 use super::contact::{Contact, ConvexFace, Feature, planar_orientation};
 use crate::numeric::implicit::projection;
@@ -10,8 +10,8 @@ use crate::numeric::plane::Plane;
 use glam::DVec3;
 use std::borrow::Borrow;
 
-/// Units in the last place of the largest coordinate within which a corner may lie on the other side of an edge or a plane
-/// than before it was rounded.
+/// Units in the last place of the largest coordinate within which a corner may lie on the other side of an edge or a
+/// plane than before it was rounded.
 const ROUNDINGS: f64 = 8.0;
 
 /// A triangle of a surface.
@@ -36,7 +36,7 @@ impl NamedTriangle {
         PlaneTriangle { triangle: self, plane: Plane::through(self.corners) }
     }
 
-    /// Which corners of another triangle are none of this one, a bit for each.
+    /// The corners of another triangle that are none of this one, a bit for each.
     #[inline]
     fn others_in(&self, other: &NamedTriangle) -> u8 {
         let [a, b, c] = self.names;
@@ -70,8 +70,8 @@ impl PlaneTriangle {
         self.plane.normal.length_squared() <= near * near * longest
     }
 
-    /// Whether another triangle with a common edge is folded back onto this one: its third corner is near the plane, on the
-    /// side of the edge where this one is.
+    /// Whether another triangle with a common edge is folded back onto this one: its third corner is near the plane, on
+    /// the side of the edge where this one is.
     #[inline]
     fn is_folded_onto(&self, other: &NamedTriangle) -> bool {
         let corners = &self.triangle.corners;
@@ -110,7 +110,7 @@ impl PlaneTriangle {
         (0..3).any(runs_back) && (0..3).any(is_alike)
     }
 
-    /// Whether an edge of this triangle parts it from another where both are seen along an axis.
+    /// Whether an edge of this triangle separates it from another where both are seen along an axis.
     fn separates(&self, other: &NamedTriangle, axis: usize) -> bool {
         let NamedTriangle { names, corners } = self.triangle;
         let mut facing = self.plane.facing(axis);
@@ -175,7 +175,7 @@ fn overlap_of<P: Borrow<PlaneTriangle>>(
     if is_neighbour && one.is_hinged(two) || two.is_beside(&one.triangle, two.triangle.others_in(&one.triangle)) {
         return false;
     }
-    // Neighbours in one plane or nearly so, of which a division is full, are mostly parted where they are seen best.
+    // Neighbours in one plane or nearly so, of which a division is full, are mostly separated where they are seen best.
     let normal = one.plane.normal.abs();
     let axis = if normal.max_element() == normal.x { 0 } else { if normal.y >= normal.z { 1 } else { 2 } };
     if (axis..axis + 3).any(|axis| one.separates(&two.triangle, axis % 3) || two.separates(&one.triangle, axis % 3)) {

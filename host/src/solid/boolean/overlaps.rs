@@ -22,11 +22,11 @@ impl Overlaps {
         Overlaps { numbers: numbers.collect(), pairs: pairs.iter().copied().collect() }
     }
 
-    /// Pairs of triangles of another mesh, the lower first, that overlap. Of two triangles that the surface has too, it is
-    /// known, since it depends on the places of the corners only.
+    /// Pairs of triangles of another mesh, the lower first, that overlap. Of two triangles that the surface has too, it
+    /// is known, since it depends on the places of the corners only.
     ///
-    /// Cost: what [`overlapping`] costs for triangles that the surface has not; in proportion to pairs near each other for
-    /// the others.
+    /// Cost: what [`overlapping`] costs for triangles that the surface has not; in proportion to pairs near each other
+    /// for the others.
     pub fn overlapping(&self, mesh: &Mesh) -> Vec<[u32; 2]> {
         let number = |triangle| self.numbers.get(&corners(mesh, triangle)).copied();
         let numbers: Vec<Option<u32>> = (0..mesh.triangles.len()).map(number).collect();
@@ -58,9 +58,10 @@ pub fn overlapping(mesh: &Mesh) -> Vec<[u32; 2]> {
     overlapping_up_to(mesh, &TriangleBvh::new(&mesh.vertices, &mesh.triangles), usize::MAX)
 }
 
-/// Pairs of triangles of a mesh as [`overlapping`] gives them; if there are more than `most`, a few more of them than that.
+/// Pairs of triangles of a mesh as [`overlapping`] gives them; if there are more than `most`, a few more of them than
+/// that.
 ///
-/// - `sorted`: the triangles by place.
+/// - `sorted`: the triangles by location.
 pub fn overlapping_up_to(mesh: &Mesh, sorted: &TriangleBvh, most: usize) -> Vec<[u32; 2]> {
     let count = AtomicUsize::new(0);
     let is_enough = || count.load(Ordering::Relaxed) > most;

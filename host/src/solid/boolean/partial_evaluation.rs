@@ -1,4 +1,4 @@
-//! What is known of a point: whether it is in the operands of an expression, and on which of them the set still depends.
+//! Partial evaluation: what is known of an expression at a point, and on which operands the set still depends.
 
 use super::expression::Expression;
 
@@ -7,7 +7,7 @@ use super::expression::Expression;
 enum Rule {
     /// It is known from outside.
     Operand,
-    /// One child of this value settles it: a union or an intersection.
+    /// One child of this value decides it: a union or an intersection.
     Absorbing(bool),
     /// It is whether an odd number of them are true.
     Parity,
@@ -56,7 +56,8 @@ impl ExpressionNode {
     }
 }
 
-/// An expression with what is known of a point. Each change takes time as the expression is deep, not as it is wide.
+/// An expression with what is known of it at a point. Each change takes time as the expression is deep, not as it is
+/// wide.
 #[derive(Clone, Debug)]
 pub struct PartialEvaluation {
     nodes: Vec<ExpressionNode>,
@@ -65,7 +66,7 @@ pub struct PartialEvaluation {
 }
 
 impl PartialEvaluation {
-    /// A point outside of all operands.
+    /// The evaluation at a point outside of all operands.
     pub fn outside(expression: &Expression, operands: usize) -> PartialEvaluation {
         let mut evaluation = PartialEvaluation { nodes: Vec::new(), leaves_of: vec![Vec::new(); operands] };
         evaluation.add(expression, None, false);
@@ -124,7 +125,7 @@ impl PartialEvaluation {
         self.leaves_of[operand as usize].iter().any(|&place| self.decides(place as usize))
     }
 
-    /// Whether the set may still depend on a part: no other child of a part around it settles that.
+    /// Whether the set may still depend on a part: no other child of a part around it decides that.
     fn decides(&self, place: usize) -> bool {
         let part = &self.nodes[place];
         let Some(parent) = part.parent else { return true };

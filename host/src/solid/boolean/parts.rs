@@ -11,7 +11,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
-/// What becomes of a part.
+/// The classification of a facet or part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaceClassification {
     /// It is no border of the result.
@@ -31,7 +31,7 @@ pub struct Parts {
     pub count: u64,
     /// Rays that were sent.
     pub rays: u64,
-    /// Where an operand winds less than not at all around what is beside it, or else more than once, and how often.
+    /// An improper winding number beside the surface of an operand, negative if there is such a one, and where it is.
     pub improper_winding: Option<(i32, DVec3)>,
 }
 
@@ -56,7 +56,7 @@ impl Sample {
 }
 
 impl Parts {
-    /// Finds the parts and decides what becomes of each.
+    /// Finds the parts and classifies each.
     ///
     /// - `is_whole`: whether a triangle, counted over all operands, may matter and did not become facets.
     /// - `inside`: whether a point belongs to the result, by whether it is in each operand.
@@ -114,7 +114,7 @@ impl Parts {
         self.classifications.values().all(|classification| *classification == FaceClassification::Kept)
     }
 
-    /// What becomes of each triangle, counted over all operands; those that are not whole are dropped.
+    /// The classification of each triangle, counted over all operands; those that are not whole are discarded.
     pub fn of_triangles(&self, operands: &Operands, is_whole: &[bool]) -> Vec<FaceClassification> {
         let mut classifications = vec![FaceClassification::Discarded; is_whole.len()];
         for (operand, mesh) in (0..).zip(operands.meshes()) {
@@ -134,7 +134,7 @@ impl Parts {
         classifications
     }
 
-    /// What becomes of a facet.
+    /// The classification of a facet.
     pub fn of_facet(&self, facet: usize) -> FaceClassification {
         self.of_root(self.nodes.root((self.vertices + facet) as u32))
     }
@@ -196,7 +196,7 @@ fn samples(operands: &Operands, nodes: &mut UnionFind, facets: &[Facet], is_whol
     samples
 }
 
-/// How often each operand winds around what is behind a part and what is in front of it, as its sample tells.
+/// The winding number of each operand behind a part and in front of it, as its sample tells.
 ///
 /// A ray is spared for operands that bound themselves simply and that the part is of.
 fn windings(
@@ -243,7 +243,7 @@ fn windings(
     steps.into_iter().zip(0..).map(around).collect()
 }
 
-/// What becomes of a part between windings behind it and in front of it.
+/// The classification of a part by the winding numbers behind it and in front of it.
 fn classify(windings: &[[i32; 2]], inside: impl Fn(&[bool]) -> bool) -> FaceClassification {
     let [behind, before] =
         [0, 1].map(|side| inside(&windings.iter().map(|winding| winding[side] > 0).collect::<Vec<_>>()));

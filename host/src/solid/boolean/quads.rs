@@ -1,7 +1,7 @@
 //! Pairs of triangles that make a convex quadrilateral in one plane.
 //!
-//! The sides of blocks and prisms are such. Taken as one face each, they need a quarter of the comparisons, and no line is
-//! drawn where they were only divided.
+//! The sides of blocks and prisms are such. Taken as one face each, they need a quarter of the comparisons, and no line
+//! is drawn where they were only divided.
 
 use super::contact::ConvexFace;
 use super::half_edges::HalfEdges;
@@ -11,8 +11,8 @@ use rayon::prelude::*;
 /// No triangle.
 pub const NONE: u32 = u32::MAX;
 
-/// For each triangle the other half of a convex quadrilateral in one plane and of one surface, or [`NONE`]; empty if there
-/// are no such halves.
+/// For each triangle its quad partner, the other half of a convex quadrilateral in one plane and of one surface, or
+/// [`NONE`]; empty if there are none.
 ///
 /// Two triangles make one only across a side that is the longest of both.
 pub fn quad_partners(mesh: &Mesh) -> Vec<u32> {
@@ -46,13 +46,13 @@ fn is_face(mesh: &Mesh, one: u32, two: u32) -> bool {
     ConvexFace::new(0, [a, b, c], [a, b, c].map(at)).is_some_and(|face| face.is_convex_with(at(d)))
 }
 
-/// The vertices around two triangles with a common side, the first of them first; `None` if they are turned against each
-/// other.
+/// The vertices around two triangles with a common side, the first of them first; `None` if they are oriented against
+/// each other.
 pub fn ring(mesh: &Mesh, one: u32, two: u32) -> Option<[u32; 4]> {
     let [first, second] = [one, two].map(|triangle| mesh.triangles[triangle as usize]);
     let lone = (0..3).find(|&k| !second.contains(&first[k]))?;
     let [a, b, c] = [2, 0, 1].map(|step| first[(lone + step) % 3]);
-    // The second runs through the common side the other way.
+    // The second traverses the common side the other way.
     let side = (0..3).find(|&k| [second[k], second[(k + 1) % 3]] == [a, c])?;
     Some([a, b, c, second[(side + 2) % 3]])
 }

@@ -1,4 +1,4 @@
-//! Which triangles cannot be part of a result, whatever crosses them.
+//! Relevance: the triangles that cannot be part of a result, whatever crosses them, are found.
 //!
 //! Most of the surface of a sphere in a union of many lies deep inside others. Where a triangle is known to lie in one
 //! operand or outside another, and the expression then no longer depends on the operand of the triangle, neither the
@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 /// For each triangle, counted over all operands, whether it may matter.
 ///
-/// - `standing`: of a point outside all operands.
+/// - `evaluation`: of the expression at a point outside all operands.
 /// - `touching`: pairs of triangles of different operands that have a point in common, none of them buried.
 pub fn relevant(
     operands: &Operands,

@@ -15,8 +15,8 @@ use rustc_hash::FxHashMap;
 /// What an operation gives.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
-    /// Its border. Normals and parameters of the corners are there if all operands have them; surfaces too, those of the
-    /// second operand counted on from those of the first.
+    /// Its border. Normals and parameters of the corners are there if all operands have them; surfaces too, those of
+    /// the second operand counted on from those of the first.
     pub mesh: Mesh,
     /// For each triangle the operand and the triangle of that operand that it is part of.
     pub sources: Vec<[u32; 2]>,
@@ -24,7 +24,7 @@ pub struct Outcome {
     pub counts: Counts,
 }
 
-/// Collects what is kept; points are rounded here. Tells also what was made, and whether rounding may
+/// Collects whole and new triangles; points are rounded here. Returns also which are new, and whether rounding may
 /// have made the surface cross itself.
 pub fn assemble(
     operands: &Operands,

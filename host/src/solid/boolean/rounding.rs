@@ -7,31 +7,31 @@ use crate::mesh::Mesh;
 use crate::octree::TriangleBvh;
 use rayon::prelude::*;
 
-/// What stayed whole.
+/// The whole triangles of a result: those of the operands that are in it uncut.
 pub struct WholeTriangles {
-    /// What became of each triangle of the operands, counted through; those that did not stay whole are dropped.
+    /// The classification of each triangle, counted over all operands; those that did not stay whole are discarded.
     pub classifications: Vec<FaceClassification>,
-    /// By vertex of the operands, counted through, its number in the result.
+    /// By vertex, counted over all operands, its number in the result.
     pub of_vertex: Vec<u32>,
 }
 
 impl WholeTriangles {
-    /// Whether a triangle of the operands, counted through, is in the result as it is.
+    /// Whether a triangle, counted over all operands, is in the result as it is.
     #[inline]
     pub fn contains(&self, triangle: u32) -> bool {
         self.classifications[triangle as usize] != FaceClassification::Discarded
     }
 }
 
-/// What of a result was made by the operation.
+/// The new triangles of a result: those that the operation made.
 pub struct NewTriangles {
-    /// The first triangle of it.
+    /// The first of them.
     pub first: usize,
     /// Vertices before this one are corners of triangles that stayed whole.
     pub first_vertex: u32,
     /// For each vertex from that on, whether it may go, since none of its triangles stayed whole.
     pub is_free: Vec<bool>,
-    /// What stayed whole before the first triangle.
+    /// The whole triangles, which come before the first new one.
     pub whole: Option<WholeTriangles>,
 }
 
@@ -43,10 +43,10 @@ impl NewTriangles {
     }
 }
 
-/// Whether triangles of a result that were made anew have no area or hardly any, overlap each other or triangles that stayed
-/// whole, or lie on a neighbour.
+/// Whether new triangles of a result have no area or hardly any, overlap each other or whole triangles,
+/// or are folded onto a neighbour.
 ///
-/// - `first`: the first triangle of the result that was made anew.
+/// - `first`: the first new triangle of the result.
 /// - `is_moved`: whether rounding moved a vertex of the result.
 pub fn crosses(operands: &Operands, result: &Mesh, first: usize, is_moved: &[bool], whole: &WholeTriangles) -> bool {
     if !is_moved.contains(&true) {
@@ -81,7 +81,7 @@ pub fn crosses(operands: &Operands, result: &Mesh, first: usize, is_moved: &[boo
         };
         let is_kept = |triangle: u32| whole.contains(first + triangle);
         let sorted_operand = operands.sorted(operand);
-        // To find all that were kept pays only where more than a few are asked for.
+        // To find all whole triangles pays only where more than a few are asked for.
         let is_large = mesh.triangles.len() > 64 * moved.len();
         let near = if is_large { sorted_operand.all() } else { sorted_operand.part(is_kept) };
         !sorted.pairs_if(&near, |a, b| is_kept(b) && is_overlap(a, of_kept(b))).is_empty()

@@ -1,7 +1,7 @@
 //! Surfaces that cross, cover or turn against themselves, and the simple surface of what they bound.
 //!
-//! A surface is simple if it winds once or not at all around every point off it. What any closed surface bounds are
-//! the points that it winds around more than not at all.
+//! A surface is simple if its winding number is 1 or 0 at every point off it. What any closed surface bounds are the
+//! points at which its winding number is positive.
 
 use super::expression::Expression;
 use super::half_edges::HalfEdges;
@@ -25,15 +25,15 @@ use rustc_hash::FxHashSet;
 struct Attempt {
     /// How far points are moved, in units in the last place of the largest coordinate there.
     most: f64,
-    /// What is drawn together within that distance.
+    /// What is snapped within that distance.
     scope: Scope,
     /// Whether it begins with the attempt that left the fewest pairs of triangles that overlap, and not from the first.
     from_best: bool,
 }
 
-/// Attempts, one after the other until one succeeds. To draw together all that is near triangles that overlap serves where
-/// sheets nearly coincide; only these, where they cross at small angles; and only what the best attempt left, where that is
-/// little.
+/// Attempts, one after the other until one succeeds. To snap all that is near triangles that overlap serves where
+/// sheets nearly coincide; only these, where they cross at small angles; and only what the best attempt left, where
+/// that is little.
 const ATTEMPTS: [Attempt; 6] = [
     Attempt { most: 4.0, scope: Scope::Near, from_best: false },
     Attempt { most: 4.0, scope: Scope::Overlapping, from_best: false },
@@ -42,11 +42,12 @@ const ATTEMPTS: [Attempt; 6] = [
     Attempt { most: 32.0, scope: Scope::Overlapping, from_best: false },
     Attempt { most: 32.0, scope: Scope::Near, from_best: true },
 ];
-/// How far points of a settled surface may be from the rounded one, in units in the last place of the largest coordinate.
+/// How far points of a surface freed of self-intersections may be from the rounded one, in units in the last place of
+/// the largest coordinate.
 const MOST: f64 = 64.0;
-/// How often points are drawn together and nudged in an attempt at most.
+/// How often points are snapped and nudged in an attempt at most.
 const ROUNDS: usize = 6;
-/// An attempt is given up if a turn leaves more than this part of the pairs of triangles that overlapped before it.
+/// An attempt is given up if a round leaves more than this part of the pairs of triangles that overlapped before it.
 const LEFT: f64 = 0.85;
 
 /// What a closed surface bounds.
@@ -55,7 +56,7 @@ pub struct Resolution {
     pub outcome: Outcome,
     /// Whether it is the same surface, but for how it is divided.
     pub is_same: bool,
-    /// Where the given one winds less than not at all, or else more than once, and how often.
+    /// An improper winding number of the given one, negative if there is such a one, and where it is.
     pub improper_winding: Option<(i32, DVec3)>,
 }
 
@@ -72,16 +73,16 @@ pub fn resolve(mesh: &Mesh, overlaps: &[[u32; 2]]) -> Result<Resolution, SolidEr
     Ok(Resolution { outcome: without_self_intersections(outcome)?, is_same: is_all_kept, improper_winding: odd })
 }
 
-/// The outcome made simple where rounding made it cross itself or turned parts of it inside out.
+/// The outcome freed of self-intersections, where rounding made it cross itself or turned parts of it inside out.
 ///
-/// What lies within a few roundings becomes one: then sheets that nearly coincide have the same triangles, which cancel.
-/// What is left on the wrong side of something is nudged to the right one. Both may have to be done again, since what was
-/// moved meets others. Whatever comes out is looked at exactly: no two triangles overlap, and the surface winds once around
-/// what is inside and not at all around what is outside.
+/// What lies within a few units in the last place becomes one: then sheets that nearly coincide have the same
+/// triangles, which cancel. What is left on the wrong side of something is nudged to the right one. Both may have to be
+/// done again, since what was moved meets others. Whatever comes out is looked at exactly: no two triangles overlap,
+/// and the winding number of the surface is 1 inside and 0 outside.
 ///
-/// No point is farther from the rounded surface than [`MOST`] units in the last place of the largest coordinate: each that
-/// is no corner of it is measured. Each attempt takes about as long as a few operations on the triangles that overlap,
-/// besides looking once at all triangles, and in each turn at those that were changed.
+/// No point is farther from the rounded surface than [`MOST`] units in the last place of the largest coordinate: each
+/// that is no corner of it is measured. Each attempt takes about as long as a few operations on the triangles that
+/// overlap, besides looking once at all triangles, and in each round at those that were changed.
 ///
 /// # Errors
 /// [`SolidError::SelfIntersecting`] if none of the attempts succeeds.
@@ -157,8 +158,8 @@ impl Trial {
     }
 }
 
-/// The border of what a surface of which no triangles overlap winds around more than not at all; nothing if that is all of
-/// it.
+/// The border of the points at which a surface without overlapping triangles has a positive winding number; nothing if
+/// that is all of it.
 fn right_side_out(outcome: &Outcome) -> Option<Outcome> {
     let mesh = separated(&outcome.mesh);
     let Evaluation { outcome: mut next, is_unchanged: is_all_kept, .. } = divided(&mesh, &[]);
@@ -182,7 +183,7 @@ fn change_of_volume(mesh: &Mesh) -> f64 {
     f64::EPSILON * largest * (0..mesh.triangles.len()).map(square).sum::<f64>()
 }
 
-/// Whether all points of a settled surface are as near the rounded one as they must be.
+/// Whether all points of a surface freed of self-intersections are as near the rounded one as they must be.
 fn is_near(settled: &Mesh, rounded: &Mesh) -> bool {
     let corners: FxHashSet<[u64; 3]> = rounded.vertices.iter().map(|vertex| bits(*vertex)).collect();
     let moved: Vec<DVec3> =

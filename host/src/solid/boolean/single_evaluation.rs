@@ -10,15 +10,15 @@ use super::{facets, result};
 
 /// What is known when an expression was evaluated once.
 pub struct Evaluation {
-    /// What comes out, before it is made simple.
+    /// What comes out, before it is freed of self-intersections.
     pub outcome: Outcome,
-    /// What of it was made.
+    /// Its new triangles.
     pub new: NewTriangles,
     /// Whether rounding made the result cross itself, as far as could be seen.
     pub self_intersects: bool,
     /// Whether all parts of the surfaces are borders of the result.
     pub is_unchanged: bool,
-    /// Where an operand that is not simple winds oddly, and how often.
+    /// An improper winding number of an operand that is not simple, and where it is.
     pub improper_winding: Option<(i32, glam::DVec3)>,
 }
 

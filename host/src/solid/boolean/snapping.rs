@@ -1,15 +1,15 @@
-//! Drawing together what lies within a few roundings of each other.
+//! Snap rounding: makes one of what lies within a few units in the last place of each other.
 //!
 //! Corners that are near become one; an edge that passes near a corner goes through it; a face that does, has it as a
 //! corner of its triangles; two edges that pass near each other get a common corner. So two sheets that nearly coincide
-//! end up with the same triangles, which cancel. The surface stays closed through all of it: what happens to an edge happens
-//! to it in all its triangles.
+//! end up with the same triangles, which cancel. The surface stays closed through all of it: what happens to an edge
+//! happens to it in all its triangles.
 //!
 //! # Source
 //! Hobby 1999 for the plane, where one such pass suffices.
 //!
 //! # Cost
-//! n log n in the triangles that are drawn together and the pairs of them that are near each other.
+//! n log n in the triangles that are snapped and the pairs of them that are near each other.
 
 use super::result::{CornerTables, Outcome};
 use super::triangulation::IncrementalTriangulation;
@@ -23,16 +23,16 @@ use rustc_hash::FxHashMap;
 /// An edge by its vertices, the lower first.
 type Edge = [u32; 2];
 
-/// Among which triangles what is near is drawn together.
+/// The triangles among which what is near is snapped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scope {
     /// Those that overlap others.
     Overlapping,
-    /// And those near them.
+    /// Those that overlap others, and those near them.
     Near,
 }
 
-/// Draws together what is near among triangles that overlap.
+/// Snaps what is near among triangles that overlap.
 ///
 /// - `pairs`: the triangles.
 /// - `roundings`: what is near, in units in the last place of the largest coordinate there.
@@ -82,7 +82,7 @@ fn is_collapsed(t: [u32; 3]) -> bool {
     t[0] == t[1] || t[1] == t[2] || t[2] == t[0]
 }
 
-/// Boxes by place.
+/// Boxes by location.
 fn sorted_boxes(boxes: impl Iterator<Item = [DVec3; 2]>) -> TriangleBvh {
     let corners: Vec<DVec3> = boxes.flatten().collect();
     let boxes: Vec<[u32; 3]> = (0..corners.len() as u32 / 2).map(|k| [2 * k, 2 * k + 1, 2 * k + 1]).collect();

@@ -1,4 +1,4 @@
-//! How often a closed surface winds around a point, by one ray.
+//! The winding number of a closed surface at a point, by one ray.
 
 use super::contact::planar_orientation;
 use super::operand::Operands;
@@ -6,7 +6,7 @@ use crate::numeric::bounds::Bounds;
 use crate::numeric::implicit::{ImplicitPoint, PointDefinition, side_of, turn};
 use glam::DVec3;
 
-/// How often an operand winds around a point that is not on its surface.
+/// The winding number of an operand at a point that is not on its surface.
 ///
 /// Counts the triangles beside a ray along x. The ray is thought to be moved a little along y and much less along z, so
 /// that it meets neither vertex nor edge.

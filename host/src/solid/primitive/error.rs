@@ -6,7 +6,7 @@ use crate::solid::SolidError;
 use crate::surface::TessellationError;
 use glam::{DVec2, DVec3};
 
-/// Why there is no such solid. Indices count from 0.
+/// A fault of the measures of a solid. Indices count from 0.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PrimitiveError {
     /// A measure out of its range.

@@ -99,32 +99,32 @@ pub enum Primitive {
         /// Radius of the tube.
         tube: f64,
     },
-    /// A profile of lines and arcs that turned about the y axis; see [`revolution`].
+    /// A profile of lines and arcs that was revolved about the y axis; see [`revolution`].
     Revolution {
         /// Points (r, y, bulge).
         profile: Vec<DVec3>,
     },
-    /// A smooth profile that turned about the y axis; see [`smooth_revolution`].
+    /// A smooth profile that was revolved about the y axis; see [`smooth_revolution`].
     #[serde(rename = "lathe")]
     SmoothRevolution {
         /// Control points (r, y).
         profile: Vec<DVec2>,
     },
-    /// A polygon that turned about the y axis; see [`revolved_polygon`].
+    /// A polygon that was revolved about the y axis; see [`revolved_polygon`].
     #[serde(rename = "turning")]
     RevolvedPolygon {
         /// Corners of the polygon.
         contours: Vec<Vec<DVec2>>,
-        /// How far it turned; turns.
+        /// How far it was revolved; turns.
         turn: f64,
     },
-    /// A polygon that went along a curve; see [`sweep`].
+    /// A polygon that was swept along a curve; see [`sweep`].
     Sweep {
         /// Corners of the polygon.
         contours: Vec<Vec<DVec2>>,
         /// The curve.
         path: Box<SplineCurve>,
-        /// How far the polygon turned about the curve; turns.
+        /// How far the polygon was twisted about the curve; turns.
         twist: f64,
         /// How much wider it was at the end.
         taper: f64,

@@ -18,11 +18,11 @@ const STEPS: usize = 24;
 /// Greatest bulge: an arc that is all but a circle.
 const MAX_BULGE: f64 = 1e3;
 
-/// The solid of a closed profile that turns once about the y axis.
+/// The solid of a closed profile that revolves once about the y axis.
 ///
-/// - `profile`: points (r, y, bulge) in either direction, 3 or more; the last is followed by the first. The way to the next
-///   point is straight if the bulge is 0, else an arc: the bulge is the tangent of a quarter of its angle, positive if it
-///   turns left, 1 for half a circle.
+/// - `profile`: points (r, y, bulge) in either direction, 3 or more; the last is followed by the first. The way to the
+///   next point is straight if the bulge is 0, else an arc: the bulge is the tangent of a quarter of its angle,
+///   positive if it turns left, 1 for half a circle.
 pub fn revolution(profile: &[DVec3]) -> Result<Body, PrimitiveError> {
     count("points", profile.len(), 3, MAX_POINTS)?;
     points(profile.iter().copied())?;
@@ -42,8 +42,8 @@ pub fn revolution(profile: &[DVec3]) -> Result<Body, PrimitiveError> {
     closed(pieces, &point_of)
 }
 
-/// The solid of a smooth profile that turns once about the y axis: the cubic B-spline of control points (r, y), which
-/// begins in the first and ends in the last, closed by straight pieces over the axis.
+/// The solid of a smooth profile that revolves once about the y axis: the cubic B-spline of control points (r, y),
+/// which begins in the first and ends in the last, closed by straight pieces over the axis.
 pub fn smooth_revolution(control: &[DVec2]) -> Result<Body, PrimitiveError> {
     count("points", control.len(), 2, MAX_POINTS)?;
     points(control.iter().map(|point| point.extend(0.0)))?;
@@ -123,7 +123,7 @@ fn check_simple(outline: &[DVec2], point_of: impl Fn(usize) -> usize) -> Result<
     }
 }
 
-/// A polygon in the plane of x and y, x not below 0, that turns about the y axis from the z axis on through `turn`
+/// A polygon in the plane of x and y, x not below 0, that revolves about the y axis from the z axis on through `turn`
 /// towards the x axis, in turns above 0 and up to 1.
 ///
 /// Contours may run either way; what lies in an odd number of them is inside.

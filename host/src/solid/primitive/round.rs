@@ -7,7 +7,7 @@ use crate::surface::{Profile, Sphere, Surface, SurfaceOfRevolution};
 use glam::{DAffine3, DVec2, DVec3};
 use std::sync::Arc;
 
-/// The solid that pieces of a closed profile make when they turn about the y axis. Pieces on the axis make nothing.
+/// The solid that pieces of a closed profile make when they revolve about the y axis. Pieces on the axis make nothing.
 ///
 /// Each piece begins where the one before it ends, to the bit; the inside is on the left.
 pub(super) fn turned(pieces: impl IntoIterator<Item = Profile>) -> Body {
@@ -68,8 +68,8 @@ pub fn hyperboloid_of_one_sheet(waist: f64, radius: f64, height: f64) -> Result<
     Ok(capped(Profile::HyperbolaOneSheet { across: waist, along: height * 0.5 / slope, reach: [-reach, reach] }))
 }
 
-/// A hyperboloid of two sheets: two bowls that turn their tips to each other, `gap` apart, with discs outside; together
-/// as high as `height`.
+/// A hyperboloid of two sheets: two sheets with their tips towards each other, `gap` apart, with discs outside;
+/// together as high as `height`.
 pub fn hyperboloid_of_two_sheets(gap: f64, radius: f64, height: f64) -> Result<Body, PrimitiveError> {
     length("gap", gap)?;
     length("radius", radius)?;

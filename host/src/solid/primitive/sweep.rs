@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// Most points of a path, and most surfaces of a sweep.
 const MAX_SURFACES: usize = 1 << 20;
-/// Places on each span where the bend is compared with the section.
+/// Places on each span where the curvature is compared with the section.
 const BEND_SAMPLES: usize = 16;
 
 /// The curve of a path: the cubic B-spline of its points, which begins in the first and ends in the last, or the closed
@@ -27,8 +27,8 @@ pub fn path(control: &[DVec3], is_closed: bool) -> Result<SplineCurve, Primitive
 /// The solid that a polygon makes along a curve. It stays square to the curve and does not turn about it, but as
 /// `widening` says. The curve goes through the origin of the polygon.
 ///
-/// Contours may run either way; what lies in an odd number of them is inside. That parts of the curve far from each other
-/// come too near is not checked.
+/// Contours may run either way; what lies in an odd number of them is inside. That parts of the curve far from each
+/// other come too near is not checked.
 ///
 /// # Errors
 /// [`PrimitiveError`], with the place, if the curve bends tighter than the polygon is wide there, and if it has no

@@ -35,7 +35,7 @@ impl Book {
     }
 }
 
-/// The curve length of a parabola y = k x^2 turned about y, from 0 to r.
+/// The area of a parabola y = k x^2 revolved about y, from 0 to r.
 fn paraboloid_area(k: f64, r: f64) -> f64 {
     PI / (6.0 * k * k) * ((1.0 + 4.0 * k * k * r * r).powf(1.5) - 1.0)
 }

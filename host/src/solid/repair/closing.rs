@@ -76,11 +76,11 @@ impl<'a> Hole<'a> {
     }
 }
 
-/// Closes the boundary loops of a mesh whose triangles are turned alike. Loops in one plane are closed at once, so that one
-/// within another leaves a hole. A patch is taken if an exact test finds that it has nothing in common with the surface and
-/// with other patches but the edges between; where there is none, one that has nothing in common with its own component,
-/// which then is a body that crosses others. A patch gets the surface number of a triangle beside it. Normals and parameters
-/// of corners are dropped if anything is added.
+/// Closes the boundary loops of a mesh whose triangles are oriented alike. Loops in one plane are closed at once, so
+/// that one within another leaves a hole. A patch is taken if an exact test finds that it has nothing in common with
+/// the surface and with other patches but the edges between; where there is none, one that has nothing in common with
+/// its own component, which then is a shell that crosses others. A patch gets the surface number of a triangle beside
+/// it. Normals and parameters of corners are dropped if anything is added.
 ///
 /// Cost: about that of a few looks at all triangles, and k^3 / 6 steps for a loop of k edges up to a limit.
 pub(super) fn close(mesh: &mut Mesh) -> ClosingReport {
@@ -202,8 +202,8 @@ fn surfaces_beside(mesh: &Mesh, holes: &[Hole]) -> Vec<u32> {
     surfaces
 }
 
-/// The holes whose patches have more in common with the surface, or with the patch of a longer one, than edges, and with
-/// what; by rising number.
+/// The holes whose patches have more in common with the surface, or with the patch of a longer one, than edges, and
+/// with what; by rising number.
 fn blocked_holes(mesh: &Mesh, holes: &[Hole]) -> Vec<(usize, Obstacle)> {
     let mut tried = Mesh { vertices: mesh.vertices.clone(), triangles: mesh.triangles.clone(), ..Mesh::default() };
     let mut of_patch = Vec::new();

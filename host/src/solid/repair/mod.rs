@@ -1,10 +1,10 @@
 //! Solids from meshes that are none.
 //!
-//! What is a solid already is not touched. Of any other mesh, vertices at one place become one, at boundaries also those
-//! that are apart by rounding only; triangles that keep the surface from being closed are left out; triangles are turned to
-//! agree with their neighbours; boundary loops are closed where a patch is found that provably meets nothing; bodies that
-//! face inwards and lie in no other are turned; and what crosses itself is divided there, and what is not its border left
-//! out. Each step does nothing to what needs nothing.
+//! What is a solid already is not touched. Of any other mesh, vertices at one place become one, at boundaries also
+//! those that are apart by rounding only; triangles that keep the surface from being closed are left out; triangles are
+//! reversed to agree with their neighbours; boundary loops are closed where a patch is found that provably meets
+//! nothing; shells that face inwards and lie in no other are reversed; and what crosses itself is divided there, and
+//! what is not its border left out. Each step does nothing to what needs nothing.
 
 mod closing;
 mod joining;
@@ -33,17 +33,17 @@ pub struct Repair {
     pub joined: usize,
     /// Triangles left out because another has the same corners and the surface was not closed there.
     pub duplicates: usize,
-    /// Triangles left out because they are walls within a body, or open sheets that stick out of one.
+    /// Triangles of dangling faces left out: walls within a body, or open sheets that stick out of one.
     #[serde(rename = "fins")]
     pub dangling: usize,
-    /// Triangles turned round to agree with their neighbours.
+    /// Triangles reversed to agree with their neighbours.
     #[serde(rename = "turned")]
     pub reoriented: usize,
     /// Boundary loops closed.
     pub loops: usize,
     /// Triangles added to close them.
     pub added: usize,
-    /// Bodies turned round because they faced inwards.
+    /// Shells reversed because they faced inwards.
     pub bodies: usize,
     /// Whether the surface was divided where it crossed itself, and what is not its border left out.
     pub is_resolved: bool,
@@ -76,10 +76,10 @@ impl fmt::Display for Repair {
             (joined, format!("{joined} {vertices} joined at boundaries that were apart by rounding")),
             (collapsed, format!("{collapsed} collapsed triangle{triangles} left out")),
             (duplicates, format!("{duplicates} double triangle{} left out", s(duplicates))),
-            (fins, format!("{fins} triangle{} of inner walls and fins left out", s(fins))),
-            (turned, format!("{turned} triangle{} turned to agree with their neighbours", s(turned))),
+            (fins, format!("{fins} triangle{} of dangling faces left out", s(fins))),
+            (turned, format!("{turned} triangle{} reversed to agree with their neighbours", s(turned))),
             (loops, format!("{loops} boundary loop{} closed with {added} triangle{}", s(loops), s(added))),
-            (bodies, format!("{bodies} bod{} turned outwards", if bodies == 1 { "y" } else { "ies" })),
+            (bodies, format!("{bodies} shell{} turned outwards", if bodies == 1 { "" } else { "s" })),
             (usize::from(is_resolved), "divided where it crossed itself".to_owned()),
         ];
         let done: Vec<String> = done.into_iter().filter(|(count, _)| *count > 0).map(|(_, words)| words).collect();
@@ -89,16 +89,17 @@ impl fmt::Display for Repair {
 }
 
 impl Solid {
-    /// Makes a solid of a mesh: joins vertices at one place, leaves out double triangles and fins, turns triangles so that
-    /// neighbours agree, closes boundary loops where a patch meets nothing else, turns bodies that face inwards and lie in
-    /// no other, and makes the surface simple. A mesh that is a solid already is taken as it is.
+    /// Makes a solid of a mesh: joins vertices at one place, leaves out double triangles and dangling faces, reverses
+    /// triangles so that neighbours agree, closes boundary loops where a patch meets nothing else, reverses shells that
+    /// face inwards and lie in no other, and makes the surface simple. A mesh that is a solid already is taken as it
+    /// is.
     ///
-    /// Cost: n log n in the triangles, linear in the places where three of them cross, k^3 in the edges of a loop up to a
-    /// limit.
+    /// Cost: n log n in the triangles, linear in the places where three of them cross, k^3 in the edges of a loop up to
+    /// a limit.
     ///
     /// # Errors
-    /// [`SolidError`] if numbers are wrong, or the mesh is not closed even then: a loop that no patch closes without meeting
-    /// the surface, a surface with one side only, or one that bounds nothing.
+    /// [`SolidError`] if numbers are wrong, or the mesh is not closed even then: a loop that no patch closes without
+    /// meeting the surface, a surface with one side only, or one that bounds nothing.
     pub fn repaired(mesh: Mesh) -> Result<(Solid, Repair), SolidError> {
         match Solid::new(mesh.clone()) {
             Ok(solid) => Ok((solid, Repair::default())),
@@ -160,7 +161,8 @@ pub fn boundary(mesh: &Mesh) -> Vec<BoundaryLoop> {
     mesh.boundary_loops()
 }
 
-/// Turns bodies that face inwards and lie in no other, all of them if the whole does; returns how many were turned.
+/// Reverses shells that face inwards and lie in no other, all of them if the whole does; returns how many were
+/// reversed.
 fn turn_bodies(mesh: &mut Mesh) -> usize {
     let mut bodies = Shells::of(mesh);
     let is_inside_out = (0..bodies.count()).map(|body| bodies.volume(body)).sum::<f64>() < 0.0;

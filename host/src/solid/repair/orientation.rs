@@ -3,9 +3,9 @@
 use crate::mesh::Mesh;
 use crate::mesh::edges::EdgeTable;
 
-/// Turns triangles so that they agree across edges of two; of each sheet the fewer. Returns how many were turned.
+/// Reverses triangles so that they agree across edges of two; of each sheet the fewer. Returns how many were reversed.
 pub(super) fn turn_alike(mesh: &mut Mesh) -> usize {
-    // By triangle and side, the other triangle of an edge of two, and whether one of them must be turned.
+    // By triangle and side, the other triangle of an edge of two, and whether one of them must be reversed.
     let mut beside: Vec<[Option<(usize, bool)>; 3]> = vec![[None; 3]; mesh.triangles.len()];
     let table = EdgeTable::of(mesh);
     for edge in &table.edges {
@@ -42,7 +42,7 @@ pub(super) fn turn_alike(mesh: &mut Mesh) -> usize {
     changed.len()
 }
 
-/// Turns a triangle round, with all that belongs to it.
+/// Reverses a triangle, with all that belongs to it.
 pub(super) fn turn(mesh: &mut Mesh, triangle: usize) {
     mesh.triangles[triangle].swap(1, 2);
     if let Some(normals) = mesh.corner_normals.get_mut(triangle) {

@@ -11,8 +11,8 @@ const MOST_POINTS: usize = 1000;
 const FLAT: f64 = 1e-6;
 /// A triangle is folded back onto that beside it if the cosine between their normals is less.
 const FOLDED: f64 = -0.8;
-/// What the squared length of a side of a triangle counts beside the area, so that of patches of about the same area one
-/// with short sides is taken.
+/// What the squared length of a side of a triangle counts beside the area, so that of patches of about the same area
+/// one with short sides is taken.
 const SHAPE: f64 = 1e-6;
 
 /// Triangles that close loops, and a vertex that some of them share if they need one.
@@ -35,7 +35,8 @@ pub(super) enum Method {
     Fan,
 }
 
-/// The plane of a loop: its normal, whose length is twice the area that the loop encloses there, and the mean of its points.
+/// The plane of a loop: its normal, whose length is twice the area that the loop encloses there, and the mean of its
+/// points.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LoopPlane {
     pub(super) normal: DVec3,
@@ -88,7 +89,7 @@ impl Method {
 
     /// A patch for loops, if there is one; only what is seen can close several at once.
     ///
-    /// - `beside`: for edges of the loops the third corner of the triangle there.
+    /// - `third_corners`: for edges of the loops the third corner of the triangle there.
     pub(super) fn patch(
         self,
         loops: &[&BoundaryLoop],
@@ -119,8 +120,8 @@ impl Method {
 /// For an edge of a boundary loop, as it runs, the third corner of the triangle there.
 pub(super) type ThirdCorners = HashMap<[u32; 2], u32>;
 
-/// The triangles through the points of a loop whose areas have the least sum, of those that are folded back onto triangles
-/// beside the loop as seldom as can be.
+/// The triangles through the points of a loop whose areas have the least sum, of those that are folded back onto
+/// triangles beside the loop as seldom as can be.
 ///
 /// # Source
 /// Barequet and Sharir 1995, by the recursion of Klincsek 1980.

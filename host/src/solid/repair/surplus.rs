@@ -40,10 +40,11 @@ fn net<'a>(uses: impl IntoIterator<Item = &'a EdgeUse>) -> i32 {
     uses.into_iter().map(|at| if at.forward { 1 } else { -1 }).sum()
 }
 
-/// Leaves out triangles that have the corners of an earlier one, whichever way they turn; returns how many were left out.
+/// Leaves out triangles that have the corners of an earlier one, whichever way they turn; returns how many were left
+/// out.
 ///
-/// - `everywhere`: if not, only where the surface is not closed: at edges that more triangles run through one way than the
-///   other. Two that lie back to back in a closed surface stay then.
+/// - `everywhere`: if not, only where the surface is not closed: at edges that more triangles traverse one way than
+///   the other. Two that lie back to back in a closed surface stay then.
 pub(super) fn remove_duplicates(mesh: &mut Mesh, everywhere: bool) -> usize {
     let mut alike: BTreeMap<[u32; 3], Vec<u32>> = BTreeMap::new();
     for (t, &corners) in (0..).zip(&mesh.triangles) {
@@ -66,8 +67,8 @@ pub(super) fn remove_duplicates(mesh: &mut Mesh, everywhere: bool) -> usize {
     keep.iter().filter(|keep| !**keep).count()
 }
 
-/// Leaves out fins: sheets, joined by edges of two triangles, that begin at edges of three or more which are closed without
-/// them, the smaller first. Returns how many triangles were left out.
+/// Leaves out dangling faces: sheets, joined by edges of two triangles, that begin at edges of three or more which are
+/// closed without them, the smaller first. Returns how many triangles were left out.
 ///
 /// A wall within a body is one, and so is what sticks out of a body and is open.
 pub(super) fn remove_dangling(mesh: &mut Mesh) -> usize {

@@ -6,7 +6,7 @@ use crate::polygon::PolygonError;
 use crate::solid::SolidError;
 use crate::subdivision::SubdivisionError;
 
-/// Why edges cannot be rounded.
+/// A fault that keeps edges from being rounded.
 #[derive(Debug, thiserror::Error)]
 pub enum RoundingError {
     /// A radius that is no length.

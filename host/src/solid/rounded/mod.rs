@@ -1,24 +1,25 @@
-//! Edges of polyhedral solids, rounded by cutting and grinding.
+//! Edges of polyhedral solids, rounded by corner cutting.
 //!
-//! Every face beside a rounded edge is divided by a strip along it, and what then has corners there is cut and ground again
+//! Every face beside a rounded edge is divided by a strip along it, and what then has corners there is cut again
 //! and again; all other edges stay sharp. The limit is a quadratic B-spline across each edge.
 //!
 //! # Shape
-//! Where an edge turns by the angle t (the interior angle is pi - t), the rounding begins at the distance
-//! d = r tan(t / 2) from the edge on either face: where a ball of the radius r that rolls along it would touch. With x and y
-//! the distances from the edge along the faces, the section is the parabola sqrt(x / d) + sqrt(y / d) = 1. It takes
-//! d^2 sin(t) / 6 off the section of the solid, or adds it where the solid is hollow; a ball takes
-//! r^2 (tan(t / 2) - t / 2). At its middle the radius of curvature is d cos(t / 2)^2 / sin(t / 2), which is r cos(t / 2).
+//! Where an edge turns by the angle t (the interior angle is pi - t), the rounding begins at the distance d = r tan(t /
+//! 2) from the edge on either face: where a ball of the radius r that rolls along it would touch. With x and y the
+//! distances from the edge along the faces, the section is the parabola sqrt(x / d) + sqrt(y / d) = 1. It takes d^2
+//! sin(t) / 6 off the section of the solid, or adds it where the solid is hollow; a ball takes r^2 (tan(t / 2) - t /
+//! 2). At its middle the radius of curvature is d cos(t / 2)^2 / sin(t / 2), which is r cos(t / 2).
 //!
-//! Near the ends of the edge, within 2 d of a corner where several rounded edges meet, the surface is that of the cutting
-//! scheme: smooth, and tangent to the faces. An edge that stays sharp between two that are rounded fades out.
+//! Near the ends of the edge, within 2 d of a corner where several rounded edges meet, the surface is that of the
+//! cutting scheme: smooth, and tangent to the faces. An edge that stays sharp between two that are rounded fades out.
 //!
 //! # Limits
-//! A strip is twice as wide as its half of the rounding, so that a face must be wider than 4 d between two rounded edges.
+//! A strip is twice as wide as its half of the rounding, so that a face must be wider than 4 d between two rounded
+//! edges.
 //!
 //! # Source
-//! Quadratic B-splines as limits of corner cutting: Chaikin 1974, Riesenfeld 1975; faces of any number of sides: Doo and
-//! Sabin 1978. The strips are ours.
+//! Quadratic B-splines as limits of corner cutting: Chaikin 1974, Riesenfeld 1975; faces of any number of sides: Doo
+//! and Sabin 1978. The strips are ours.
 
 mod error;
 mod faces;
@@ -51,8 +52,8 @@ pub enum EdgeChoice {
 }
 
 impl ExactSolid {
-    /// The solid with some edges rounded. Faces keep their surfaces; each rounded edge has a new one behind those, without
-    /// an exact form.
+    /// The solid with some edges rounded. Faces keep their surfaces; each rounded edge has a new one behind those,
+    /// without an exact form.
     ///
     /// - `radius`: of the ball that would touch the faces where the rounding begins, model units.
     /// - `tolerance`: how far the triangles may be from the rounded surface, model units.
