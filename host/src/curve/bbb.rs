@@ -1,9 +1,9 @@
 //! BBB-splines: cubic spans with a bias and a tension at each joint and an interval for each span.
 //!
-//! At joint i the span b before it and the span c after it meet with c' = bias b' and c'' = bias^2 b'' + tension b',
-//! by a parameter that advances by the interval over each span. The Bezier points come from the control polygon by ratios
-//! alone (the construction of Boehm 1985 for curvature continuous splines, with the bias as another factor): the leg from
-//! control point i to i + 1 is divided in the ratio
+//! At joint i the span b before it and the span c after it meet with c' = bias b' and c'' = bias^2 b'' + tension b', by
+//! a parameter that advances by the interval over each span. The Bezier points come from the control polygon by ratios
+//! alone (the construction of Boehm 1985 for curvature continuous splines, with the bias as another factor): the edge
+//! from control point i to i + 1 is divided in the ratio
 //!
 //!   g(i) before(i) / bias(i)  :  after(i)  :  g(i+1) bias(i+1) after(i+1)
 //!
@@ -91,17 +91,17 @@ impl Bbb {
         1.0 / (1.0 + tension * before * (after / (2.0 * bias * (before + bias * after))))
     }
 
-    /// The last part of the leg that ends in `joint`, if the interval after it is `after`.
+    /// The last part of the edge of the control polygon that ends in `joint`, if the interval after it is `after`.
     fn ahead(&self, joint: usize, after: f64) -> f64 {
         self.factor(joint, self.before(joint), after) * self.bias(joint) * after
     }
 
-    /// The first part of the leg that begins in `joint`, if the interval before it is `before`.
+    /// The first part of the edge of the control polygon that begins in `joint`, if the interval before it is `before`.
     fn behind(&self, joint: usize, before: f64) -> f64 {
         self.factor(joint, before, self.after(joint)) * before / self.bias(joint)
     }
 
-    /// The parts of the leg from control point `joint` to the next; their sum is not zero.
+    /// The parts of the edge of the control polygon from control point `joint` to the next; their sum is not zero.
     fn polygon_edge(&self, joint: usize) -> [f64; 3] {
         [self.behind(joint, self.before(joint)), self.after(joint), self.ahead(joint + 1, self.after(joint + 1))]
     }
@@ -113,7 +113,7 @@ impl Bbb {
         joints.filter(|&joint| self.after(joint) > 0.0).collect()
     }
 
-    /// The two inner Bezier points on a leg.
+    /// The two inner Bezier points on an edge of the control polygon.
     fn inner(&self, joint: usize) -> [ControlCombination; 2] {
         let [a, b, c] = self.polygon_edge(joint);
         let sum = a + b + c;

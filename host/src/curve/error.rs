@@ -1,6 +1,6 @@
 //! What can be wrong with a spline, and where.
 
-/// Why a spline cannot be built or changed as asked. Indices count from 0.
+/// A fault that keeps a spline from being built or changed as asked. Indices count from 0.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SplineError {
     /// A degree that is zero or too high.

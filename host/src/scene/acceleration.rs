@@ -1,4 +1,4 @@
-//! Octrees over a prepared scene: one over what stands still, one for each motion.
+//! Octrees over a prepared scene: one over the static objects, one for each motion.
 
 use super::Motion;
 use crate::octree::Octree;
@@ -9,9 +9,10 @@ use std::time::Duration;
 /// The octrees that rays go through. They know triangles of the scene, no renderer and no settings.
 #[derive(Debug)]
 pub struct Acceleration {
-    /// Over what stands still; none if nothing does.
+    /// Over the static objects; none if there are none.
     pub still: Option<SceneOctree>,
-    /// Over what moves while the shutter is open, where it is in the middle of that time; one for each motion.
+    /// Over the objects that move while the shutter is open, where they are in the middle of that time; one for each
+    /// motion.
     pub moving: Vec<(Motion, SceneOctree)>,
     /// How long it took to build them.
     pub build: Duration,
@@ -26,12 +27,12 @@ pub struct SceneOctree {
     pub(super) triangle_of: Vec<u32>,
 }
 
-/// Which objects of a scene octrees are built over.
+/// The objects of a scene that octrees are built over.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AccelerationKey {
     /// Whether each object of the scene counts.
     pub objects: Vec<bool>,
-    /// Whether motions count; without them everything stands where it is in the middle of the time in which the shutter is
+    /// Whether motions count; without them everything is where it is in the middle of the time in which the shutter is
     /// open.
     pub motions: bool,
 }
@@ -61,12 +62,12 @@ impl AccelerationCache {
         self.last.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The octrees over the objects that are kept, if they were built last.
+    /// The octrees over the objects that are included, if they were built last.
     pub(super) fn get(&self, key: &AccelerationKey) -> Option<Arc<Acceleration>> {
         self.last().as_ref().filter(|(of, _)| of == key).map(|(_, acceleration)| acceleration.clone())
     }
 
-    /// Keeps octrees that were built in the place of those before.
+    /// Stores octrees that were built in the place of those before.
     pub(super) fn store(&self, key: AccelerationKey, acceleration: &Arc<Acceleration>) {
         self.times.fetch_add(1, Ordering::Relaxed);
         *self.last() = Some((key, acceleration.clone()));

@@ -5,7 +5,7 @@ use crate::subdivision::{Polyhedron, SubdivisionError};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// A polyhedral mesh, of which the shape is the limit of cutting and grinding.
+/// A polyhedral mesh, of which the shape is the limit of corner cutting.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cage {
     /// Positions of the vertices.

@@ -1,8 +1,8 @@
 //! Light for scenes that have none of their own: a key light, a sky and a bounce.
 //!
-//! As in a photographer's studio, a large soft key light stands beside and above the viewer; a sky, lighter at the horizon
-//! than above and below, fills the shadows and gives what is polished something to reflect; and a weaker, warmer light from
-//! below takes the place of what the floor of a studio sends back.
+//! As in a photographer's studio, a large soft key light stands beside and above the viewer; a sky, lighter at the
+//! horizon than above and below, fills the shadows and gives what is polished something to reflect; and a weaker,
+//! warmer light from below takes the place of what the floor of a studio sends back.
 
 use super::soft_box::soft_box;
 use super::{Camera, Object, Prepared, Scene, SceneError, Studio};
@@ -20,15 +20,15 @@ const KEY: f64 = 2.9;
 const BOUNCE: RgbPower = DVec3::new(0.55, 0.50, 0.44);
 /// Radiance of the sky above, at the horizon and below, W/(m² sr).
 const SKY: [RgbPower; 3] = [DVec3::new(0.18, 0.20, 0.23), DVec3::new(0.30, 0.31, 0.32), DVec3::new(0.06, 0.058, 0.055)];
-/// Irradiance by a light at the eye of what the camera looks at, W/m², and ambient radiance, W/(m² sr), where lamps around
-/// the scene may be behind walls.
+/// Irradiance by a light at the eye of what the camera looks at, W/m², and ambient radiance, W/(m² sr), where lamps
+/// around the scene may be behind walls.
 const HEADLIGHT: f64 = 0.8;
 const INDOOR_AMBIENT: RgbPower = DVec3::splat(0.3);
 /// Rows of the picture of the sky: so many that steps from row to row are not seen.
 const ROWS: u32 = 2048;
 
-/// Where a lamp stands, along the view, seen from the middle of the scene: to the right, up, and towards the viewer, and
-/// its side; all in half diagonals of the scene.
+/// Where a lamp is placed, along the view, seen from the middle of the scene: to the right, up, and towards the viewer,
+/// and its side; all in half diagonals of the scene.
 struct LampPlacement {
     position: DVec3,
     side: f64,
@@ -46,9 +46,9 @@ impl Scene {
         if self.studio == Some(Studio::Lit) { self.in_studio() } else { self.in_default_light()?.in_studio() }
     }
 
-    /// The scene, with lights if it is dark: if it has no light, no ambient light and no material that emits. A background
-    /// that it has is its sky; what is seen from within its bounds, as a room, is lit from the eye. A scene without
-    /// triangles stays as it is.
+    /// The scene, with lights if it is dark: if it has no light, no ambient light and no material that emits. A
+    /// background that it has is its sky; what is seen from within its bounds, as a room, is lit from the eye. A scene
+    /// without triangles stays as it is.
     ///
     /// # Errors
     /// [`SceneError`] if its triangles cannot be made.

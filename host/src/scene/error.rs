@@ -49,7 +49,7 @@ pub enum SceneError {
         /// What is wrong with the shape.
         source: Box<ShapeError>,
     },
-    /// An object is wrong that a script asks for at a place.
+    /// An object is wrong that a script asks for at some position.
     #[error("{location}: {source}")]
     Placed {
         /// File, line and column of the script.
@@ -59,7 +59,7 @@ pub enum SceneError {
     },
 }
 
-/// Why a shape has no triangles.
+/// A fault that keeps a shape from having triangles.
 #[derive(Debug, thiserror::Error)]
 pub enum ShapeError {
     /// The mesh cannot be read.

@@ -91,7 +91,7 @@ pub struct Scene {
     pub display: DisplayTransform,
     /// The studio in which it is looked at: [`Scene::lit`] puts it there.
     pub studio: Option<Studio>,
-    /// Where its objects stand in its script.
+    /// Where in its script its objects got their shapes.
     #[serde(skip)]
     pub origins: ShapeOrigins,
 }

@@ -85,7 +85,7 @@ impl Displacement {
         Ray { origin, direction: back * ray.direction }
     }
 
-    /// The largest coordinate that it reckons with, for what rounding does to a point.
+    /// The largest coordinate that it computes with, for what rounding does to a point.
     pub fn largest(&self) -> f64 {
         self.through.abs().max_element() + self.by.abs().max_element()
     }

@@ -32,7 +32,7 @@ pub(super) const GROUND: &str = "ground";
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Shape {
-    /// The Utah teapot, standing on y = 0, its spout towards +x.
+    /// The Utah teapot, resting on y = 0, its spout towards +x.
     Teapot,
     /// The Stanford bunny, about 2 high.
     Bunny,
@@ -68,7 +68,7 @@ pub enum Shape {
     Subdivision(Box<Cage>),
     /// A solid made of other objects.
     Composite(Box<Composite>),
-    /// The curves in which two objects meet; lines without triangles.
+    /// The intersection curves of two objects; lines without triangles.
     Curve(Box<[Object; 2]>),
     /// A solid with rounded edges.
     Rounded(Box<RoundedSolid>),
@@ -152,9 +152,11 @@ impl Shape {
 }
 
 impl Object {
-    /// The materials of its surface, each once, and which of them its triangles have; nothing if that is the same for all.
+    /// The materials of its surface, each once, and which of them its triangles have; nothing if that is the same for
+    /// all.
     ///
-    /// - `operand_of`: for each triangle of a composite its innermost operand, as [`ShapeMesh`](super::ShapeMesh) tells.
+    /// - `operand_of`: for each triangle of a composite its innermost operand, as [`ShapeMesh`](super::ShapeMesh)
+    ///   tells.
     pub fn materials(&self, operand_of: &[u32]) -> (Vec<Material>, Vec<u32>) {
         let Some((composite, whole)) = self.composite() else {
             return (vec![self.own_material().unwrap_or_default()], Vec::new());

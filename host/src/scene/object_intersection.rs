@@ -1,4 +1,4 @@
-//! Curves in which objects meet.
+//! Intersection curves of objects.
 
 use super::object::Object;
 use super::shape_mesh::ShapeMesh;
@@ -10,7 +10,7 @@ use crate::solid::moved;
 use crate::surface::Tolerance;
 use glam::DAffine3;
 
-/// The curves in which two objects of a scene meet.
+/// The intersection curves of two objects of a scene.
 #[derive(Clone, Debug)]
 pub struct ObjectIntersection {
     /// The numbers of the objects in the scene, the lower first.
@@ -19,7 +19,7 @@ pub struct ObjectIntersection {
     pub intersection: Intersection,
 }
 
-/// The curves in which each two objects of a scene meet; pairs whose boxes do not touch are left out.
+/// The intersection curves of each two objects of a scene; pairs whose boxes do not touch are left out.
 ///
 /// # Errors
 /// [`SceneError`] if an object has no triangles.
@@ -41,7 +41,7 @@ pub fn object_intersections(scene: &Scene, precision: &CurvePrecision) -> Result
     Ok(meetings)
 }
 
-/// The curves in which two objects meet, in the coordinates that the objects are placed in.
+/// The intersection curves of two objects, in the coordinates that the objects are placed in.
 ///
 /// - `tolerance`: of the triangles, in these coordinates.
 pub(super) fn intersect_shapes(
@@ -63,7 +63,7 @@ fn between(one: &ShapeMesh, two: &ShapeMesh, precision: &CurvePrecision) -> Inte
 }
 
 impl Object {
-    /// What its shape was made of, where it is placed.
+    /// The mesh of its shape, moved to where the object is.
     pub(super) fn in_place(&self, shape_mesh: ShapeMesh) -> ShapeMesh {
         let (mesh, surfaces) = moved(&shape_mesh.mesh, &shape_mesh.surfaces, &DAffine3::from_mat4(self.transform));
         ShapeMesh { mesh, surfaces, ..shape_mesh }

@@ -9,8 +9,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 impl Contents {
-    /// The octrees over the objects that are kept. Those that were built last are given again for the same objects: a
-    /// change of any setting but those of geometry builds none.
+    /// The octrees over the objects that are included. Those that were built last are given again for the same objects:
+    /// a change of any setting but those of geometry builds none.
     ///
     /// # Errors
     /// [`OctreeError`], for more triangles than an octree takes.
@@ -31,7 +31,7 @@ impl Contents {
         self.octrees.times()
     }
 
-    /// The octree over the objects that are kept and stand still; none if they have no triangles.
+    /// The octree over the static objects that are included; none if they have no triangles.
     fn still(&self, kept: &AccelerationKey) -> Result<Option<SceneOctree>, OctreeError> {
         let stands = |object: usize| kept.objects[object] && !(kept.motions && self.objects[object].motion.is_some());
         let (triangles, triangle_of) = match (0..self.objects.len()).all(stands) {
@@ -49,7 +49,7 @@ impl Contents {
         Ok(Some(SceneOctree { octree, triangle_of }))
     }
 
-    /// Octrees over the objects that are kept and move, one for each motion.
+    /// Octrees over the moving objects that are included, one for each motion.
     fn moving(&self, kept: &AccelerationKey) -> Result<Vec<(Motion, SceneOctree)>, OctreeError> {
         let mut groups: Vec<(Motion, Vec<u32>)> = Vec::new();
         for (object, is_kept) in self.objects.iter().zip(&kept.objects) {

@@ -1,9 +1,9 @@
-//! Where the objects of a scene stand in its script, for errors that come to light when they are made.
+//! Where in a script the objects of a scene got their shapes, for errors that show when these are tessellated.
 
 use super::SceneError;
 use std::collections::HashMap;
 
-/// A place in a script.
+/// A position in a script.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ScriptPosition {
     /// Line, from 1.
@@ -30,7 +30,7 @@ impl PartialEq for ShapeOrigins {
 }
 
 impl ShapeOrigins {
-    /// An error with the place where the object that it names got its shape, if that is known.
+    /// An error with the position where the object that it names got its shape, if that is known.
     pub(super) fn located(&self, error: SceneError) -> SceneError {
         let position = match &error {
             SceneError::Object { object, .. } | SceneError::Shape { object, .. } => self.of.get(object),

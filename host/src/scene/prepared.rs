@@ -265,7 +265,7 @@ impl Contents {
         &self.object(triangle).materials[self.material_number(triangle) as usize]
     }
 
-    /// Which of the materials of its object a triangle has.
+    /// The number of a triangle's material among those of its object.
     pub fn material_number(&self, triangle: u32) -> u32 {
         let object = self.object(triangle);
         object.materials_from.map_or(0, |from| self.material_of[(from + triangle - object.first) as usize])
@@ -291,7 +291,8 @@ impl Contents {
         object.normals_from.map(|from| &self.normals[(from + triangle - object.first) as usize])
     }
 
-    /// The parameters of the corners of a triangle, where a texture or its exact surface needs them: 0..1 over the domain of its exact surface.
+    /// The parameters of the corners of a triangle, where a texture or its exact surface needs them: 0..1 over the
+    /// domain of its exact surface.
     pub fn parameters(&self, triangle: u32) -> Option<&[DVec2; 3]> {
         let object = self.object(triangle);
         object.parameters_from.map(|from| &self.parameters[(from + triangle - object.first) as usize])

@@ -28,7 +28,8 @@ pub enum SurfaceSheet {
     Spline {
         /// The surface.
         surface: Box<SplineSurface>,
-        /// Closed loops of curves in its parameters; what an odd number of them surrounds is there. Without any, all is.
+        /// Closed loops of curves in its parameters; what an odd number of them surrounds is there. Without any, all
+        /// is.
         loops: Vec<Vec<SplineCurve>>,
     },
     /// A hole that is filled smoothly.
@@ -40,7 +41,7 @@ pub enum SurfaceSheet {
     },
 }
 
-/// Why a sculpture cannot be made.
+/// A fault that keeps a sculpture from being made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SculptureError {
     /// A hole that cannot be filled.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 /// Most samples in a pixel.
 pub const MAX_SAMPLES: u32 = 65_536;
-/// Most photons that are followed at a time: kept, they take up to 1.2 GB.
+/// Most photons that are traced at a time: stored, they take up to 1.2 GB.
 pub const MAX_PHOTONS: u32 = 16_000_000;
 /// Deepest chain of reflections.
 pub const MAX_REFLECTION_DEPTH: u32 = 1_000;
@@ -25,7 +25,7 @@ pub struct Settings {
     pub light: LightSettings,
     /// Solutions by radiosity.
     pub radiosity: RadiositySettings,
-    /// Light that is followed from lamps.
+    /// Photons that are traced from lamps.
     pub photons: PhotonSettings,
 }
 
@@ -84,13 +84,13 @@ pub struct LightSettings {
 /// What becomes of light that a mirror or glass throws from a lamp on what is neither.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Caustics {
-    /// It counts nothing. Highlights of lamps, too, are cut off on what is seen by spread light; light goes through polished
-    /// bodies as if they did not bend it, and light of a sky that mirrors and glass throw counts.
+    /// It counts nothing. Highlights of lamps, too, are cut off on what is seen by spread light; light goes through
+    /// polished bodies as if they did not bend it, and light of a sky that mirrors and glass throw counts.
     #[default]
     LeftOut,
     /// Rays from the eye find it by chance only: such pictures take very many samples.
     PathTraced,
-    /// It is followed from lamps and kept as photons where it arrives: two-way ray tracing.
+    /// It is traced from lamps and stored as photons where it arrives: two-way ray tracing.
     PhotonMapped,
 }
 
@@ -108,15 +108,15 @@ pub struct RadiositySettings {
     pub tolerance: f64,
 }
 
-/// Light that is followed from lamps.
+/// Photons that are traced from lamps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct PhotonSettings {
-    /// How many are followed each time.
+    /// How many are traced each time.
     pub count: u32,
     /// The largest radius over which a photon is spread, scene units; without one, a twentieth of the scene's diagonal.
     pub radius: Option<f64>,
-    /// Where light is followed from lamps: 2 to this power voxels are along the scene, a point in each stands for the
+    /// Where photons are traced from lamps: 2 to this power voxels are along the scene, a point in each stands for the
     /// surface there, and rays meet these points; without a word, they meet the surfaces.
     pub point_depth: Option<u32>,
 }
@@ -238,7 +238,7 @@ impl PhotonSettings {
 
     fn check(&self) -> Result<(), String> {
         if self.radius.is_some_and(|radius| !(radius > 0.0 && radius.is_finite())) {
-            return Err("the radius of caught light is not a length above 0".into());
+            return Err("the radius of photons is not a length above 0".into());
         }
         if self.point_depth.is_some_and(|depth| !(1..=MAX_POINT_DEPTH).contains(&depth)) {
             return Err(format!("a resolution of voxels is not within 1 to {MAX_POINT_DEPTH}"));

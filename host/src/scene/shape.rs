@@ -147,8 +147,8 @@ impl Shape {
         }
     }
 
-    /// Largest measured distance between the triangles for a tolerance and the exact surfaces or the limit surface, in own
-    /// coordinates; of a composite that of the triangles whose exact surfaces are known; 0 where none are.
+    /// Largest measured distance between the triangles for a tolerance and the exact surfaces or the limit surface, in
+    /// own coordinates; of a composite that of the triangles whose exact surfaces are known; 0 where none are.
     ///
     /// # Errors
     /// As [`Shape::tessellate`].
@@ -221,7 +221,7 @@ impl RoundedSolid {
         Ok(ShapeMesh { mesh, surfaces, operand_of, ..ShapeMesh::default() })
     }
 
-    /// How far triangles that were made are from the rounded surface.
+    /// How far triangles are from the rounded surface.
     fn distance(&self, mesh: &Mesh, tolerance: Tolerance) -> Result<f64, ShapeError> {
         let (solid, _) = self.solid(tolerance)?;
         let distance = solid.distance_of_rounded(mesh, &self.choice(), self.radius, tolerance.chord);

@@ -11,8 +11,8 @@ pub struct ShapeMesh {
     pub mesh: Mesh,
     /// The exact surfaces that the triangles name; none where only triangles are known.
     pub surfaces: Vec<Option<Arc<dyn Surface>>>,
-    /// For each triangle of a composite its innermost operand, counted through in the order of the script; empty for
-    /// other shapes.
+    /// For each triangle of a composite its innermost operand, numbered consecutively in the order of the script; empty
+    /// for other shapes.
     pub operand_of: Vec<u32>,
     /// Lines, in own coordinates.
     pub lines: Polylines,

@@ -7,7 +7,7 @@ use crate::numeric::debug_hash;
 use rustc_hash::FxHashMap;
 use std::rc::Rc;
 
-/// Bytes of a triangle of a scene that is made ready: corners, normals, numbers, and half a vertex.
+/// Bytes of a triangle of a prepared scene: corners, normals, numbers, and half a vertex.
 const BYTES: u64 = 64;
 
 /// The triangles of shapes, as long as an object needs them.

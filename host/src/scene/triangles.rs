@@ -12,7 +12,7 @@ const MAX_TRIANGLES: u64 = 1 << 30;
 
 impl Scene {
     /// The triangles of all objects in scene coordinates, with normals, and with parameters if all objects have them. A
-    /// surface is named OBJECT, or OBJECT/NUMBER where an object has several, and looks as its material.
+    /// surface is named OBJECT, or OBJECT/NUMBER where an object has several, and has its material.
     ///
     /// # Errors
     /// [`SceneError`], for a value out of range or a mesh that cannot be made or read.
@@ -69,12 +69,12 @@ impl Scene {
     }
 }
 
-/// A material in the terms of glTF, which has one colour: what is mirrored counts to it, as a metal. Those terms are a part of
-/// the principled material's.
+/// A metallic-roughness material of glTF, which has one colour: what is mirrored counts to it, as a metal. Those terms
+/// are a part of the principled material's.
 ///
 /// # Source
-/// The exponent n of a highlight belongs to facets of the roughness a with n = 2 / a^2 - 2 (Walter et al. 2007), and a is the
-/// square of the number that glTF wants.
+/// The exponent n of a highlight belongs to facets of the roughness a with n = 2 / a^2 - 2 (Walter et al. 2007), and a
+/// is the square of the number that glTF wants.
 fn metallic_roughness(material: &Material) -> MetallicRoughness {
     if let MaterialKind::Principled(principled) = &material.body {
         let base = principled.base_color.mean_bands().clamp(DVec3::ZERO, DVec3::ONE);

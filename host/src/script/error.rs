@@ -11,7 +11,7 @@ use std::path::PathBuf;
 /// Steps that a script may take.
 pub const MAX_OPERATIONS: u64 = 20_000_000;
 
-/// Why a script gives no scene.
+/// A fault that keeps a script from giving a scene.
 #[derive(Debug, thiserror::Error)]
 pub enum ScriptError {
     /// The file cannot be read.
@@ -36,7 +36,7 @@ pub enum ScriptError {
         /// The file.
         path: PathBuf,
     },
-    /// The script is wrong at a place.
+    /// The script is wrong at some position.
     #[error("{0}")]
     Fault(Box<ScriptFault>),
     /// A value was given for a parameter that the script does not ask for.
@@ -61,7 +61,7 @@ pub enum ScriptError {
     },
 }
 
-/// A place in a script and what is wrong there.
+/// A fault at a position of a script.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ScriptFault {
     /// The script.
@@ -92,11 +92,11 @@ impl fmt::Display for ScriptFault {
     }
 }
 
-/// Why a script is stopped when it has taken nearly all memory.
+/// The error of a script that has taken nearly all memory.
 #[derive(Clone)]
 pub(super) struct OutOfMemory;
 
-/// Turns an error of the interpreter into ours, with its place in the script.
+/// Turns an error of the interpreter into ours, with its position in the script.
 pub(super) fn locate(error: &EvalAltResult, script: &str, file: &str) -> ScriptError {
     let (message, position) = describe(error);
     let line = position.line().unwrap_or(0);
@@ -130,7 +130,7 @@ pub(super) fn describe(error: &EvalAltResult) -> (String, Position) {
         E::ErrorDataTooLarge(what, _) => format!("too large: {what}"),
         other => {
             let mut plain = other.to_string();
-            // The place stands in front of the message already.
+            // The position is in front of the message already.
             if let Some(end) = plain.rfind(" (line ") {
                 plain.truncate(end);
             }

@@ -37,7 +37,7 @@ const INDEX: NumberKind = NumberKind(1e-6, 1e6);
 const ABSORPTION: Defaulted<Powers, f64> =
     with_default(Powers, 0.0, "light falls by exp(-absorption) in one unit of length");
 
-/// Which of several bodies in one place is there.
+/// The priority by which one of several bodies in one place is there.
 const fn priority(default: i32) -> Defaulted<Integer<i32>, i32> {
     with_default(
         Integer(-Material::MOST_PRIORITY, Material::MOST_PRIORITY),

@@ -113,7 +113,7 @@ impl Builder {
         }
         let [first, second] = [self.spline_surface(handles[0])?, self.spline_surface(handles[1])?];
         let [first, second] = joined(&first, &second, sides, smoothness).map_err(|error| error.to_string())?;
-        // The second may have been turned round.
+        // The second may have been reversed.
         let at = |side| joint(&first, &second, [sides[0], side], SAMPLES);
         let found = [at(sides[1]), at(sides[1].opposite())];
         let found = if found[0].gap <= found[1].gap { found[0] } else { found[1] };

@@ -32,7 +32,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             ),
             tolerance: TOLERANCE,
         )
-        "Rounds edges between flat faces of an object, by cutting and grinding: a parabola across each edge."
+        "Rounds edges between flat faces of an object, by corner cutting: a parabola across each edge."
         "let die = cube(2).round_edges(0.3);"
         |builder| {
             let rounded = builder.object(object)?;

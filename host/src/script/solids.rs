@@ -113,7 +113,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             height: with_default(Length, 3.0, "of both together"),
             tolerance: TOLERANCE,
         )
-        "Adds a hyperboloid of two sheets, closed by discs: two bowls with their tips towards each other."
+        "Adds a hyperboloid of two sheets, closed by discs: two sheets with their tips towards each other."
         "let lenses = bowls(0.5, 1, 2);"
         |builder| add(builder, Primitive::HyperboloidOfTwoSheets { gap, radius, height }, tolerance)
     },
@@ -139,7 +139,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             angle: with_default(NumberKind(0.0, 360.0), 360.0, "how far, degrees"),
             tolerance: TOLERANCE,
         )
-        "Adds a polygon of the plane of x and y, with x not below 0, that turned about the y axis from the z axis on towards the x axis."
+        "Adds a polygon of the plane of x and y, with x not below 0, revolved about the y axis from the z axis on towards the x axis."
         "let slice = turning([[0, 0], [2, 0], [2, 1], [0, 1]], 60);"
         |builder| add(builder, Primitive::RevolvedPolygon { contours: flat(contours), turn: angle / 360.0 }, tolerance)
     },
@@ -151,7 +151,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             ),
             tolerance: TOLERANCE,
         )
-        "Adds the solid of a closed profile of lines and arcs that turned about the y axis."
+        "Adds the solid of a closed profile of lines and arcs revolved about the y axis."
         "let pawn = revolution([[0, 0], [1, 0], [0.4, 1.2], [0.25, 1.5, 0.8], [0, 2]]);"
         |builder| add(builder, Primitive::Revolution { profile }, tolerance)
     },
@@ -160,7 +160,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             profile: required(PointsKind, "control points [r, y]; the curve begins in the first and ends in the last"),
             tolerance: TOLERANCE,
         )
-        "Adds the solid of a smooth profile that turned about the y axis: the cubic B-spline of some points, closed over the axis."
+        "Adds the solid of a smooth profile revolved about the y axis: the cubic B-spline of some points, closed over the axis."
         "let vase = lathe([[1, 0], [1.4, 1], [0.3, 2], [0.8, 3]]);"
         |builder| add(builder, Primitive::SmoothRevolution { profile: flat([profile]).concat() }, tolerance)
     },
@@ -172,11 +172,11 @@ pub(super) const FUNCTIONS: &[Function] = &[
                 "the curve, or control points of the cubic B-spline that begins in the first and ends in the last",
             ),
             closed: with_default(Flag, false, "whether the curve of control points is closed"),
-            twist: with_default(ANY_NUMBER, 0.0, "how far the polygon turns about the curve, degrees"),
+            twist: with_default(ANY_NUMBER, 0.0, "how far the polygon is twisted about the curve, degrees"),
             taper: with_default(NumberKind(0.0, 1e6), 1.0, "how much wider the polygon is at the end"),
             tolerance: TOLERANCE,
         )
-        "Adds the solid of a polygon that went along a curve, square to it."
+        "Adds the solid of a polygon swept along a curve, square to it."
         "let horn = sweep(#{ contours: [[-1, -1], [1, -1], [0, 1]], path: [[0, 0, 0], [0, 5, 0], [5, 5, 0]], taper: 0.2 });"
         |builder| {
             let path = Box::new(path.curve(closed)?);

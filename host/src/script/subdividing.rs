@@ -1,4 +1,4 @@
-//! Functions of the scene language that make smooth shapes of polyhedra by cutting and grinding, one row each.
+//! Functions of the scene language that make smooth shapes of polyhedra by corner cutting, one row each.
 
 use super::builder::Builder;
 use super::function::{Function, function};
@@ -26,7 +26,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             faces: required(Indices, "the vertices of each face, counter-clockwise from outside"),
             tolerance: TOLERANCE,
         )
-        "Adds the smooth limit of a polyhedron, closed or open, of which corners are cut and edges ground again and again, adaptively to the tolerance; see sharpen_creases() and the like."
+        "Adds the smooth limit of a polyhedron, closed or open, whose corners and edges are cut again and again, adaptively to the tolerance; see sharpen_creases() and the like."
         "let pebble = subdivision([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]], [[0, 1, 2], [0, 2, 3], [0, 3, 1], [3, 2, 1]]);"
         |builder| {
             let cage = Cage { points, faces, sharpenings: Vec::new() };

@@ -130,7 +130,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     },
     function! {
         revolved(profile: required(CurveKind, "the curve"), tolerance: TOLERANCE)
-        "Adds the surface of a curve in the plane of x and y that turned about the y axis, exactly, as a rational surface: u turns, v is along the curve; outside is on the right of a curve that goes up."
+        "Adds the surface of a curve in the plane of x and y revolved about the y axis, exactly, as a rational surface: u goes round, v is along the curve; outside is on the right of a curve that goes up."
         "let bowl = revolved(curve([[0, 0, 0], [2, 0, 0], [2, 1, 0]], bezier()));"
         |builder| {
             let surface = revolved(&profile.curve(false)?).map_err(|error| error.to_string())?;

@@ -25,7 +25,7 @@ const ON_WITHOUT_A_WORD: Defaulted<Flag, bool> = with_default(Flag, true, "wheth
 pub(super) const FUNCTIONS: &[Function] = &[
     function! {
         teapot(tolerance: TOLERANCE)
-        "Adds the Utah teapot, standing on y = 0, its spout towards +x; 6.525 long and 3.15 high."
+        "Adds the Utah teapot, resting on y = 0, its spout towards +x; 6.525 long and 3.15 high."
         "let pot = teapot(#{ tolerance: 0.002 });"
         |builder| builder.add(Shape::Teapot, tolerance).map(Dynamic::from)
     },
@@ -325,12 +325,12 @@ pub(super) const FUNCTIONS: &[Function] = &[
             photons: with_fallback(
                 Integer(1, MAX_PHOTONS),
                 PhotonSettings::DEFAULT.count,
-                "how many ways of light are followed for eight samples of each pixel",
+                "how many photons are traced for eight samples of each pixel",
             ),
             radius: optional(
                 NumberKind(0.0, f64::INFINITY),
                 "a twentieth of the scene's diagonal",
-                "the largest over which caught light is spread, scene units",
+                "the largest over which photons are spread, scene units",
             ),
             voxels: with_default(
                 Integer(0, MAX_POINT_DEPTH),
@@ -340,7 +340,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             .note("none"),
             on: with_default(Flag, true, "whether it does; without it, --renderer two-way still may"),
         )
-        "Follows light from lamps through mirrors and glass and catches it where it arrives, before rays from the eye ask for it: caustics, as `--renderer two-way` shows them."
+        "Traces photons from lamps through mirrors and glass and stores them where they arrive, before rays from the eye ask for them: caustics, as `--renderer two-way` shows them."
         "two_way(#{ photons: 500000 });"
         |builder| {
             let settings = &mut builder.scene.settings;

@@ -7,7 +7,7 @@ use super::Surface;
 use super::tessellation::TessellationError;
 use crate::mesh::Mesh;
 
-/// Distances between points of a mesh and the exact surface, model units.
+/// Chord errors: distances between points of a mesh and the exact surface, model units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ChordError {
     /// The largest.
@@ -18,8 +18,8 @@ pub struct ChordError {
     pub samples: usize,
 }
 
-/// Measures how far `mesh` is from `surfaces`, at the points of a triangular lattice of `density` steps a side (>= 1) on
-/// each triangle.
+/// Measures how far `mesh` is from `surfaces`, at the points of a triangular lattice of `density` steps a side (>= 1)
+/// on each triangle.
 ///
 /// Each distance is to the nearest point of the piece of surface that the triangle belongs to; the result does not
 /// depend on the number of threads.

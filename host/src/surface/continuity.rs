@@ -43,7 +43,7 @@ impl SurfaceSide {
 /// The continuity that holds along a side in which two surfaces meet: the largest differences found there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Joint {
-    /// Which surfaces, and with which sides.
+    /// The surfaces, and the sides with which they meet.
     pub sides: [(usize, SurfaceSide); 2],
     /// The distance between points of the two at equal parts of their sides, model units.
     pub gap: f64,
@@ -56,8 +56,8 @@ pub struct Joint {
     pub curvature: f64,
 }
 
-/// Measures how side `sides[0]` of `a` meets side `sides[1]` of `b`, at `samples` points (>= 2) along them; the sides may
-/// run in opposite directions. Points where a derivative vanishes have no curvature and are left out of that.
+/// Measures how side `sides[0]` of `a` meets side `sides[1]` of `b`, at `samples` points (>= 2) along them; the sides
+/// may run in opposite directions. Points where a derivative vanishes have no curvature and are left out of that.
 pub fn joint<A: Curved + ?Sized, B: Curved + ?Sized>(a: &A, b: &B, sides: [SurfaceSide; 2], samples: usize) -> Joint {
     let fraction = |k: usize| k as f64 / (samples.max(2) - 1) as f64;
     let at_a = |fraction| along_side(a.domain(), sides[0] as usize, fraction);

@@ -56,7 +56,7 @@ fn turned() -> Vec<(&'static str, Box<dyn Surface>)> {
     members
 }
 
-/// Surfaces of an edge along a curve in space: as it is, and turned and narrowed to a point.
+/// Surfaces of an edge along a curve in space: as it is, and twisted and narrowed to a point.
 fn swept() -> Vec<(&'static str, Box<dyn Surface>)> {
     let path = [[0.0, 0.0, 0.0], [0.0, 3.0, 1.0], [4.0, 4.0, 2.0], [6.0, 0.0, 5.0], [3.0, -2.0, 6.0]];
     let path = SplineCurve::new(Basis::clamped(3, 5).unwrap(), &path.map(DVec3::from_array), &[]).unwrap();

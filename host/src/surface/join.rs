@@ -17,7 +17,7 @@ pub enum Smoothness {
     G2,
 }
 
-/// Why two surfaces cannot be joined.
+/// A fault that keeps two surfaces from being joined.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum JoinError {
     /// Sides of different kinds.
@@ -137,12 +137,14 @@ impl Rows {
 /// Joins `second` to `first`: the rows of control points of `second` at `sides[1]` are changed so that it meets
 /// `sides[0]` of `first` as smoothly as asked.
 ///
-/// Both come back passing through their outer rows, `first` otherwise unchanged; `second` has both its parameters reversed
-/// if its side runs the other way. G0 changes one row, G1 two, G2 three; how fast and how unevenly the parameter advances
-/// across the joint (its bias and tension) is taken from `second` as it was. The outsides must agree.
+/// Both come back passing through their outer rows, `first` otherwise unchanged; `second` has both its parameters
+/// reversed if its side runs the other way. G0 changes one row, G1 two, G2 three; how fast and how unevenly the
+/// parameter advances across the joint (its bias and tension) is taken from `second` as it was. The outsides must
+/// agree.
 ///
 /// # Errors
-/// [`JoinError`] if the two sides are splines of different kinds, the degree is too low, or weights would not be positive.
+/// [`JoinError`] if the two sides are splines of different kinds, the degree is too low, or weights would not be
+/// positive.
 pub fn joined(
     first: &SplineSurface,
     second: &SplineSurface,

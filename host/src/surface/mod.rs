@@ -1,12 +1,12 @@
 //! Surfaces that are known exactly, and the meshes that approximate them to a tolerance.
 //!
-//! A [`SurfaceOfRevolution`] surface is what a [`Profile`] makes around an axis: cylinder, cone, disc, torus, paraboloid, hyperboloid.
-//! A [`Swept`] surface is what a straight edge makes that a curve carries along.
-//! A [`SplineSurface`] is a mesh of control points over a [`crate::curve::Basis`] in each direction; its
-//! [`SplineSurface::patches`] are what is tessellated. [`tessellate`] makes grids, the better choice for even surfaces;
-//! [`tessellate_adaptively`] makes triangles that are small only where the surface bends, and [`tessellate_trimmed`] the
-//! same for surfaces of which curves cut parts off. [`joined`] makes surfaces meet smoothly, [`continuity`] tells how
-//! smoothly they do. Holes of any number of sides are filled by [`n_sided_patch`] or [`patches_around_vertex`].
+//! A [`SurfaceOfRevolution`] is what a [`Profile`] makes around an axis: cylinder, cone, disc, torus, paraboloid,
+//! hyperboloid. A [`Swept`] surface is what a straight edge makes that a curve carries along. A [`SplineSurface`] is a
+//! mesh of control points over a [`crate::curve::Basis`] in each direction; its [`SplineSurface::patches`] are what is
+//! tessellated. [`tessellate`] makes grids, the better choice for even surfaces; [`tessellate_adaptively`] makes
+//! triangles that are small only where the surface bends, and [`tessellate_trimmed`] the same for surfaces of which
+//! curves cut parts off. [`joined`] makes surfaces meet smoothly, [`continuity`] tells how smoothly they do. Holes of
+//! any number of sides are filled by [`n_sided_patch`] or [`patches_around_vertex`].
 
 mod accuracy;
 mod bezier;

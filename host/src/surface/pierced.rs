@@ -35,15 +35,15 @@ pub struct PiercingLine {
     pub outward: bool,
 }
 
-/// Where a line goes through `surface`, near the parameters `guess`. Beyond a border the tangent plane at the border goes
-/// on.
+/// Where a line goes through `surface`, near the parameters `guess`. Beyond a border the tangent plane at the border
+/// goes on.
 ///
-/// None where no step settles within `reach`, model units, of the point of the line, neither from the guess nor from half
-/// the reach further out: where the line passes by the surface or grazes it.
+/// None where the steps do not converge within `reach`, model units, of the point of the line, neither from the guess
+/// nor from half the reach further out: where the line passes by the surface or grazes it.
 ///
 /// # Source
-/// Newton's method, as for patches in Toth 1985, "On ray tracing parametric surfaces": each step meets the tangent plane.
-/// Ours: that borders hold, and that poles and seams are left by way of the nearest point.
+/// Newton's method, as for patches in Toth 1985, "On ray tracing parametric surfaces": each step meets the tangent
+/// plane. Ours: that borders hold, and that poles and seams are left by way of the nearest point.
 pub fn pierced<S: Surface + ?Sized>(
     surface: &S,
     line: &PiercingLine,

@@ -1,4 +1,4 @@
-//! Profiles: curves in the half plane beside an axis, which make surfaces when they turn about it.
+//! Profiles: curves in the half plane beside an axis, which make surfaces when they revolve about it.
 
 use std::f64::consts::TAU;
 
@@ -43,7 +43,8 @@ pub enum Profile {
         /// t at the beginning and at the end, model units.
         reach: [f64; 2],
     },
-    /// A piece of a hyperbola that turns its side to the axis, (across cosh t, along sinh t): it never meets the axis.
+    /// A piece of the hyperbola of one sheet, (across cosh t, along sinh t): it turns its side to the axis, and never
+    /// meets it.
     HyperbolaOneSheet {
         /// Its least distance from the axis.
         across: f64,
@@ -52,7 +53,7 @@ pub enum Profile {
         /// t at the beginning and at the end.
         reach: [f64; 2],
     },
-    /// A piece of a hyperbola that meets the axis, (across sinh t, along cosh t).
+    /// A piece of the hyperbola of two sheets, which meets the axis, (across sinh t, along cosh t).
     HyperbolaTwoSheets {
         /// Its half axis across the axis of revolution.
         across: f64,
@@ -202,8 +203,8 @@ impl Profile {
         }
     }
 
-    /// Newton's method on (C - point) . C' = 0. Long steps must come nearer; short ones, where distances do not differ by
-    /// their digits any more, must become shorter.
+    /// Newton's method on (C - point) . C' = 0. Long steps must come nearer; short ones, where distances do not differ
+    /// by their digits any more, must become shorter.
     fn nearest_by_newton(&self, point: DVec2, guess: f64) -> f64 {
         const SHORT: f64 = 1e-6;
         let mut v = guess.clamp(0.0, 1.0);

@@ -21,11 +21,11 @@ fn circle_weight(k: usize) -> f64 {
     if k.is_multiple_of(2) { FRAC_1_SQRT_2 } else { 1.0 }
 }
 
-/// The surface that `profile`, a curve in the plane z = 0, makes when it turns about the y axis.
+/// The surface that `profile`, a curve in the plane z = 0, makes when it revolves about the y axis.
 ///
-/// u turns from the x axis towards -z, 0..=4 for a whole turn, in four exact rational quarters; v is the parameter of the
-/// profile. The outside is on the right of a profile that is followed upwards at x > 0. A point of the profile on the
-/// axis becomes a pole.
+/// u turns from the x axis towards -z, 0..=4 for a whole turn, in four exact rational quarters; v is the parameter of
+/// the profile. The outside is on the right of a profile that is followed upwards at x > 0. A point of the profile on
+/// the axis becomes a pole.
 ///
 /// # Errors
 /// [`SplineError`] if the profile lies out of the plane z = 0, with the control point as row 0.
@@ -43,8 +43,8 @@ pub fn revolved(profile: &SplineCurve) -> Result<SplineSurface, SplineError> {
     Ok(SplineSurface::of([circle_basis()?, profile.basis().clone()], control))
 }
 
-/// The sphere around the origin as a rational surface: u turns about the y axis, 0..=4, v runs from the lower pole to the
-/// upper, 0..=2; outside out.
+/// The sphere around the origin as a rational surface: u goes about the y axis, 0..=4, v runs from the lower pole to
+/// the upper, 0..=2; outside out.
 ///
 /// # Errors
 /// [`SplineError`] if the radius is out of range.
@@ -56,7 +56,7 @@ pub fn rational_sphere(radius: f64) -> Result<SplineSurface, SplineError> {
     revolved(&SplineCurve::new(basis, &points, &weights)?)
 }
 
-/// The torus around the y axis as a rational surface: a tube of radius `tube` around a circle of radius `ring`; u turns
+/// The torus around the y axis as a rational surface: a tube of radius `tube` around a circle of radius `ring`; u goes
 /// about the axis and v around the tube from its outermost circle upwards, both 0..=4; outside out.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! Which sides of which surfaces are the same curve.
+//! Shared curves: the sides of surfaces that are one curve.
 
 use std::collections::HashMap;
 
@@ -7,7 +7,7 @@ use glam::DVec2;
 use super::{Surface, between};
 use crate::mesh::bits;
 
-/// A side of a surface.
+/// The use of a curve as a side of a surface.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CurveUse {
     /// The curve; sides of neighbours have the same.
@@ -18,14 +18,14 @@ pub(super) struct CurveUse {
     pub is_point: bool,
 }
 
-/// All curves: their number, where each was found first (surface and side), and the four sides of each surface.
+/// All shared curves: their number, where each was found first (surface and side), and the four sides of each surface.
 pub(super) struct SharedCurves {
     pub first: Vec<(usize, usize)>,
     pub sides: Vec<[CurveUse; 4]>,
 }
 
-/// The parameters at `fraction` of side `side`: 0 is v lowest, 1 is v highest (u rises along both), 2 is u lowest, 3 is u
-/// highest (v rises along both).
+/// The parameters at `fraction` of side `side`: 0 is v lowest, 1 is v highest (u rises along both), 2 is u lowest, 3 is
+/// u highest (v rises along both).
 pub(super) fn along_side([low, high]: [DVec2; 2], side: usize, fraction: f64) -> DVec2 {
     match side {
         0 => DVec2::new(between(low.x, high.x, fraction), low.y),

@@ -184,7 +184,7 @@ fn surfaces_are_joined_as_smoothly_as_asked() {
                 let is_curved_alike = joint.curvature_difference < 1e-10 * joint.curvature;
                 assert_eq!(is_curved_alike, smoothness >= Smoothness::G2, "{smoothness:?} {joint:?}");
             }
-            // A side that runs the other way: the second surface comes back turned.
+            // A side that runs the other way: the second surface comes back reversed.
             let against = second.reversed(Direction::U).reversed(Direction::V);
             let [a, b] = joined(&first, &against, [HighU, HighU], smoothness).unwrap();
             assert_eq!(joint(&a, &b, [HighU, LowU], 9).gap, 0.0);

@@ -8,10 +8,10 @@ use super::curvature::Curved;
 use super::sphere::sine_and_cosine;
 use super::{Profile, Surface, between};
 
-/// The surface that a [`Profile`] makes when it turns about the y axis.
+/// The surface that a [`Profile`] makes when it revolves about the y axis.
 ///
-/// u is the angle from the z axis towards the x axis in turns; v is the parameter of the profile, 0..=1. The outside is on
-/// the right of a profile that is followed upwards.
+/// u is the angle from the z axis towards the x axis in turns; v is the parameter of the profile, 0..=1. The outside is
+/// on the right of a profile that is followed upwards.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SurfaceOfRevolution {
     profile: Profile,
@@ -29,7 +29,7 @@ impl SurfaceOfRevolution {
         SurfaceOfRevolution { profile, turns }
     }
 
-    /// What turns.
+    /// The profile that revolves.
     pub fn profile(&self) -> &Profile {
         &self.profile
     }

@@ -12,10 +12,10 @@ use crate::curve::{Curve, SplineCurve};
 /// Frames that are kept on each span of a curve; between them one more step is made.
 const STATIONS: usize = 32;
 
-/// How a section changes along a curve, evenly in its parameter.
+/// Twist and taper: how a section changes along a curve, evenly in its parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwistAndTaper {
-    /// How far it has turned about the curve at the end, from x towards y; turns.
+    /// How far it is twisted about the curve at the end, from x towards y; turns.
     pub twist_turns: f64,
     /// How much wider it is at the end than at the beginning, 0 or more.
     pub scale: f64,
@@ -163,8 +163,8 @@ fn direction(curve: &SplineCurve, t: f64) -> Option<DVec3> {
     vector.try_normalize()
 }
 
-/// The surface that an edge of a section makes along a [`Spine`]: u runs along the edge, 0..=1, v is the parameter of the
-/// curve. The outside is on the right of the edge, seen against the curve.
+/// The surface that an edge of a section makes along a [`Spine`]: u runs along the edge, 0..=1, v is the parameter of
+/// the curve. The outside is on the right of the edge, seen against the curve.
 #[derive(Clone, Debug)]
 pub struct Swept {
     spine: Arc<Spine>,

@@ -18,7 +18,7 @@ use crate::mesh::{Mesh, bits};
 const MAX_SEGMENTS: usize = 1 << 13;
 /// The most triangles of a mesh.
 const MAX_TRIANGLES: usize = 1 << 24;
-/// Segments and lines of the first look at a surface.
+/// Segments and lines of the estimate for a surface.
 const ESTIMATE_SEGMENTS: usize = 16;
 const ESTIMATE_LINES: usize = 9;
 /// The points where a triangle is measured, as weights of its corners: an error that is quadratic over the triangle is
@@ -45,7 +45,7 @@ impl Tolerance {
     }
 }
 
-/// Why surfaces could not be tessellated or measured.
+/// A fault that keeps surfaces from being tessellated or measured.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TessellationError {
     /// A tolerance that is not a positive number.
@@ -119,7 +119,7 @@ struct Grids {
     segments: Vec<usize>,
 }
 
-/// What a first look at a surface says of one of its two directions.
+/// An estimate of the segments that a surface takes in one of its two directions.
 #[derive(Clone, Copy)]
 struct SegmentEstimate {
     /// Sagitta of a single segment over the whole domain, extrapolated; model units.
@@ -137,7 +137,7 @@ impl SegmentEstimate {
     }
 }
 
-/// The segments that the directions u and v of a surface take by a first look, not rounded; `None` if a point is not
+/// The segments that the directions u and v of a surface take by an estimate, not rounded; `None` if a point is not
 /// finite.
 pub(super) fn estimated_segments<S: Surface>(surface: &S, tolerance: Tolerance) -> Option<[f64; 2]> {
     estimate(surface).map(|estimates| estimates.map(|look| look.segments(tolerance)))
@@ -234,7 +234,7 @@ fn grid_uv([low, high]: [DVec2; 2], counts: [usize; 2], i: usize, j: usize) -> D
     DVec2::new(between(low.x, high.x, fraction(i, counts[0])), between(low.y, high.y, fraction(j, counts[1])))
 }
 
-/// A first look at both directions; `None` if a point is not finite.
+/// Estimates for both directions; `None` if a point is not finite.
 fn estimate<S: Surface>(surface: &S) -> Option<[SegmentEstimate; 2]> {
     let domain = surface.domain();
     let mut estimates = [SegmentEstimate { sagitta: 0.0, turn: 0.0 }; 2];
@@ -270,8 +270,8 @@ fn estimate<S: Surface>(surface: &S) -> Option<[SegmentEstimate; 2]> {
     Some(estimates)
 }
 
-/// Whether a quad with the corners 00, 10, 11, 01 is cut from 10 to 01: if that is clearly nearer to the surface than the
-/// cut from 00 to 11.
+/// Whether a quad with the corners 00, 10, 11, 01 is cut from 10 to 01: if that is clearly nearer to the surface than
+/// the cut from 00 to 11.
 fn is_cut_backward<S: Surface>(surface: &S, middle: DVec2, corners: [DVec3; 4]) -> bool {
     let (center, normal) = (surface.point(middle), surface.normal(middle));
     let height = |a: DVec3, b: DVec3| ((a - center) * 0.5 + (b - center) * 0.5).dot(normal).abs();

@@ -6,7 +6,7 @@ use super::curvature::Curved;
 use super::{Surface, nearest_from};
 use crate::mesh::normal_matrix;
 
-/// A surface as an affine map places it: turned, moved, scaled, sheared or mirrored.
+/// A surface as an affine map places it: rotated, moved, scaled, sheared or mirrored.
 #[derive(Clone, Debug)]
 pub struct TransformedSurface<S> {
     surface: S,
@@ -21,7 +21,7 @@ pub struct TransformedSurface<S> {
 const ALIKE: f64 = 1e-14;
 
 impl<S: Surface> TransformedSurface<S> {
-    /// `surface` moved by `placement`. A mirrored surface is run through with u reversed, so that outside stays outside.
+    /// `surface` moved by `placement`. A mirrored surface is traversed with u reversed, so that outside stays outside.
     pub fn new(surface: S, placement: DAffine3) -> TransformedSurface<S> {
         let is_mirrored = placement.matrix3.determinant() < 0.0;
         let DMat3 { x_axis: x, y_axis: y, z_axis: z } = placement.matrix3;

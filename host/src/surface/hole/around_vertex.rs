@@ -15,8 +15,8 @@ use crate::surface::{Surface, nearest_from};
 /// A patch with a curve and a derivative across it on each of its four sides, u and v in 0..=1.
 ///
 /// # Source
-/// Coons 1967; the twists after Gregory 1974, so that the derivatives across two sides need not agree on the twist at their
-/// corner.
+/// Coons 1967; the twists after Gregory 1974, so that the derivatives across two sides need not agree on the twist at
+/// their corner.
 #[derive(Clone, Debug)]
 pub struct FourSidedPatch {
     /// The curves where u is 0 and 1, by v, with the derivative by u; and where v is 0 and 1, by u, with that by v.
@@ -113,8 +113,9 @@ struct Spoke {
 
 /// Fills a hole by patches that meet at a vertex, each with two sides of the hole.
 ///
-/// - `sides`: an even number, 6 to [`MAX_SIDES`], in order with the hole on the left; the first patch has the last side and
-///   the first. Curves to the vertex begin between the first and the second side, between the third and the fourth, ...
+/// - `sides`: an even number, 6 to [`MAX_SIDES`], in order with the hole on the left; the first patch has the last side
+///   and the first. Curves to the vertex begin between the first and the second side, between the third and the fourth,
+///   ...
 /// - Returns half as many patches, outside out.
 ///
 /// # Errors
@@ -182,8 +183,9 @@ fn spokes(sides: &[HoleSide]) -> Result<Vec<Spoke>, HoleError> {
 impl Spoke {
     /// The curve with the derivative across it that a patch beside it has: `own` at the rim.
     ///
-    /// All along it is a combination of the curve's own derivative and of a vector that runs from `reference`, at the rim,
-    /// to `turned`, at the vertex: the same two for the patches on both sides, which therefore have one tangent plane.
+    /// All along it is a combination of the curve's own derivative and of a vector that runs from `reference`, at the
+    /// rim, to `quarter_turned`, at the vertex: the same two for the patches on both sides, which therefore have one
+    /// tangent plane.
     ///
     /// - `(sin, cos)`: of the angle at the vertex.
     fn ribbon(&self, reference: DVec3, own: DVec3, (sin, cos): (f64, f64)) -> Result<Ribbon, HoleError> {

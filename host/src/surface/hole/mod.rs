@@ -1,8 +1,8 @@
 //! Holes in nets of bicubic patches, filled smoothly: by one patch of N sides, or by N patches that meet at a vertex.
 //!
-//! Both take the curves around the hole and the derivatives across them, and share tangent planes with what is outside, and
-//! with each other, exactly. [`n_sided_patch`] is one function over a regular polygon; [`patches_around_vertex`] makes
-//! four-sided patches, two sides of the hole to each.
+//! Both take the curves around the hole and the derivatives across them, and share tangent planes with what is outside,
+//! and with each other, exactly. [`n_sided_patch`] is one function over a regular polygon; [`patches_around_vertex`]
+//! makes four-sided patches, two sides of the hole to each.
 
 mod around_vertex;
 mod jet;
@@ -25,7 +25,7 @@ pub const MAX_SIDES: usize = 256;
 /// By how much tangents at a corner may leave their common plane, as a part of their length.
 const COPLANAR: f64 = 1e-9;
 
-/// A side of a hole: a cubic curve, run through with the hole on the left seen from outside, and what is beyond it.
+/// A side of a hole: a cubic curve, traversed with the hole on the left seen from outside, and what is beyond it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HoleSide {
     curve: [DVec3; 4],
@@ -52,8 +52,8 @@ impl HoleSide {
         HoleSide { curve, across: [0, 1, 2, 3].map(|k| (curve[k] - inner[k]) * 3.0) }
     }
 
-    /// The sides of a hole moved by `placement`. A reflection reverses their order and directions, so that outside stays
-    /// outside.
+    /// The sides of a hole moved by `placement`. A reflection reverses their order and directions, so that outside
+    /// stays outside.
     pub fn transformed(sides: &[HoleSide], placement: &DAffine3) -> Vec<HoleSide> {
         let moved = |side: &HoleSide| HoleSide {
             curve: side.curve.map(|point| placement.transform_point3(point)),
@@ -76,7 +76,7 @@ impl HoleSide {
     }
 }
 
-/// Why a hole cannot be filled.
+/// A fault that keeps a hole from being filled.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum HoleError {
     /// Too few sides, too many, or an odd number where two belong to each patch.
@@ -144,7 +144,8 @@ fn check(sides: &[HoleSide]) -> Result<(), HoleError> {
     Ok(())
 }
 
-/// The parts of two vectors that add up to a third in their plane; `None` if they do not span it, or it leaves the plane.
+/// The parts of two vectors that add up to a third in their plane; `None` if they do not span it, or it leaves the
+/// plane.
 fn parts_of(sum: DVec3, [a, b]: [DVec3; 2]) -> Option<DVec2> {
     let (a_length, b_length, length) = (a.length(), b.length(), sum.length());
     let (x, y, z) = (a / a_length, b / b_length, sum / length);

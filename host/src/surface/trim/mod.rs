@@ -15,7 +15,7 @@ const MAX_HALVINGS: usize = 64;
 /// The gap, as a part of the size of the domain, that may remain between the edges of a loop.
 const CLOSED: f64 = 1e-9;
 
-/// Why a surface cannot be trimmed or its rest not be tessellated.
+/// A fault that keeps a surface from being trimmed, or its rest from being tessellated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TrimError {
     /// A loop without edges.
@@ -65,8 +65,8 @@ pub enum TrimError {
 pub struct TrimEdge {
     /// The curve in the parameters: x is u, y is v, z is 0.
     pub curve: SplineCurve,
-    /// A number that edges of several surfaces have in common if they are the same curve in space, at equal fractions of
-    /// their parameters (from either end). Edges that agree to the bit are found to be the same without it.
+    /// A number that edges of several surfaces have in common if they are the same curve in space, at equal fractions
+    /// of their parameters (from either end). Edges that agree to the bit are found to be the same without it.
     pub shared: Option<usize>,
 }
 
