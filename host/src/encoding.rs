@@ -1,8 +1,8 @@
 //! Values as bytes that are kept in files: the only place that names the crate which makes them.
 //!
-//! The crate, bincode, is no longer maintained: another one, with a version of its own in what it writes, would change this
-//! file alone. Every file begins with a name or a version of its format, in plain bytes before those of this module, and is
-//! refused where that is another.
+//! The crate, bincode, is no longer maintained: another one, with a version of its own in what it writes, would change
+//! this file alone. Every file begins with a name or a version of its format, in plain bytes before those of this
+//! module, and is refused where that is another.
 
 use bincode::config::standard;
 use bincode::error::{DecodeError, EncodeError};
@@ -19,7 +19,7 @@ pub enum Integers {
     Fixed,
 }
 
-/// Why a value cannot be written or read.
+/// A fault that keeps a value from being written or read.
 #[derive(Debug, thiserror::Error)]
 pub enum EncodingError {
     /// The file cannot be written or read.

@@ -144,7 +144,7 @@ fn several_views_share_caught_light_which_a_database_keeps_for_the_next_run() {
     assert!(2 * of("before") > of("ways"), "{again}");
     assert_eq!(fs::read(folder.join("b.png")).unwrap(), pictures[0]);
     let listed = peris(&["db", "list", "a.redb", "--kind", "caught-light"], folder);
-    assert!(listed.out.contains(" caught of "), "{}", listed.out);
+    assert!(listed.out.contains(" photons of "), "{}", listed.out);
     let wrong = peris(&["render", "a.rhai", "--renderer", "scan-line", "--light", "a.redb"], folder);
     assert_eq!(wrong.code, Some(2), "{}", wrong.errors);
 }

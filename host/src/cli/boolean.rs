@@ -21,8 +21,8 @@ pub(super) const ROW: SubcommandRow = SubcommandRow {
 
 #[derive(Args, Debug)]
 struct Arguments {
-    /// Closed meshes (.obj, .stl, .ply, .gltf, .glb, .cmesh) with an operation between each two, or with one in front of
-    /// them all; their groups stay, one without has its name
+    /// Closed meshes (.obj, .stl, .ply, .gltf, .glb, .cmesh) with an operation between each two, or with one in front
+    /// of them all; their groups stay, one without has its name
     #[arg(value_name = "FORMULA", num_args = 1.., required = true, long_help = formula::HELP)]
     formula: Vec<PathBuf>,
     /// The file to write; its extension names the format
@@ -90,7 +90,7 @@ pub(super) fn solid(path: &Path) -> Result<Solid, CommandFailure> {
     grouped_solid(path).map(|operand| operand.solid)
 }
 
-/// A solid, and names and looks of its groups.
+/// A solid, and names and materials of its groups.
 struct Operand {
     solid: Solid,
     names: Vec<String>,
@@ -107,7 +107,7 @@ fn grouped_solid(path: &Path) -> Result<Operand, CommandFailure> {
     let solid = Solid::resolved(mesh).with_context(|| format!("{} is no solid", path.display()));
     let (solid, crossing) = solid.map_err(|error| CommandFailure::new(Exit::Failed, error))?;
     if let Some(crossing) = crossing {
-        tracing::warn!("{}: {crossing}; taken for all that it winds around", path.display());
+        tracing::warn!("{}: {crossing}; taken for all points of positive winding number", path.display());
     }
     Ok(Operand { solid, names, materials: looks })
 }

@@ -84,10 +84,10 @@ fn report(mesh: &Mesh, loops: &[BoundaryLoop]) {
     say!("triangles               {}", report.triangles);
     say!("edges                   {}", report.edges);
     say!("  open                  {}", report.boundary);
-    say!("  of several triangles  {}", report.non_manifold);
+    say!("  non-manifold          {}", report.non_manifold);
     say!("  misoriented           {}", report.misoriented);
     say!("collapsed triangles     {}", report.collapsed);
-    say!("triangles without area  {}", report.degenerate);
+    say!("degenerate triangles    {}", report.degenerate);
     say!("duplicate triangles     {}", mesh.duplicate_triangles());
     say!("Euler characteristic    {}", report.euler_characteristic());
     say!("boundary loops          {}", loops.len());

@@ -25,7 +25,8 @@ pub enum Exit {
     Scene = 3,
     /// The line to the workstation, or the other process, failed.
     Line = 4,
-    /// There is a picture, but the error that was asked for is not reached everywhere; or time ran out before there was one.
+    /// There is a picture, but the error that was asked for is not reached everywhere; or time ran out before there was
+    /// one.
     Missed = 5,
     /// Interrupted; what was finished is kept.
     Interrupted = 130,
@@ -70,7 +71,7 @@ pub(super) fn table() -> String {
     format!("Exit codes:{}", Exit::ALL.iter().map(line).collect::<String>())
 }
 
-/// Why a command ends early, and with which code.
+/// The reason for which a command ends early, and its exit code.
 #[derive(Debug)]
 pub struct CommandFailure {
     /// The code.

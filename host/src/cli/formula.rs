@@ -35,7 +35,7 @@ them all; their groups stay, one without has its name.
 Between solids, * comes first, then + and - from left to right, then ^, as in scripts: a.stl - b.stl * c.stl takes from a
 what b and c share. Quote '*', so that the shell leaves it alone. An operation in front combines all solids behind it.";
 
-/// Why words are no formula.
+/// A fault that keeps words from being a formula.
 #[derive(Debug, Error, PartialEq)]
 pub(super) enum FormulaError {
     /// An operation in the place of a mesh.

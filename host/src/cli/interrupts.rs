@@ -1,8 +1,8 @@
 //! Signals that ask the program to end: Ctrl-C, a request to terminate, a terminal that is closed.
 //!
 //! Files are written whole or not at all, databases keep their last transaction, and a PS 340 of our own ends when its
-//! orders do. So the program may end at any time, and does so at once, unless there is work in memory that is worth
-//! keeping: whoever holds such work says so by [`InterruptGuard`], and is then asked to stop and to write it.
+//! operator commands do. So the program may end at any time, and does so at once, unless there is work in memory that
+//! is worth keeping: whoever holds such work says so by [`InterruptGuard`], and is then asked to stop and to write it.
 //!
 //! It ends in the same way where more memory is wanted than it may hold.
 
@@ -92,7 +92,7 @@ fn end(name: &str, event: &str, hint: &str, state: &State, exit: Exit) -> ! {
 
 /// Ends the program where more memory is wanted than it may hold.
 ///
-/// The thread that wants it may hold any lock, so another one speaks.
+/// The thread that wants it may hold any lock, so another one reports.
 fn end_for_memory(wanted: u64) -> ! {
     EXCESS_BYTES.store(wanted.max(1), Ordering::Relaxed);
     if signal_hook::low_level::raise(SIGUSR1).is_ok() {
@@ -106,8 +106,8 @@ pub(super) fn note_saved(what: impl Into<String>) {
     state().saved = what.into();
 }
 
-/// Work in memory that is worth keeping: as long as this lives, the first signal asks to stop, and only the second ends the
-/// program.
+/// Work in memory that is worth keeping: as long as this lives, the first signal asks to stop, and only the second ends
+/// the program.
 pub(super) struct InterruptGuard(());
 
 impl InterruptGuard {

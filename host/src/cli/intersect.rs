@@ -1,4 +1,4 @@
-//! `peris intersect`: accurate curves in which the objects of a scene meet.
+//! `peris intersect`: accurate intersection curves of the objects of a scene.
 
 use super::{CommandFailure, Exit, SCRIPT_HELP, ScriptArguments, SubcommandRow, load, output};
 use crate::intersection::{Branch, CurvePrecision, Intersection, Mark, csv, obj};

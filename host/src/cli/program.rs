@@ -12,7 +12,7 @@ use clap::{Arg, Command};
 use std::io::IsTerminal;
 use std::process::ExitCode;
 
-/// Which part of the machine's memory a command may take if nothing else is said: one of so many.
+/// The part of the machine's memory that a command may take if nothing else is said: one of so many.
 const PART_OF_MACHINE: u64 = 4;
 /// Where options that all commands have stand in help texts: behind their own.
 const LAST: usize = 900;

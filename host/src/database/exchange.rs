@@ -53,7 +53,7 @@ struct RecordJson {
 }
 
 impl Record {
-    /// The record as JSON; none of a mesh, a picture or caught light.
+    /// The record as JSON; none of a mesh, a picture or stored photons.
     pub fn json(&self) -> Option<serde_json::Value> {
         let Origin { what, source, terms } = self.origin.clone();
         let mut sheet = RecordJson {
@@ -78,8 +78,8 @@ impl Record {
 /// The records of a file, whose ending names its format; a text with several columns gives several.
 ///
 /// - `name`: what the record is called; without it what the file says, or its name without ending.
-/// - `quantity`: what the columns of a text are; without it a metal where they are called n and k, and else reflectances,
-///   if they lie within 0 and 1.
+/// - `quantity`: what the columns of a text are; without it a metal where they are called n and k, and else
+///   reflectances, if they lie within 0 and 1.
 ///
 /// # Errors
 /// [`DatabaseError`], with the place where the content is wrong.
@@ -115,7 +115,7 @@ pub fn write(record: &Record, destination: &Destination) -> Result<(), DatabaseE
         }
         (RecordContent::Texture(picture), "png" | "exr") => return Ok(picture.write(destination)?),
         (RecordContent::Texture(_), _) => return Err(failed("a texture goes into .png or .exr")),
-        (RecordContent::Photons(_), _) => return Err(failed("caught light is of use in its database only")),
+        (RecordContent::Photons(_), _) => return Err(failed("stored photons are of use in their database only")),
         (RecordContent::Spectrum(curves), "txt") => {
             let named = match curves {
                 Curves::Reflectance(spectrum) | Curves::Light(spectrum) => vec![(&*record.name, spectrum)],

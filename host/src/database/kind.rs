@@ -22,7 +22,7 @@ pub enum RecordKind {
     Light,
     /// A quantity over the wavelength, or several.
     Spectrum,
-    /// Light of a lamp that was caught on the surfaces of a scene.
+    /// Stored photons of a lamp on the surfaces of a scene.
     #[serde(rename = "caught-light")]
     #[value(name = "caught-light")]
     Photons,
@@ -51,8 +51,8 @@ impl RecordKind {
         }
     }
 
-    /// The version of the form in which records of the kind are stored. It rises when what is stored changes; a test fails
-    /// when that is forgotten.
+    /// The version of the form in which records of the kind are stored. It rises when what is stored changes; a test
+    /// fails when that is forgotten.
     pub(super) fn version(self) -> u32 {
         match self {
             // Numbers that change from place to place, priorities of transparent bodies.

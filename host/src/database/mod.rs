@@ -1,9 +1,9 @@
-//! Databases: geometry, textures, materials, light sources, spectra and caught light, on disk and in the program.
+//! Databases: geometry, textures, materials, light sources, spectra and stored photons, on disk and in the program.
 //!
-//! A database is one file. What one transaction writes is there as a whole or not at all, also after a crash; one process
-//! writes at a time, and any number of processes and threads read meanwhile, each what was there when it began. A record
-//! has a name, a note of its source and terms, the version of its form, and a checksum, so that it is found out when it is
-//! damaged or of a later program.
+//! A database is one file. What one transaction writes is there as a whole or not at all, also after a crash; one
+//! process writes at a time, and any number of processes and threads read meanwhile, each what was there when it began.
+//! A record has a name, a note of its source and terms, the version of its form, and a checksum, so that it is found
+//! out when it is damaged or of a later program.
 //!
 //! The database that ships with the program has records of the same kinds and is read-only.
 

@@ -42,7 +42,7 @@ pub enum RecordContent {
     Light(Box<Light>),
     /// A quantity over the wavelength, or several.
     Spectrum(Curves),
-    /// Light of a lamp that was caught on surfaces.
+    /// Stored photons of a lamp on surfaces.
     Photons(Box<StoredPhotons>),
 }
 
@@ -99,8 +99,8 @@ struct Pixels {
 /// Checks that a text can be the name of a record.
 ///
 /// # Errors
-/// [`DatabaseError::Name`] if it is empty, longer than [`LONGEST_NAME`], begins or ends with a blank, or holds a control
-/// character.
+/// [`DatabaseError::Name`] if it is empty, longer than [`LONGEST_NAME`], begins or ends with a blank, or holds a
+/// control character.
 pub fn check_name(name: &str) -> Result<(), DatabaseError> {
     let possible = (1..=LONGEST_NAME).contains(&name.len()) && name.trim() == name;
     if possible && !name.chars().any(char::is_control) { Ok(()) } else { Err(DatabaseError::Name(name.into())) }
@@ -142,7 +142,7 @@ impl RecordContent {
                 };
                 grouped.mesh.validate().map_err(|fault| fault.to_string())?;
                 let looks = grouped.materials.iter().flatten().all(finite);
-                if looks { Ok(()) } else { Err("the look of a surface is not finite".into()) }
+                if looks { Ok(()) } else { Err("the material of a surface is not finite".into()) }
             }
             RecordContent::Texture(picture) if picture.is_finite() => Ok(()),
             RecordContent::Texture(_) => Err("a pixel is not finite".into()),
@@ -300,8 +300,8 @@ impl Record {
     /// Reads what [`Record::to_bytes`] wrote, for the same kind and name.
     ///
     /// # Errors
-    /// [`DatabaseError::Record`] for bytes that are damaged or of another record, [`DatabaseError::Newer`] for those of a
-    /// later program.
+    /// [`DatabaseError::Record`] for bytes that are damaged or of another record, [`DatabaseError::Newer`] for those of
+    /// a later program.
     pub fn of_bytes(kind: RecordKind, name: &str, bytes: &[u8]) -> Result<Record, DatabaseError> {
         let failed = |problem: String| DatabaseError::Record { kind, name: name.into(), problem };
         let (version, Head { what, source, terms, .. }, content) = head(kind, name, bytes)?;

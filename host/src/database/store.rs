@@ -347,7 +347,7 @@ fn builder() -> Builder {
     builder
 }
 
-/// Why a database cannot be opened.
+/// The error for a database that cannot be opened.
 fn opening(path: &Path, error: redb::DatabaseError) -> DatabaseError {
     let path = path.to_owned();
     match error {
@@ -375,7 +375,7 @@ fn failure(path: &Path, error: redb::Error) -> DatabaseError {
 }
 
 thread_local! {
-    /// Whether a panic of this thread is caught and told as an error.
+    /// Whether a panic of this thread is reported as an error.
     static GUARDED: Cell<bool> = const { Cell::new(false) };
 }
 

@@ -35,7 +35,7 @@ pub struct PlanEntry {
     pub kind: EntryKind,
     /// Its name.
     pub name: String,
-    /// Whether it is kept.
+    /// Whether it is included.
     pub needed: bool,
     /// The reason, in words.
     pub reason: String,
@@ -119,12 +119,12 @@ impl Plan {
         self.stages[stage as usize]
     }
 
-    /// Whether an object, an index into [`objects`](crate::scene::Contents::objects), is kept.
+    /// Whether an object, an index into [`objects`](crate::scene::Contents::objects), is included.
     pub fn includes_object(&self, index: usize) -> bool {
         self.objects.get(index).copied().unwrap_or(true)
     }
 
-    /// Whether a light, an index into [`lights`](crate::scene::Contents::lights), is kept.
+    /// Whether a light, an index into [`lights`](crate::scene::Contents::lights), is included.
     pub fn includes_light(&self, index: usize) -> bool {
         self.lights.get(index).copied().unwrap_or(true)
     }

@@ -31,7 +31,7 @@ pub enum Stage {
     Shadows,
     /// What stands between the voxels of the scene and its lights, kept for rays towards them.
     LightBuffer,
-    /// Light that is followed from lamps through mirrors and glass, and caught.
+    /// Photons that are traced from lamps through mirrors and glass, and stored.
     PhotonMap,
     /// Points of surfaces, one for each voxel, that rays meet instead of surfaces.
     SurfacePoints,
@@ -180,7 +180,7 @@ impl Stage {
             Stage::Ambient => "ambient term",
             Stage::Shadows => "shadows",
             Stage::LightBuffer => "light buffer",
-            Stage::PhotonMap => "caught light",
+            Stage::PhotonMap => "photon map",
             Stage::SurfacePoints => "points for surfaces",
             Stage::Reflection => "reflected and refracted rays",
             Stage::Radiosity => "radiosity",
@@ -264,7 +264,7 @@ fn photon_map(facts: &Facts<'_>) -> Decision {
 fn surface_points(facts: &Facts<'_>) -> Decision {
     match facts.prepared.settings.photons.point_depth {
         None => Decision::new(false, "rays meet surfaces themselves, as the scene does not ask for points"),
-        Some(_) if !photon_map(facts).needed => Decision::new(false, "no light is followed from lamps"),
+        Some(_) if !photon_map(facts).needed => Decision::new(false, "no photons are traced from lamps"),
         Some(depth) => Decision::new(true, format!("the scene asks for {} voxels a side", 1_u64 << depth)),
     }
 }

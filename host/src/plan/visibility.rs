@@ -1,4 +1,4 @@
-//! Which objects can be seen, mirrored, or throw a shadow on what can be seen.
+//! Visibility: the objects that can be seen, mirrored, or throw a shadow on what can be seen.
 
 use super::decision::Decision;
 use super::stage::Facts;

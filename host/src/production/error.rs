@@ -1,4 +1,4 @@
-//! Why the main job failed.
+//! Errors of the main job.
 
 use crate::render::RenderError;
 use crate::scene::SceneError;

@@ -8,7 +8,7 @@ use crate::scene::{SceneError, ShapeError};
 use crate::subdivision::SubdivisionError;
 use crate::surface::{TessellationError, TrimError};
 
-/// Why there is no study.
+/// A fault that keeps a study from being made.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
     /// The scene is wrong.

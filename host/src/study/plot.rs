@@ -32,8 +32,8 @@ const COLORS: [RGBColor; 10] = [
     RGBColor(100, 190, 60),
 ];
 
-/// Lengths of the strokes of a line, and of the gaps between them, points; one row for each way to draw a line. Curves of
-/// one colour are drawn in different ways, for there is no common factor of the colours and the ways.
+/// Lengths of the strokes of a line, and of the gaps between them, points; one row for each way to draw a line. Curves
+/// of one colour are drawn in different ways, for there is no common factor of the colours and the ways.
 const STROKES: [(u32, u32); 3] = [(1, 0), (9, 5), (3, 4)];
 /// Space around what a plot shows, as a part of its sides.
 const MARGIN: f64 = 0.02;
@@ -127,8 +127,8 @@ pub struct Plot {
 pub struct Series {
     /// Its name in the legend.
     pub name: String,
-    /// Its points; those that are no numbers, or not above 0 on a logarithmic axis, have no place there, and no line leads
-    /// past them.
+    /// Its points; those that are no numbers, or not above 0 on a logarithmic axis, have no place there, and no line
+    /// leads past them.
     pub points: Vec<PlotPoint>,
 }
 
@@ -143,7 +143,7 @@ pub struct PlotPoint {
     pub label: String,
 }
 
-/// Why there is no plot.
+/// A fault that keeps a plot from being drawn.
 #[derive(Debug, thiserror::Error)]
 pub enum PlotError {
     /// No point can be shown on the axes.

@@ -132,7 +132,7 @@ impl Knob for Residual<'_> {
 }
 
 /// The root of the mean square of the angle between the planes of triangles and the surface at their middles, degrees,
-/// weighted by area: a sliver may lean far and mean little.
+/// weighted by area: a thin triangle may lean far and mean little.
 fn angle(mesh: &Mesh, surfaces: &Surfaces) -> f64 {
     let (mut sum, mut area) = (0.0, 0.0);
     for triangle in 0..mesh.triangles.len() {

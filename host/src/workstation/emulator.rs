@@ -29,12 +29,12 @@ pub struct Emulator {
 }
 
 impl Emulator {
-    /// Starts `ps340`: the program named by [`PROGRAM_VARIABLE`], or the one beside this program, or the one
-    /// on the search path. It listens on a free local port, and ends when we do: when this is dropped, and at the latest when
+    /// Starts `ps340`: the program named by [`PROGRAM_VARIABLE`], or the one beside this program, or the one on the
+    /// search path. It listens on a free local port, and ends when we do: when this is dropped, and at the latest when
     /// the thread that called this, or its process, ends.
     ///
-    /// - `patience`: how long it may take to get ready, and to carry out orders.
-    /// - `files`: the folder below which orders write files.
+    /// - `timeouts`: how long it may take to get ready, and to carry out operator commands.
+    /// - `files`: the folder below which operator commands write files.
     /// - `window`: whether it opens one, with both screens and all devices.
     ///
     /// # Errors
@@ -96,11 +96,11 @@ impl Emulator {
         }
     }
 
-    /// Gives an order to the operator line, and returns the reply without its `ok`.
+    /// Sends an operator command, and returns the reply without its `ok`.
     ///
     /// # Errors
-    /// [`WorkstationError::OperatorCommand`] if the order is refused, [`WorkstationError::Timeout`] if there is no reply within
-    /// [`Timeouts::operator_command`], [`WorkstationError::Ended`] if the process is gone.
+    /// [`WorkstationError::OperatorCommand`] if the command is refused, [`WorkstationError::Timeout`] if there is no
+    /// reply within [`Timeouts::operator_command`], [`WorkstationError::Ended`] if the process is gone.
     pub fn operator_command(&mut self, order: &str) -> Result<String, WorkstationError> {
         self.send_operator_command(order)?;
         match self.replies.recv_timeout(self.timeouts.operator_command) {
@@ -113,7 +113,7 @@ impl Emulator {
         }
     }
 
-    /// Gives an order without waiting for the reply, which [`reply`](Self::reply) gets.
+    /// Sends an operator command without waiting for the reply, which [`reply`](Self::reply) gets.
     ///
     /// # Errors
     /// [`WorkstationError::Ended`] if the process is gone.

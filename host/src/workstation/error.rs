@@ -25,10 +25,10 @@ pub enum WorkstationError {
     /// The line closed.
     #[error("the workstation closed the line{}", if reason.is_empty() { String::new() } else { format!(": {reason}") })]
     Closed {
-        /// Why; empty for a plain end.
+        /// The reason; empty for a plain end.
         reason: String,
     },
-    /// No answer in time.
+    /// Timed out: no answer in time.
     #[error("the workstation did not answer within {seconds} s; waited for {what} (--patience gives it more time)")]
     Timeout {
         /// What was waited for.
@@ -47,10 +47,10 @@ pub enum WorkstationError {
     /// The process of the emulator is gone.
     #[error("the workstation process ended")]
     Ended,
-    /// An order to the operator line was refused.
+    /// An operator command was refused.
     #[error("the workstation's operator line refused '{command}': {reason}")]
     OperatorCommand {
-        /// The order, as it was sent.
+        /// The command, as it was sent.
         command: String,
         /// What is wrong, in words.
         reason: String,

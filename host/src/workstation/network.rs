@@ -35,7 +35,7 @@ pub enum FunctionKey {
     Render,
     /// The dials go back to where they began.
     Reset,
-    /// The host tells the view that is set, as a camera.
+    /// The host prints the view that is set, as a camera.
     Camera,
     /// The host stops rendering; what it has rendered stays.
     Cancel,
@@ -174,8 +174,8 @@ pub(super) fn leave_view() -> Command {
     Command::Disconnect { source: name(VIEW_TEXT), output: Some(1), destination }
 }
 
-/// Shades the light of a solution on the raster screen when the dials have stood still for a while: the vectors turn with
-/// them, the picture follows. The vector screen goes on when a picture is done.
+/// Shades the light of a solution on the raster screen when the dials have stood still for a while: the vectors turn
+/// with them, the picture follows. The vector screen goes on when a picture is done.
 pub fn shading() -> Vec<Command> {
     let mut build = Build::default();
     build.function(IDLE_TIMER, "TIMEOUT");
@@ -198,8 +198,8 @@ pub fn shade() -> Vec<Command> {
     vec![send(Value::Boolean(true), 1, IDLE_TIMER)]
 }
 
-/// Makes a scene that takes the place of another stand as dials have turned that: they are turned by nothing, so that what
-/// sums their turns speaks.
+/// Makes a scene that takes the place of another stand as dials have turned that: they are turned by nothing, so that
+/// what sums their turns fires.
 ///
 /// - `movement`: what a turn of dials 5 to 7 moves from now on, scene units.
 pub fn zero_dials(movement: f64) -> Vec<Command> {
@@ -213,7 +213,7 @@ pub fn zero_dials(movement: f64) -> Vec<Command> {
 }
 
 /// Puts the dials back to where they began: the accumulators first, then a delta of nothing, which makes the
-/// functions speak.
+/// functions fire.
 pub fn reset() -> Vec<Command> {
     let mut build = Build::default();
     for axis in ["X", "Y", "Z"] {

@@ -87,10 +87,10 @@ impl std::fmt::Debug for Session {
 }
 
 impl Session {
-    /// Attaches to a workstation, and asks for messages of its own as packets: other programs on other lines read theirs,
-    /// and what the workstation reports about commands of this session is logged here.
+    /// Attaches to a workstation, and asks for messages of its own as packets: other programs on other lines read
+    /// theirs, and what the workstation reports about commands of this session is logged here.
     ///
-    /// - `patience`: how long the workstation may take, now and later.
+    /// - `timeouts`: how long the workstation may take, now and later.
     ///
     /// # Errors
     /// [`WorkstationError::Attach`], [`WorkstationError::Closed`].
@@ -173,7 +173,7 @@ impl Session {
     /// The next message from the workstation.
     ///
     /// # Errors
-    /// [`WorkstationError::Timeout`] if none comes within `patience`, [`WorkstationError::Closed`].
+    /// [`WorkstationError::Timeout`] if none comes within `timeout`, [`WorkstationError::Closed`].
     pub fn message(&mut self, timeout: Duration, what: &str) -> Result<Vec<u8>, WorkstationError> {
         self.next(&Wait::begin(what, timeout))
     }
@@ -228,8 +228,8 @@ impl Session {
         result
     }
 
-    /// The matrix of the view that is set at the workstation, by the network of [`network::commands`], which another session
-    /// may have sent.
+    /// The matrix of the view that is set at the workstation, by the network of [`network::commands`], which another
+    /// session may have sent.
     ///
     /// Returns scene coordinates (z negated) to clip space, in the glam form of [`protocol::Value`].
     ///

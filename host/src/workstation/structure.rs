@@ -63,7 +63,7 @@ impl Default for Drawing {
     }
 }
 
-/// What was made of a scene.
+/// What a scene becomes on the workstation.
 #[derive(Clone, Debug, Default)]
 pub struct StructureCommands {
     /// The commands, to be sent in order.
@@ -211,9 +211,11 @@ fn view(commands: &mut Vec<Command>, initial: &InitialView, bounds: &Bounds, dep
     operate(commands, Some("MATRIX"), Operate::XformMatrix);
 }
 
-/// Front and back for a scene whose middle lies at `depth` from the eye, and which is no larger than a sphere of `radius`.
+/// Front and back for a scene whose middle lies at `depth` from the eye, and which is no larger than a sphere of
+/// `radius`.
 ///
-/// Where the camera does not say, the depth cue runs over that sphere. A camera that cuts in front only gets a back so far away that nothing is cut there.
+/// Where the camera does not say, the depth cue runs over that sphere. A camera that cuts in front only gets a back so
+/// far away that nothing is cut there.
 fn boundaries(camera: &Camera, depth: f64, radius: f64) -> Boundaries {
     let reach = (depth.abs() + radius).max(f64::MIN_POSITIVE.sqrt());
     match (camera.near > 0.0, camera.far) {

@@ -9,7 +9,7 @@ pub struct Timeouts {
     pub attach: Duration,
     /// Until it answers, or reads more of what is sent.
     pub answer: Duration,
-    /// Until an order of its operator is carried out.
+    /// Until an operator command is carried out.
     pub operator_command: Duration,
 }
 

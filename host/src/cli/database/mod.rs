@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 pub(super) const ROW: SubcommandRow = SubcommandRow {
     name: "db",
     summary: "Lists, shows, plots, adds, removes, exports and checks records of databases: geometry, textures, \
-              materials, lights, spectra, caught light.",
+              materials, lights, spectra, photons.",
     arguments: |command| {
         let command = command.subcommand_required(true).arg_required_else_help(true);
         let help = |sub: Command| sub.after_help(super::exit::table());
@@ -75,8 +75,8 @@ enum Commands {
     Export {
         #[command(flatten)]
         place: RecordAddress,
-        /// The file: a mesh (.obj, .ply, .stl, .gltf, .glb, .cmesh), a picture (.exr, .png), a spectrum (.txt, .json), a
-        /// material or a light (.json)
+        /// The file: a mesh (.obj, .ply, .stl, .gltf, .glb, .cmesh), a picture (.exr, .png), a spectrum (.txt, .json),
+        /// a material or a light (.json)
         #[arg(value_name = "FILE")]
         file: PathBuf,
     },
@@ -96,8 +96,9 @@ struct Addition {
     /// The database (.redb)
     #[arg(value_name = "DATABASE")]
     database: PathBuf,
-    /// A mesh (.obj, .stl, .ply, .gltf, .glb, .cmesh), a picture (.exr, .png), columns of spectra (.txt), a material, light
-    /// or spectrum (.json), or a scene script (.rhai), all materials of which are added under the names of its objects
+    /// A mesh (.obj, .stl, .ply, .gltf, .glb, .cmesh), a picture (.exr, .png), columns of spectra (.txt), a material,
+    /// light or spectrum (.json), or a scene script (.rhai), all materials of which are added under the names of its
+    /// objects
     #[arg(value_name = "FILE")]
     file: PathBuf,
     #[command(flatten)]

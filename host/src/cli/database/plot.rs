@@ -32,7 +32,7 @@ pub(super) fn plot(record: &Record, place: &RecordAddress, folder: &Folder) -> R
             }
         },
         RecordContent::Photons(_) => {
-            return Err(anyhow::anyhow!("caught light is seen in its scene only: render that with --light").into());
+            return Err(anyhow::anyhow!("stored photons are seen in their scene only: render that with --light").into());
         }
         RecordContent::Texture(picture) => {
             let file = picture_file(folder, &name)?;

@@ -36,8 +36,8 @@ pub(super) struct RenderArguments {
     /// Samples in each pixel, instead of those of the scene
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=i64::from(crate::scene::MAX_SAMPLES)))]
     pub(super) samples: Option<u32>,
-    /// How samples around a pixel become one value, instead of that of the scene: box is the mean over the pixel, gaussian
-    /// and blackman-harris smooth, mitchell sharpens
+    /// How samples around a pixel become one value, instead of that of the scene: box is the mean over the pixel,
+    /// gaussian and blackman-harris smooth, mitchell sharpens
     #[arg(long, value_name = "FILTER", value_parser = PossibleValuesParser::new(Filter::WORDS).map(|word| Filter::of_word(&word).unwrap_or_default()))]
     pub(super) filter: Option<Filter>,
     /// Threads [default: one for each core]
@@ -49,42 +49,44 @@ pub(super) struct RenderArguments {
     /// Tessellation tolerance in scene units, instead of that of the scene
     #[arg(long, value_name = "LENGTH")]
     pub(super) tolerance: Option<f64>,
-    /// Relative error of the luminance at which a pixel has samples enough; --samples, if given, is then the most of them. If
-    /// pixels miss it, the picture is written all the same, and the exit code tells
+    /// Relative error of the luminance at which a pixel has samples enough; --samples, if given, is then the most of
+    /// them. If pixels miss it, the picture is written all the same, and the exit code tells
     #[arg(long, value_name = "PART", value_parser = crate::cli::values::length)]
     pub(super) error: Option<f64>,
     /// Begins no sample after so many seconds; --samples, if given, is then the most of them
     #[arg(long, value_name = "SECONDS", value_parser = crate::cli::values::length)]
     pub(super) seconds: Option<f64>,
-    /// Goes on with what is in this file, and writes there what is known: every minute, when interrupted, and in the end;
-    /// more samples can be added at any time. Of several views, those that are finished are not made again
+    /// Goes on with what is in this file, and writes there what is known: every minute, when interrupted, and in the
+    /// end; more samples can be added at any time. Of several views, those that are finished are not made again
     #[arg(long, value_name = "FILE")]
     pub(super) resume: Option<PathBuf>,
     /// How often the file of --resume is written; what was done since then is lost if the process is killed
     #[arg(long, value_name = "SECONDS", value_parser = crate::cli::values::length, default_value_t = 60.0, requires = "resume")]
     pub(super) checkpoint: f64,
-    /// Renders so many views: the camera goes round what it looks at, and the files are numbered; what does not depend on
-    /// the view is done once
+    /// Renders so many views: the camera goes round what it looks at, and the files are numbered; what does not depend
+    /// on the view is done once
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=MOST_VIEWS), conflicts_with = "pixel")]
     pub(super) views: Option<u32>,
     /// How far the camera goes from one view to the next [default: a full turn in all]
     #[arg(long, value_name = "DEGREES", requires = "views", allow_negative_numbers = true)]
     pub(super) turn: Option<f64>,
-    /// Keeps the light that two-way ray tracing catches in this database (.redb), which is made if need be, and takes from
-    /// there what was caught before, for as long as geometry, materials and lamps are the same
+    /// Keeps the photons that two-way ray tracing stores in this database (.redb), which is made if need be, and takes
+    /// from there those that were stored before, for as long as geometry, materials and lamps are the same
     #[arg(long, value_name = "DATABASE")]
     pub(super) light: Option<PathBuf>,
-    /// Writes depth, normals, numbers of objects and materials, samples and variance into EXR files, too; by ray tracing
-    /// without --resume also emitted, direct, caustic and indirect light, which together are the picture before it is
-    /// denoised; and the albedo, with --denoise
+    /// Writes depth, normals, numbers of objects and materials, samples and variance into EXR files, too; by ray
+    /// tracing without --resume also emitted, direct, caustic and indirect light, which together are the picture before
+    /// it is denoised; and the albedo, with --denoise
     #[arg(long)]
     pub(super) layers: bool,
     /// Leaves the background out where nothing stands before it, so that `peris compose` can put another one there; it
-    /// stays behind glass and in mirrors. PNG files are then linear, whatever the scene says, unless --exposure or --tone do
+    /// stays behind glass and in mirrors. PNG files are then linear, whatever the scene says, unless --exposure or
+    /// --tone do
     #[arg(long)]
     pub(super) matte: bool,
-    /// Takes most of the noise out of the picture, for few samples and previews, in one to two seconds for a million pixels
-    /// on two cores. Edges, patterns and what mirrors show stay; faint and fine light, as that of caustics, may be lost
+    /// Takes most of the noise out of the picture, for few samples and previews, in one to two seconds for a million
+    /// pixels on two cores. Edges, patterns and what mirrors show stay; faint and fine light, as that of caustics, may
+    /// be lost
     #[arg(long, conflicts_with = "pixel")]
     pub(super) denoise: bool,
     #[command(flatten)]
@@ -92,13 +94,13 @@ pub(super) struct RenderArguments {
     /// Renders one pixel only, counted from the upper left corner, and prints its radiance; writes no file
     #[arg(long, value_name = "X,Y", value_parser = parse_pixel)]
     pub(super) pixel: Option<[u32; 2]>,
-    /// Prints the ways of the first samples of the pixel, and every term that they add
+    /// Prints the paths of the first samples of the pixel, and every term that they add
     #[arg(long, requires = "pixel")]
     pub(super) explain: bool,
     /// Leaves nothing out; the picture is the same
     #[arg(long)]
     pub(super) everything: bool,
-    /// Tells how much work it was, too: triangles, rays or spans, radiosity, caught light. --json has all of it
+    /// Tells how much work it was, too: triangles, rays or spans, radiosity, photons. --json has all of it
     #[arg(long)]
     pub(super) stats: bool,
     /// Reports as JSON on standard output
@@ -194,7 +196,7 @@ fn renderers() -> impl TypedValueParser<Value = Technique> {
     PossibleValuesParser::new(values).map(|option| Technique::of_option(&option).unwrap_or(RENDERERS[0].technique))
 }
 
-/// Reads the place of a pixel.
+/// Reads the coordinates of a pixel.
 fn parse_pixel(text: &str) -> Result<[u32; 2], String> {
     let (x, y) = text.split_once(',').ok_or("give X,Y")?;
     let number = |text: &str| text.trim().parse().map_err(|_| format!("'{text}' is no number of a pixel"));

@@ -70,10 +70,10 @@ impl Saved<'_> {
     }
 }
 
-/// Files beside that of the film, for work that is done before samples are taken and may take long. They are removed when
-/// the rendering is finished.
+/// Files beside that of the film, for work that is done before samples are taken and may take long. They are removed
+/// when the rendering is finished.
 pub(super) struct Intermediate {
-    /// Light that was followed from lamps.
+    /// Photons that were traced from lamps.
     light: Option<PathBuf>,
     /// What was found for radiosity.
     radiosity: Option<PathBuf>,
@@ -96,7 +96,7 @@ impl Intermediate {
         }
     }
 
-    /// The database for light that is followed, and whether it is to last.
+    /// The database for photons, and whether it is to last.
     pub(super) fn light<'a>(&'a self, arguments: &'a RenderArguments) -> Option<(&'a Path, bool)> {
         let lasting = arguments.light.as_deref().map(|path| (path, true));
         lasting.or_else(|| self.light.as_deref().map(|path| (path, false)))

@@ -13,15 +13,15 @@ pub(super) struct ShowArguments {
     pub(super) script: String,
     #[command(flatten)]
     pub(super) definitions: ScriptArguments,
-    /// The host line of a PS 340 that runs already (tcp:HOST:PORT or unix:PATH); without it, one is started, with a window if
-    /// there is a display, and the lines of standard input are orders for its operator ('help' lists them)
+    /// The host line of a PS 340 that runs already (tcp:HOST:PORT or unix:PATH); without it, one is started, with a
+    /// window if there is a display, and the lines of standard input are operator commands ('help' lists them)
     #[arg(long, value_name = "LINE")]
     pub(super) to: Option<Address>,
     /// Sends the scene and ends, without waiting for keys
     #[arg(long, requires = "to")]
     pub(super) once: bool,
-    /// Shows the scene anew whenever its script, or a file that this reads, is saved. The view stays as dials have set it,
-    /// unless the script asks for another camera than before
+    /// Shows the scene anew whenever its script, or a file that this reads, is saved. The view stays as dials have set
+    /// it, unless the script asks for another camera than before
     #[arg(long, conflicts_with = "once")]
     pub(super) watch: bool,
     /// Denoises what key 1 renders, when all samples are there
@@ -33,7 +33,7 @@ pub(super) struct ShowArguments {
     /// Reports what was sent as JSON on standard output
     #[arg(long)]
     pub(super) json: bool,
-    /// Which edges are sent
+    /// The edges that are sent
     #[arg(long, value_enum, default_value = "grid")]
     pub(super) lines: DrawnEdges,
     /// Edges that bend more than this are always sent, degrees
@@ -43,14 +43,14 @@ pub(super) struct ShowArguments {
     /// sends FIX(1) to FIX(8) to <1>PERIS.SHADE, such as FIX(4), hidden lines, and FIX(8), Phong
     #[arg(long)]
     pub(super) facets: bool,
-    /// Solves for the light that goes from diffuse surface to diffuse surface, and sends it as colours at the corners of
-    /// polygons beside the vectors; the machine shades them on its raster screen whenever the dials have stood still
+    /// Solves for the light that goes from diffuse surface to diffuse surface, and sends it as colours at the corners
+    /// of polygons beside the vectors; the machine shades them on its raster screen whenever the dials have stood still
     #[arg(long, conflicts_with = "facets")]
     pub(super) radiosity: bool,
     /// Distance between curved surfaces and the lines sent, as a part of the object's diagonal
     #[arg(long, value_name = "PART", default_value_t = Drawing::default().tolerance, value_parser = crate::cli::values::part)]
     pub(super) tolerance: f64,
-    /// Opens no window, even if there is a display: orders from standard input do all
+    /// Opens no window, even if there is a display: operator commands from standard input do all
     #[arg(long, conflicts_with = "to")]
     pub(super) headless: bool,
     /// Threads that render [default: one for each core]
@@ -59,7 +59,7 @@ pub(super) struct ShowArguments {
     /// Writes the line of a script that asks for the view into this file, when key 3 is pressed and in the end
     #[arg(long, value_name = "FILE", conflicts_with = "once")]
     pub(super) camera: Option<PathBuf>,
-    /// The folder below which orders such as 'picture vector a.png' write files
+    /// The folder below which operator commands such as 'picture vector a.png' write files
     #[arg(long, value_name = "DIR", default_value = ".", conflicts_with = "to")]
     pub(super) files: PathBuf,
     #[command(flatten)]

@@ -15,7 +15,7 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-/// How often files are looked at. One that has changed is read when it stands still from one look to the next.
+/// How often files are polled. One that has changed is read when it stays the same from one poll to the next.
 const POLL_INTERVAL: Duration = Duration::from_millis(100);
 
 /// A scene that was made anew.
@@ -43,8 +43,8 @@ impl WatchedFiles {
         watched
     }
 
-    /// Watches these files from now on. One that was watched already has changed if it is not as it was then: it may have
-    /// been saved while it was read.
+    /// Watches these files from now on. One that was watched already has changed if it is not as it was then: it may
+    /// have been saved while it was read.
     fn follow(&mut self, files: impl IntoIterator<Item = PathBuf>) {
         let before = std::mem::take(&mut self.0);
         let known = |file: &Path| before.iter().find(|(other, _)| other == file).map(|(_, stamp)| *stamp);
@@ -77,8 +77,8 @@ fn files(script: &str, read: &[PathBuf]) -> Vec<PathBuf> {
 /// Tells of the scene whenever it was made anew, or why it could not be, in a thread of its own that ends when nobody
 /// listens.
 ///
-/// - `watched`: the script. `files_read`: by the scene as it is shown now. `camera`: that its script asks for. `initial`: from
-///   where it is seen.
+/// - `watched`: the script. `files_read`: by the scene as it is shown now. `camera`: that its script asks for.
+///   `initial`: from where it is seen.
 pub(super) fn watch(
     arguments: &ShowArguments,
     mut watched: WatchedFiles,

@@ -1,4 +1,4 @@
-//! A scene made ready to be shown.
+//! A scene prepared to be shown.
 
 use super::arguments::ShowArguments;
 use crate::cli::source::warn_of_emptiness;

@@ -1,4 +1,5 @@
-//! Keys of the workstation, orders from standard input, edits of the script and the rendering that goes on meanwhile.
+//! Keys of the workstation, operator commands from standard input, edits of the script and the rendering that goes on
+//! meanwhile.
 
 use super::{arguments::ShowArguments, edits::Edit, view_reporter::ViewReporter};
 use crate::{
@@ -41,11 +42,11 @@ pub(super) struct Server<'a> {
     operator_commands: OperatorCommands,
 }
 
-/// Orders from standard input for the operator of a workstation of our own.
+/// Operator commands from standard input for a workstation of our own.
 struct OperatorCommands {
     /// None if there are none any more.
     input: Option<mpsc::Receiver<String>>,
-    /// Orders whose replies are still to come.
+    /// Operator commands whose replies are still to come.
     unanswered: u64,
     /// When the machine was last seen at work on one.
     at_work: Instant,
@@ -110,7 +111,7 @@ impl<'a> Server<'a> {
         }
     }
 
-    /// Gives orders that were read to the operator, and says his replies; whether that is the end.
+    /// Sends operator commands that were read, and prints the replies; whether that is the end.
     fn perform_commands(&mut self) -> Result<bool, CommandFailure> {
         let Some(emulator) = self.emulator.as_mut() else { return Ok(false) };
         let orders = &mut self.operator_commands;
@@ -121,8 +122,8 @@ impl<'a> Server<'a> {
                 orders.at_work = if orders.unanswered == 0 { Instant::now() } else { orders.at_work };
                 orders.unanswered += 1;
             }
-            // With a window, somebody else gives orders. Without one, the end of the orders is the end, once all are answered
-            // and what they began has ended.
+            // With a window, somebody else gives commands. Without one, the end of the commands is the end, once all
+            // are answered and what they began has ended.
             Some(Err(mpsc::TryRecvError::Disconnected)) if emulator.has_window() => orders.input = None,
             Some(Err(mpsc::TryRecvError::Disconnected)) if orders.unanswered == 0 && self.rendering.is_none() => {
                 return Ok(true);
@@ -136,7 +137,8 @@ impl<'a> Server<'a> {
         }
         let session = self.production.session();
         if orders.unanswered > 0 && orders.at_work.elapsed() > session.timeouts().operator_command {
-            // Orders such as 'frames 10000' take their time; a machine that lives answers its hosts meanwhile.
+            // Operator commands such as 'frames 10000' take their time; a machine that lives answers its hosts
+            // meanwhile.
             session.synchronize()?;
             orders.at_work = Instant::now();
         }

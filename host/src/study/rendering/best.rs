@@ -11,9 +11,10 @@ pub(super) fn knobs_of(technique: Technique) -> impl Iterator<Item = &'static Re
 }
 
 impl StudiedScene {
-    /// Why a knob changes nothing, or nothing that it does not change by another renderer, where that is so.
+    /// The reason for which a knob changes nothing, or nothing that it does not change by another renderer, where that
+    /// is so.
     pub(super) fn idle(&self, technique: Technique, knob: &RenderKnob) -> Option<&'static str> {
-        let why = "no light is followed from lamps: this is ray tracing";
+        let why = "no photons are traced from lamps: this is ray tracing";
         let not_followed = technique.row().always_maps_photons.then(|| self.lacks(Stage::PhotonMap, why)).flatten();
         not_followed.or_else(|| (knob.idle)(self))
     }

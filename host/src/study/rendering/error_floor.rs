@@ -1,4 +1,4 @@
-//! Where a knob has done what it can: from there on the error stays while the run time grows.
+//! Error floors: where a knob has done what it can, the error stays while the run time grows.
 
 use super::measure::{CLEAR, ErrorMeasures};
 use serde::Serialize;
@@ -10,24 +10,24 @@ const LITTLE: f64 = 0.1;
 /// Bias that is a greater part of it is most of the error.
 const MOST: f64 = 0.5;
 
-/// What an error is from some setting on.
+/// The floor that an error has from some setting on.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ErrorFloor {
     /// Bias that this knob does not lower.
     ///
-    /// From the setting up to the last, the squared bias is more than half of the squared error and more than three of its
-    /// own standard errors, and the last is more than 0.6 of the first.
+    /// From the setting up to the last, the squared bias is more than half of the squared error and more than three of
+    /// its own standard errors, and the last is more than 0.6 of the first.
     Bias {
         /// The first such setting, by its number.
         from: usize,
         /// Other knobs that lower it, and by which part of its square; the first does most.
         causes: Vec<(String, f64)>,
     },
-    /// Chance that this knob does not lower.
+    /// Noise that this knob does not lower.
     ///
-    /// From the setting up to the last, the squared bias is less than a tenth of the squared error or less than three of
-    /// its standard errors, and the last squared error is more than 0.6 of the first.
+    /// From the setting up to the last, the squared bias is less than a tenth of the squared error or less than three
+    /// of its standard errors, and the last squared error is more than 0.6 of the first.
     #[serde(rename = "chance")]
     Noise {
         /// The first such setting, by its number.
@@ -42,7 +42,7 @@ pub enum ErrorFloor {
     },
 }
 
-/// Finds the bend in the errors of settings, from the coarsest to the finest; two are no curve.
+/// Finds the floor of the errors of settings, from the coarsest to the finest; two are no curve.
 ///
 /// - `reference`: root mean squared error of the reference, which is in all of them.
 pub(super) fn error_floor(measured: &[ErrorMeasures], reference: f64) -> Option<ErrorFloor> {

@@ -26,7 +26,7 @@ const MORE_POINTS: f64 = 2.0;
 const COARSEST_PATCHES: f64 = 4.0;
 const BEST_PATCHES: f64 = 0.5;
 
-/// How much more light is followed from one setting to the next, and how much smaller its largest disc is.
+/// How many more photons are traced from one setting to the next, and how much smaller their largest disc is.
 const PHOTON_STEP: f64 = 4.0;
 const RADIUS_STEP: f64 = 2.0;
 /// The least resolution of voxels with points that is tried.
@@ -46,12 +46,12 @@ pub struct RenderKnob {
     pub sets: &'static str,
     /// Whether a renderer has it.
     pub renderers: fn(&RendererRow) -> bool,
-    /// Whether it says which light counts, and not how well that is found: a reference is then only as good as the scene
-    /// asks for, unless this knob is what is studied.
+    /// Whether it says which light counts, and not how well that is found: a reference is then only as good as the
+    /// scene asks for, unless this knob is what is studied.
     pub is_model: bool,
     /// Whether the triangles depend on it: the run time includes their making.
     pub remodels: bool,
-    /// Why it changes nothing in a scene, where that is so.
+    /// The reason for which it changes nothing in a scene, where that is so.
     pub(super) idle: fn(&StudiedScene) -> Option<&'static str>,
     /// Settings to try, from the coarsest to the finest.
     pub(super) values: fn(&StudiedScene) -> Vec<f64>,
@@ -65,12 +65,12 @@ pub struct RenderKnob {
 
 /// The knobs of the renderers.
 ///
-/// Two are missing that one might look for: rays always carry eight wavelengths of 512, or three bands, and the octree of
-/// the renderer has one leaf size and depth, which change no hit (`peris study octree`, `peris study depth`).
+/// Two are missing that one might look for: rays always carry eight wavelengths of 512, or three bands, and the octree
+/// of the renderer has one leaf size and depth, which change no hit (`peris study octree`, `peris study depth`).
 ///
-/// Nor have the passes of two-way ray tracing a knob of their own: samples are passes. For each eight of them light is
-/// followed anew and spread over smaller discs, so that both chance and bias fall to nothing with samples alone; more photons
-/// make discs smaller at once, and a smaller largest disc counts where little light is.
+/// Nor have the passes of two-way ray tracing a knob of their own: samples are passes. For each eight of them photons
+/// are traced anew and spread over smaller discs, so that both noise and bias fall to nothing with samples alone; more
+/// photons make discs smaller at once, and a smaller largest disc counts where little light is.
 pub const RENDER_KNOBS: &[RenderKnob] = &[
     RenderKnob {
         name: "samples",
@@ -237,7 +237,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     },
     RenderKnob {
         name: "photons",
-        sets: "ways of light that are followed from lamps for eight samples of each pixel",
+        sets: "photons that are traced from lamps for eight samples of each pixel",
         renderers: LAMPS,
         is_model: false,
         remodels: false,
@@ -249,7 +249,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     },
     RenderKnob {
         name: "radius",
-        sets: "radius of the largest disc over which caught light is spread, scene units; where there is much, discs are smaller",
+        sets: "radius of the largest disc over which photons are spread, scene units; where there are many, discs are smaller",
         renderers: LAMPS,
         is_model: false,
         remodels: false,

@@ -1,8 +1,9 @@
-//! How far pictures are from a reference, and what of that is chance and what is bias.
+//! How far pictures are from a reference, and what of that is noise and what is bias.
 //!
-//! Two runs A and B with other seeds and two halves R and S of a reference have errors that know nothing of one another:
-//! the mean of (A − R)(B − S) over all pixels is therefore the squared bias alone, the mean of (A − B)² / 2 the chance of a
-//! run, and the mean of (R − S)² / 4 that of the mean of both halves. Of more than two runs all pairs are taken.
+//! Two runs A and B with other seeds and two halves R and S of a reference have errors that know nothing of one
+//! another: the mean of (A − R)(B − S) over all pixels is therefore the squared bias alone, the mean of (A − B)² / 2
+//! the noise of a run, and the mean of (R − S)² / 4 that of the mean of both halves. Of more than two runs all pairs
+//! are taken.
 //!
 //! # Source
 //! Ours; the product of independent halves is an old means against noise.
@@ -20,7 +21,7 @@ pub(super) struct ReferencePicture {
     halves: [Picture; 2],
     /// The mean of both.
     mean: Picture,
-    /// What chance does to the mean: root of the mean squared error of radiance.
+    /// What noise does to the mean: root of the mean squared error of radiance.
     pub(super) error: f64,
     /// What it took, seconds.
     pub(super) seconds: f64,
@@ -31,9 +32,9 @@ pub(super) struct ReferencePicture {
 pub struct ErrorMeasures {
     /// Root of the mean squared error of radiance.
     pub rmse: f64,
-    /// The part of it that is chance: two runs differ by √2 times as much. 0 for renderers without chance.
+    /// The part of it that is noise: two runs differ by √2 times as much. 0 for renderers without noise.
     pub noise: f64,
-    /// The square of the part that is no chance, W²/(m⁴ sr²); it is found by chance, and may be less than 0.
+    /// The square of the part that is no noise, W²/(m⁴ sr²); it is found by chance, and may be less than 0.
     pub bias_squared: f64,
     /// The standard error of that square.
     pub bias_squared_error: f64,
@@ -44,7 +45,7 @@ pub struct ErrorMeasures {
 }
 
 impl ErrorMeasures {
-    /// The part of the root mean squared error that is no chance; 0 where it is not clear of chance.
+    /// The part of the root mean squared error that is no noise; 0 where it is not clear of noise.
     pub fn bias(&self) -> f64 {
         if self.is_clear() { self.bias_squared.sqrt() } else { 0.0 }
     }
@@ -112,7 +113,7 @@ impl ReferencePicture {
         }
         let pixels = pixels as f64;
         let mean = sum / pixels;
-        // Without chance there is no doubt.
+        // Without noise there is no doubt.
         let is_sure = runs.iter().all(|run| run.picture == runs[0].picture);
         let error = if is_sure { 0.0 } else { ((squares / pixels - mean * mean).max(0.0) / pixels).sqrt() };
         let mean_of = |of: fn(&Difference) -> f64| found.iter().map(of).sum::<f64>() / count;

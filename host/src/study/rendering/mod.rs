@@ -1,7 +1,8 @@
-//! The knobs of the renderers: run time and error of each setting against a reference that is as good as all knobs make it.
+//! The knobs of the renderers: run time and error of each setting against a reference that is as good as all knobs make
+//! it.
 //!
-//! Every other knob stays as the scene has it while one is swept. The error of the sweep therefore bends where it is no
-//! longer that of the knob: then the study says what else it is.
+//! Every other knob stays as the scene has it while one is swept. The error of the sweep therefore has a floor where it
+//! is no longer that of the knob: then the study says what else it is.
 
 mod best;
 mod error_floor;
@@ -40,8 +41,8 @@ pub const RENDER_OPTIONS: Options = Options { width: 64, samples: 256, settings:
 
 /// Sweeps knobs of renderers.
 ///
-/// - `techniques`, `names`: the renderers, and the names of knobs in [`RENDER_KNOBS`]; a knob that a renderer does not have
-///   is passed over.
+/// - `techniques`, `names`: the renderers, and the names of knobs in [`RENDER_KNOBS`]; a knob that a renderer does not
+///   have is passed over.
 ///
 /// Being stopped is no error: the study then holds what was finished.
 ///
@@ -201,7 +202,7 @@ impl Bench<'_> {
         {
             let mut setup = own;
             (knob.set)(&mut setup, (knob.best)(self.base, technique));
-            // Models are the same in the reference, and more samples lower chance only.
+            // Models are the same in the reference, and more samples lower noise only.
             if setup == own || knob.is_model || knob.name == "error" {
                 continue;
             }

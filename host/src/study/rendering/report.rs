@@ -76,8 +76,8 @@ impl RenderStudy {
         text
     }
 
-    /// Plots: RMSE over run time of all knobs, if there are several, and of each knob with what of it is chance and bias;
-    /// each with its name. Knobs with fewer than three settings have no curve.
+    /// Plots: RMSE over run time of all knobs, if there are several, and of each knob with what of it is noise and
+    /// bias; each with its name. Knobs with fewer than three settings have no curve.
     pub fn plots(&self, title: &str) -> Vec<(String, Plot)> {
         let curves: Vec<&KnobStudy> = self.knobs.iter().filter(|study| study.rows.len() > 2).collect();
         let rmse = |study: &&KnobStudy| Series {
@@ -130,7 +130,7 @@ impl KnobStudy {
         text
     }
 
-    /// RMSE, chance and bias.
+    /// RMSE, noise and bias.
     fn series(&self) -> Vec<Series> {
         let word = self.technique.row().word;
         type Curve = (&'static str, fn(&RenderRow) -> f64);

@@ -35,7 +35,7 @@ pub struct KnobStudy {
     pub reference_seconds: f64,
     /// Its settings, from the coarsest to the finest.
     pub rows: Vec<RenderRow>,
-    /// Where its error bends, if it does.
+    /// The floor of its error, if it has one.
     #[serde(rename = "bend")]
     pub error_floor: Option<ErrorFloor>,
     /// What the rows tell, in words.
@@ -57,7 +57,7 @@ pub struct RenderRow {
 }
 
 impl RenderRow {
-    /// Mean squared error times run time: where all error is chance, more samples do not change it.
+    /// Mean squared error times run time: where all error is noise, more samples do not change it.
     pub fn cost(&self) -> f64 {
         self.measures.rmse.powi(2) * self.seconds
     }

@@ -1,4 +1,4 @@
-//! What is rendered in a study: a scene, how each of its knobs is set, and the shots that are made of it.
+//! What is rendered in a study: a scene, how each of its knobs is set, and the renderings of it that are timed.
 
 use crate::picture::Picture;
 use crate::plan::{Plan, Stage};
@@ -116,8 +116,8 @@ impl StudiedScene {
         Ok(technique.prepare(&Task::new(&self.prepared, &plan))?.renderer.any().left_out(&view))
     }
 
-    /// Renders the two halves of a reference, which know nothing of one another: by other seeds, and scan line, which has none,
-    /// by another grid of samples.
+    /// Renders the two halves of a reference, which know nothing of one another: by other seeds, and scan line, which
+    /// has none, by another grid of samples.
     ///
     /// # Errors
     /// As [`StudiedScene::render`].
@@ -189,7 +189,7 @@ impl StudiedScene {
         let mut shots = Vec::new();
         while !is_enough(&shots) {
             if is_followed {
-                // Light is followed from lamps by the seed of the scene, and kept for all further pictures.
+                // Photons are traced from lamps by the seed of the scene, and kept for all further pictures.
                 prepared.settings.image.seed = varied(&shots).seed;
             }
             let (start, built) = (Instant::now(), prepared.accelerations());

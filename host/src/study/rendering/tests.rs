@@ -216,11 +216,12 @@ fn every_knob_changes_the_picture_or_says_why_not() {
         // The tolerance alone turns normals far enough.
         let idle = study.name == "angle";
         assert!(idle || !study.verdict.contains("changes nothing"), "{}", study.table());
-        // What says which light counts may bring more chance, but no more bias; what says how well it is found, no more error.
+        // What says which light counts may bring more noise, but no more bias; what says how well it is found, no more
+        // error.
         let (first, last) = (measured[0], measured[measured.len() - 1]);
         let doubt = 4.0 * last.bias_squared_error.hypot(first.bias_squared_error);
         let least = measured.iter().fold(f64::INFINITY, |least, m| least.min(m.rmse));
-        // Where light is followed from lamps, chance in what was caught may be more than all that a knob does.
+        // Where photons are traced from lamps, their noise may be more than all that a knob does.
         let is_drowned = study.technique == Technique::TwoWay && !["samples", "photons"].contains(&study.name);
         // In a dozen pixels, a denoiser finds hardly any that are alike.
         let is_small = study.name == "denoise";
