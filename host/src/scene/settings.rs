@@ -238,7 +238,7 @@ impl PhotonSettings {
 
     fn check(&self) -> Result<(), String> {
         if self.radius.is_some_and(|radius| !(radius > 0.0 && radius.is_finite())) {
-            return Err("the radius of photons is not a length above 0".into());
+            return Err("the radius over which photons are spread is not a length above 0".into());
         }
         if self.point_depth.is_some_and(|depth| !(1..=MAX_POINT_DEPTH).contains(&depth)) {
             return Err(format!("a resolution of voxels is not within 1 to {MAX_POINT_DEPTH}"));

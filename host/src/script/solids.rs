@@ -113,7 +113,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             height: with_default(Length, 3.0, "of both together"),
             tolerance: TOLERANCE,
         )
-        "Adds a hyperboloid of two sheets, closed by discs: two sheets with their tips towards each other."
+        "Adds a hyperboloid of two sheets, their tips towards each other, closed by discs."
         "let lenses = bowls(0.5, 1, 2);"
         |builder| add(builder, Primitive::HyperboloidOfTwoSheets { gap, radius, height }, tolerance)
     },
