@@ -1,7 +1,8 @@
 //! The format of captured sessions: what passed on every host line, in both directions, and what the operator did, with
 //! its time.
 //!
-//! A capture is text. Its first line is [`HEADER`]; each other line is a record of four fields with one blank between them:
+//! A capture is text. Its first line is [`HEADER`]; each other line is a record of four fields with one blank between
+//! them:
 //!
 //! ```text
 //! ps340 capture 1
@@ -13,10 +14,10 @@
 //! ```
 //!
 //! - the time in seconds since the capture began, with six decimals;
-//! - the number of the line; 0 for an order;
-//! - `+` the line opened, `>` bytes from the host, `<` bytes to the host, `-` the line closed, `!` an order of the operator;
-//! - who attached for `+`; the order for `!`; the bytes for `>` and `<`: printable characters as they are, but `\\` for the backslash,
-//!   `\r`, `\n`, `\t`, and `\xNN` for all other bytes.
+//! - the number of the line; 0 for an operator command;
+//! - `+` the line opened, `>` bytes from the host, `<` bytes to the host, `-` the line closed, `!` an operator command;
+//! - who attached for `+`; the operator command for `!`; the bytes for `>` and `<`: printable characters as they are,
+//!   but `\\` for the backslash, `\r`, `\n`, `\t`, and `\xNN` for all other bytes.
 
 use std::fmt::Write;
 
@@ -26,10 +27,10 @@ pub const HEADER: &str = "ps340 capture 1";
 /// Bytes of a line in one record; more are several records.
 pub const PIECE: usize = 4096;
 
-/// Longest order of an operator, in bytes.
+/// Longest operator command, in bytes.
 pub const MAX_OPERATOR_COMMAND: usize = 64 << 10;
 
-/// Longest line of a capture in bytes: every byte of an order escaped, and the fields before it.
+/// Longest line of a capture in bytes: every byte of an operator command escaped, and the fields before it.
 const MAX_LINE: usize = 4 * MAX_OPERATOR_COMMAND + 128;
 
 /// Longest name of who attached.
@@ -57,7 +58,7 @@ pub enum Event {
     ToHost(Vec<u8>),
     /// The line closed.
     Close,
-    /// The operator did something; the order.
+    /// An operator command was given; its text.
     OperatorCommand(String),
 }
 

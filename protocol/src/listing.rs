@@ -11,7 +11,7 @@ use std::{
     ops::Range,
 };
 
-/// Bytes in a row, unless said otherwise.
+/// Bytes in a row by default.
 const ROW: usize = 16;
 /// Rows of one field that are shown; of a longer field, the first ones.
 const ROWS: usize = 4;
@@ -74,7 +74,7 @@ impl Listing {
         Listing { sender, ..Listing::default() }
     }
 
-    /// This listing with so many bytes in a row, at least 1; 16 if nothing is said.
+    /// This listing with so many bytes in a row, at least 1; 16 if not set.
     pub fn with_row(self, bytes: usize) -> Listing {
         Listing { width: bytes.max(1), ..self }
     }
@@ -99,7 +99,7 @@ impl Listing {
         result
     }
 
-    /// Lists what is left of an unfinished packet, and says which command or message has no end.
+    /// Lists what is left of an unfinished packet, and reports which command or message has no end.
     ///
     /// # Errors
     /// Those of `out`.

@@ -1,6 +1,6 @@
 //! Little-endian fields of binary records: their reader, their writer and their errors.
 //!
-//! One reader serves the decoders and the listing: a [`Witness`] is told of every field that was read.
+//! One reader serves the decoders and the listing: every field that was read is reported to a [`Witness`].
 
 use crate::{
     Name,
@@ -59,10 +59,10 @@ pub enum BinaryProblem {
     /// Another record while a vector list or a text is open; what was open is given up.
     #[error("a vector list or a text is open, and only its parts and its end may follow")]
     StillOpen,
-    /// The end of a vector list that is not as long as it said; the list is given up.
+    /// The end of a vector list that is not as long as it announced; the list is given up.
     #[error("{announced} vectors were announced and {received} received")]
     Count {
-        /// What the first record of the list said.
+        /// The length that the first record of the list announced.
         announced: usize,
         /// What came.
         received: usize,
@@ -89,13 +89,13 @@ pub fn within(what: &'static str, found: usize, limit: usize) -> Result<(), Enco
     if found > limit { Err(EncodeError { what, found, limit }) } else { Ok(()) }
 }
 
-/// Somebody who is told of every field that a [`Reader`] reads.
+/// A receiver of every field that a [`Reader`] reads.
 pub trait Witness {
     /// The bytes `place` are the field `label` and mean `meaning`.
     fn field(&mut self, place: Range<usize>, label: &'static str, meaning: fmt::Arguments<'_>);
 }
 
-/// Nobody.
+/// A witness that ignores what is reported.
 impl Witness for () {
     #[inline(always)]
     fn field(&mut self, _: Range<usize>, _: &'static str, _: fmt::Arguments<'_>) {}
@@ -129,7 +129,7 @@ impl<'b, 'w, W: Witness> Reader<'b, 'w, W> {
         BinaryError { offset: self.at.saturating_sub(length), field, problem }
     }
 
-    /// The next `length` bytes, without telling the witness.
+    /// The next `length` bytes, without reporting them to the witness.
     ///
     /// # Errors
     /// [`BinaryProblem::Truncated`].
@@ -143,13 +143,13 @@ impl<'b, 'w, W: Witness> Reader<'b, 'w, W> {
         Ok(&left[..length])
     }
 
-    /// Tells the witness what the last `length` bytes mean.
+    /// Reports to the witness what the last `length` bytes mean.
     #[inline(always)]
     pub fn report(&mut self, length: usize, field: &'static str, meaning: fmt::Arguments<'_>) {
         self.witness.field(self.at - length..self.at, field, meaning);
     }
 
-    /// Tells the witness what `length` bytes from offset `at` on mean.
+    /// Reports to the witness what `length` bytes from offset `at` on mean.
     #[inline(always)]
     pub fn report_at(&mut self, at: usize, length: usize, field: &'static str, meaning: fmt::Arguments<'_>) {
         self.witness.field(at..at + length, field, meaning);

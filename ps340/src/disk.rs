@@ -14,7 +14,7 @@ pub enum DiskFault {
     /// A file that is not there.
     #[error("File not found: {}", .0.as_str())]
     NotFound(FileName),
-    /// No room for what should be written; the file is as it was.
+    /// No space for what should be written; the file is as it was.
     #[error("Disk full: {} is not written", .0.as_str())]
     Full(FileName),
 }

@@ -194,7 +194,7 @@ impl Objects {
         self.deleted.clear();
     }
 
-    /// Gives back the room of objects that have gone.
+    /// Releases the memory of objects that have gone.
     pub fn shrink(&mut self) {
         self.identities.shrink_to_fit();
         self.free.shrink_to_fit();

@@ -44,14 +44,15 @@ struct Arguments {
     #[arg(long, value_name = "FILE")]
     capture: Option<PathBuf>,
     /// Who gives orders: stdio, none, or an address to listen on. By default stdio if that is a terminal, else none.
-    /// A Unix socket takes orders of its owner. Over TCP the first line must be 'token TOKEN', with the token of the environment
-    /// variable PS340_TOKEN, or else the one that is printed at the start.
+    /// A Unix socket takes orders of its owner. Over TCP the first line must be 'token TOKEN', with the token of the
+    /// environment variable PS340_TOKEN, or else the one that is printed at the start.
     #[arg(long, value_name = "stdio|none|ADDRESS")]
     operator: Option<String>,
     /// The folder below which the operator's orders write files; no name and no link leads out of it.
     #[arg(long, value_name = "DIR", default_value = ".")]
     files: PathBuf,
-    /// Lets captures that are played write files and end the machine, as an operator may. Without it they use devices only.
+    /// Lets captures that are played write files and end the machine, as an operator may. Without it they use devices
+    /// only.
     #[arg(long)]
     orders: bool,
     /// Lets it listen where other computers reach it. Whoever does can use the machine.
@@ -83,8 +84,8 @@ struct Arguments {
     #[cfg(feature = "window")]
     #[arg(long, value_name = "N", requires = "window", value_parser = scale)]
     scale: Option<f32>,
-    /// Ends at once when the program that started it ends, even if that is killed. For programs that have a PS 340 of their
-    /// own; what else is there to clean up stays. Only on Linux.
+    /// Ends at once when the program that started it ends, even if that is killed. For programs that have a PS 340 of
+    /// their own; what else is there to clean up stays. Only on Linux.
     #[arg(long)]
     with_parent: bool,
     /// Threads that draw; all cores by default.

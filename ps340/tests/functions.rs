@@ -1,4 +1,4 @@
-//! The program tells about the functions of the machine.
+//! `ps340 functions` prints the table of functions.
 
 use std::process::{Command, Output};
 

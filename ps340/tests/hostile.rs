@@ -10,7 +10,7 @@ use ps340::{
 };
 
 const LINE: LineId = LineId(1);
-/// A host on the parallel interface, which hears the same.
+/// A host on the parallel interface, which receives the same.
 const PARALLEL: LineId = LineId(3);
 
 /// Streams tried in an ordinary run.

@@ -21,7 +21,7 @@ const ECHO: &str = "E := F:NOP; CONNECT E<1>:<1>HOST_MESSAGE;\n";
 /// A process that is killed when dropped.
 struct Process {
     child: Child,
-    /// What it said before it was ready, without `ready line `.
+    /// What it printed before it was ready, without `ready line `.
     lines: Vec<String>,
 }
 
@@ -63,7 +63,7 @@ fn within_patience<T: Send + 'static>(what: &str, action: impl FnOnce() -> T + S
     receiver.recv_timeout(PATIENCE).unwrap_or_else(|_| panic!("{what} takes too long"))
 }
 
-/// Waits until a capture says so many times that a host has left.
+/// Waits until a capture records so many times that a host has left.
 fn wait_until_left(capture: &str, times: usize) {
     let begin = Instant::now();
     let left = || {
@@ -112,7 +112,7 @@ fn a_pseudo_terminal_survives_that_its_host_goes_and_comes() {
     let host = ask(open(&path), &format!("{ECHO} SEND 'first' TO <1>E;"), "first");
     drop(host);
     for round in 0..3 {
-        // Half a command of a host that goes is no part of what the next one says.
+        // Half a command of a host that goes is no part of what the next one sends.
         let word = format!("round {round}");
         wait_until_left(&capture, round + 1);
         let mut host = ask(open(&path), &format!("SEND '{word}' TO <1>E;"), &word);

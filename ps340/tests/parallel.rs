@@ -15,7 +15,7 @@ const OTHER: LineId = LineId(2);
 /// The address that the first look-up gives.
 const ADDRESS: u32 = 0x0001_0000;
 
-/// A host and a machine, and what they have said.
+/// A host and a machine, and the dialogue between them.
 struct Dialogue {
     machine: Machine,
     listing: ParallelListing,

@@ -1,11 +1,11 @@
-//! How many strokes a second the display draws, from strokes to the bytes of the pixels: on the processor, and on the best
-//! graphics processor that there is, which may be software.
+//! How many strokes a second the display draws, from strokes to the bytes of the pixels: on the processor, and on the
+//! best graphics processor that there is, which may be software.
 //!
 //! Each picture is checked before it is timed: the light is that of the strokes, the bytes are there, and those of both
-//! processors agree within one. A drawer of plain smooth lines (Wu 1991: two pixels a step, no spot, no ramp, no energy,
-//! colour added to bytes) runs beside them.
-//! `THREADS=1` in the environment lets everything run on one thread; otherwise as many as there are processors. With the
-//! word `target` as argument only the row of the target is measured.
+//! processors agree within one. A drawer of plain smooth lines (Wu 1991: two pixels a step, no spot, no ramp, no
+//! energy, colour added to bytes) runs beside them.
+//! `THREADS=1` in the environment lets everything run on one thread; otherwise as many as there are processors. With
+//! the word `target` as argument only the row of the target is measured.
 
 use ps340::{
     calligraphic::{self, Beam, Controls, Display, Drawer, Gpu},

@@ -1,8 +1,8 @@
-//! What fifty million vectors on the screen cost a person and a host: how soon orders are answered while more arrive, how
-//! long a picture takes, and what memory stays after INITIALIZE.
+//! What fifty million vectors on the screen cost a person and a host: how soon operator commands are answered while
+//! more arrive, how long a picture takes, and what memory stays after INITIALIZE.
 //!
-//! Lists of 10,000 vectors, as clients make them, each with strokes of 10 pixels. `cargo bench -p tests --bench crowd -- 10`
-//! takes ten million.
+//! Lists of 10,000 vectors, as clients make them, each with strokes of 10 pixels.
+//! `cargo bench -p tests --bench crowd -- 10` takes ten million.
 
 use std::{
     fmt::Write as _,
@@ -14,7 +14,7 @@ use tests::{Host, Machine};
 const PS340: &str = env!("CARGO_BIN_EXE_ps340-under-test");
 /// Vectors of a list.
 const LIST: usize = 10_000;
-/// Orders that are timed.
+/// Operator commands that are timed.
 const ORDERS: usize = 1_000;
 
 /// The vectors of a list: a walk of short steps, by a rule.

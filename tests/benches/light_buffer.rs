@@ -1,7 +1,7 @@
 //! The light buffer: ten views of the living room from the door on, with it and without.
 //!
-//! First proves that the pictures are the same, bit by bit. The time for making triangles and octree is not counted, that for
-//! finding what stands between voxels and lights is. `cargo bench -p tests --bench light_buffer`
+//! First proves that the pictures are the same, bit by bit. The time for making triangles and octree is not counted,
+//! that for finding what stands between voxels and lights is. `cargo bench -p tests --bench light_buffer`
 
 use host::plan::Plan;
 use host::render::ray_tracer;

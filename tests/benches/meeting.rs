@@ -1,8 +1,8 @@
 //! Accurate curves in which two exact surfaces meet, and rounding of edges: what they cost, and how it grows.
 //!
 //! Each result is checked first: every point of a curve is accurate, its residual is below the precision that was asked
-//! for, and it satisfies both equations; the volume that rounding takes off is that of the parabolas along the edges. Then
-//! the best of several runs counts, in processor seconds of one thread. The triangles are made before.
+//! for, and it satisfies both equations; the volume that rounding takes off is that of the parabolas along the edges.
+//! Then the best of several runs counts, in processor seconds of one thread. The triangles are made before.
 //! `cargo bench -p tests --bench meeting`
 
 use std::f64::consts::{PI, TAU};
@@ -16,8 +16,8 @@ use host::surface::Tolerance;
 
 /// Runs of each case; the best counts.
 const RUNS: usize = 3;
-/// Tolerances of the triangles with which curves are looked for; each makes about twice as many points as that before, and
-/// four times as many triangles.
+/// Tolerances of the triangles with which curves are looked for; each makes about twice as many points as that before,
+/// and four times as many triangles.
 const CHORDS: [f64; 6] = [4e-2, 1e-2, 2.5e-3, 6.25e-4, 1.5625e-4, 3.906_25e-5];
 /// Corners of the prisms that are rounded.
 const CORNERS: [usize; 4] = [4, 16, 64, 256];

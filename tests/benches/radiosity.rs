@@ -1,7 +1,7 @@
 //! Radiosity of a closed room with five balls under a lamp: elements against seconds.
 //!
-//! First proves the answer: flux is neither lost nor found, and in a closed ball that glows inside the radiosity is E / (1 − ρ).
-//! Then the time for more and more elements, two threads.
+//! First proves the answer: flux is neither lost nor found, and in a closed ball that glows inside the radiosity is E /
+//! (1 − ρ). Then the time for more and more elements, two threads.
 //! `cargo bench -p tests --bench radiosity`
 
 use glam::{DMat4, DVec3};

@@ -203,8 +203,8 @@ fn rates<const N: usize>(rays: [usize; N], rivals: [&dyn Fn() -> usize; N]) -> [
     })
 }
 
-/// Millions of rays per second of all threads, and that over what one thread of as many jobs does by the same clock, that on
-/// the wall.
+/// Millions of rays per second of all threads, and that over what one thread of as many jobs does by the same clock,
+/// that on the wall.
 fn all_threads(octree: &Octree, set: &RaySet) -> (f64, f64) {
     let pools = [1, 0].map(|count| rayon::ThreadPoolBuilder::new().num_threads(count).build().expect("threads"));
     let pass = || set.rays.par_iter().with_min_len(1024).filter(|ray| hit(octree, ray, set)).count();

@@ -1,7 +1,7 @@
 //! Scan line with shadow volumes beside ray tracing: the bunny on a floor under one lamp, 1024 x 1024 pixels.
 //!
-//! First proves the picture: a small one by scan line is that of ray tracing. Then the best of several runs counts, with two
-//! threads and four samples in each pixel, finding the neighbours of triangles included.
+//! First proves the picture: a small one by scan line is that of ray tracing. Then the best of several runs counts,
+//! with two threads and four samples in each pixel, finding the neighbours of triangles included.
 //! `cargo bench -p tests --bench scan_line`
 
 use glam::{DMat4, DVec3};

@@ -1,9 +1,9 @@
 //! Two-way ray tracing: error against time for the caustic of a glass ball, and ten views beside one.
 //!
-//! First proves that the flux that was sent out is found again, that a second view is the same as if it were the first, and
-//! that the error falls with more samples. The error is the relative mean squared error off the ball, against a picture of
-//! other random numbers with very many samples; its own error is told. On one thread, so that seconds are those of a
-//! processor. `cargo bench -p tests --bench two_way`
+//! First proves that the flux that was sent out is found again, that a second view is the same as if it were the first,
+//! and that the error falls with more samples. The error is the relative mean squared error off the ball, against a
+//! picture of other random numbers with very many samples; its own error is told. On one thread, so that seconds are
+//! those of a processor. `cargo bench -p tests --bench two_way`
 
 use host::color::srgb::LUMINANCE;
 use host::picture::RELATIVE_FLOOR;
@@ -15,7 +15,8 @@ use host::scene::{Interreflection, Prepared, Scene, View};
 use std::num::NonZeroUsize;
 use std::time::Instant;
 
-/// Photons for eight samples, samples of each pixel, points of the lamp for each, and whether diffuse light is carried on.
+/// Photons for eight samples, samples of each pixel, points of the lamp for each, and whether diffuse light is carried
+/// on.
 const SETTINGS: [(u32, u32, u32, bool); 9] = [
     (50_000, 1, 1, false),
     (200_000, 4, 1, false),

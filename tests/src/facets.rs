@@ -68,8 +68,8 @@ pub fn to_screen(matrix: &DMat4, point: DVec3, size: usize) -> DVec3 {
     DVec3::new((clip.x / clip.w + 1.0) * half, (clip.y / clip.w + 1.0) * half, 1.0 / clip.w)
 }
 
-/// The nearest 1/w at the middle of each pixel, 0 where there is nothing: the textbook loop over boxes with three sides,
-/// no bands, no incremental spans.
+/// The nearest 1/w at the middle of each pixel, 0 where there is nothing: the textbook loop over boxes with three
+/// sides, no bands, no incremental spans.
 pub fn z_buffer(triangles: &[[DVec3; 3]], size: usize) -> Vec<f64> {
     let mut buffer = vec![0.0; size * size];
     for [a, b, c] in triangles {

@@ -1,6 +1,6 @@
 //! What the tests of two processes share: starting, asking and ending them, with a time limit on every wait; and the
-//! conformance suite; a judge of simple surfaces; the window that real events work; the corpus of Boolean operations; the
-//! notices of crates of others; every reader of bytes; the source code as a house.
+//! conformance suite; a test of simple surfaces; the window that real events work; the corpus of Boolean operations;
+//! the notices of crates of others; every reader of bytes; the source tree.
 
 pub mod conformance;
 pub mod simple;
@@ -56,7 +56,7 @@ impl Machine {
             .spawn()
             .expect("the program starts");
         let orders = child.stdin.take();
-        // Read all along, so that the machine never waits for room in the pipe.
+        // Read all along, so that the machine never waits for space in the pipe.
         let errors = child.stderr.take().map(|errors| std::thread::spawn(move || read_all(errors)));
         let out = child.stdout.take().expect("standard output is piped");
         let (sender, replies) = mpsc::channel();
@@ -82,19 +82,19 @@ impl Machine {
         }
     }
 
-    /// Gives an order without waiting for the reply.
+    /// Gives an operator command without waiting for the reply.
     pub fn give(&mut self, order: &str) {
         let orders = self.operator_input.as_mut().expect("the operator line is open");
         writeln!(orders, "{order}").expect("the machine takes orders");
     }
 
-    /// Gives an order and returns the whole reply line.
+    /// Gives an operator command and returns the whole reply line.
     pub fn reply(&mut self, order: &str) -> String {
         self.give(order);
         self.replies.recv_timeout(TIMEOUT).unwrap_or_else(|e| panic!("no reply to '{order}': {e}"))
     }
 
-    /// Gives an order that has to succeed; returns the reply without its `ok`.
+    /// Gives an operator command that has to succeed; returns the reply without its `ok`.
     pub fn operator_command(&mut self, order: &str) -> String {
         let reply = self.reply(order);
         let text = reply.strip_prefix("ok").unwrap_or_else(|| panic!("'{order}' was answered '{reply}'"));
@@ -175,7 +175,7 @@ impl Host {
         Host { stream, reader }
     }
 
-    /// Waits for the end of the line; what is said until then.
+    /// Waits for the end of the line; returns what was sent until then.
     pub fn rest(&mut self) -> String {
         let mut rest = Vec::new();
         self.reader.read_to_end(&mut rest).expect("the end within the time limit");

@@ -1,4 +1,4 @@
-//! The source code of the workspace as a house: crates, files, what each file uses, and circles among them.
+//! The source tree of the workspace: crates, files, what each file uses, and circles among them.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -185,10 +185,11 @@ fn segments(path: &str) -> Vec<String> {
 /// What a module is called from the root of its crate: `render`, `film`.
 pub type Module = Vec<String>;
 
-/// The files of a crate with what each of them uses of the others. Files of tests are left out, and so are modules of tests
-/// at the end of a file.
+/// The files of a crate with what each of them uses of the others. Files of tests are left out, and so are modules of
+/// tests at the end of a file.
 pub struct Uses {
-    /// For each module those whose items it names, itself excepted. What a `mod.rs` hands on belongs to the file behind it.
+    /// For each module those whose items it names, itself excepted. What a `mod.rs` hands on belongs to the file behind
+    /// it.
     pub edges: BTreeMap<Module, BTreeSet<Module>>,
 }
 
@@ -326,7 +327,8 @@ fn without_uses(text: &str) -> String {
     code + &text[from..]
 }
 
-/// Paths outside of `use`: what begins with a small letter and has two segments and more, such as `crate::a::f` and `child::f`.
+/// Paths outside of `use`: what begins with a small letter and has two segments and more, such as `crate::a::f` and
+/// `child::f`.
 fn paths_in_code(text: &str) -> Vec<Vec<String>> {
     let is_of_path = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
     let words = text.split(|c| !is_of_path(c)).filter(|word| word.contains("::"));

@@ -50,7 +50,7 @@ impl Display {
             return None;
         }
         // Tests run beside each other. A server that looks for a free number by itself may take away the socket of
-        // one that is only just starting; a server that is told its number fails if another one has locked it.
+        // one that is only just starting; a server that is given its number fails if another one has locked it.
         for number in NEXT_DISPLAY.fetch_add(1, Ordering::Relaxed)..=LAST_DISPLAY {
             let mut server = Command::new("Xvfb");
             server.args([&format!(":{number}"), "-displayfd", "1", "-screen", "0", "1280x860x24", "-nolisten", "tcp"]);
@@ -80,7 +80,7 @@ impl Display {
     }
 }
 
-/// The machine in its window, with an operator and, if a test wants one, a host.
+/// The windowed machine, with an operator and, if a test wants one, a host.
 #[derive(Debug)]
 pub struct WindowedMachine {
     display: Display,
@@ -205,7 +205,7 @@ impl WindowedMachine {
         self.display.act("click 1");
     }
 
-    /// Gives an order to the operator, and returns the reply.
+    /// Gives an operator command, and returns the reply.
     pub fn operator_command(&mut self, order: &str) -> String {
         writeln!(self.operator.get_mut(), "{order}").expect("the operator's line is open");
         let mut reply = String::new();
@@ -213,7 +213,7 @@ impl WindowedMachine {
         reply.trim_end().to_owned()
     }
 
-    /// Tells the machine something as a host does.
+    /// Sends the machine something as a host does.
     pub fn send(&mut self, commands: &str) {
         let line = &self.line;
         let host = self.host.get_or_insert_with(|| TcpStream::connect(line).expect("the machine listens"));
@@ -225,7 +225,7 @@ impl WindowedMachine {
         self.host = None;
     }
 
-    /// Waits until a reply to an order holds a text.
+    /// Waits until a reply to an operator command holds a text.
     ///
     /// # Panics
     /// If it does not come to that.
@@ -240,14 +240,14 @@ impl WindowedMachine {
     }
 }
 
-/// The device and its place that a line of the log tells.
+/// The device and its position that a line of the log gives.
 fn parse_position(line: &str) -> Option<(String, [i32; 2])> {
     let (device, at) = line.trim().strip_prefix("DEBUG ")?.split_once(" at ")?;
     let (x, y) = at.split_once(' ')?;
     Some((device.to_owned(), [x.parse().ok()?, y.parse().ok()?]))
 }
 
-/// The addresses of line and operator, once the machine has told them.
+/// The addresses of line and operator, once the machine has printed them.
 fn addresses(out: ChildStdout) -> [String; 2] {
     let (sender, lines) = mpsc::channel();
     std::thread::spawn(move || {

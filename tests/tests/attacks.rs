@@ -1,5 +1,5 @@
-//! Attacks on whoever runs a machine: through its lines, and through files that it is handed. The victim's files stay as they
-//! are.
+//! Attacks on whoever runs a machine: through its lines, and through files that it is handed. The victim's files stay
+//! as they are.
 
 use std::{
     fs,

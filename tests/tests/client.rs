@@ -6,7 +6,7 @@ use tests::{Host, Machine};
 
 const PS340: &str = env!("CARGO_BIN_EXE_ps340-under-test");
 
-/// The network that turns a press into a message: the code of the button, V, the place.
+/// The network that turns a press into a message: the code of the button, V, the position.
 const LOCATOR: &str = "DEL := F:DELTA; SEND FIX(1) TO <2>DEL; ADD := F:ADDC; SEND FIX(1) TO <2>ADD; RTE := F:ROUTE(9);
     SUB := F:SUBC; SEND FIX(1) TO <2>SUB; PRT3 := F:PRINT; PRT6 := F:PRINT; SEND FALSE TO <2>PRT3;
     CONCAT := F:CONCATENATE; CONNECT DEL<1>:<1>ADD; CONNECT ADD<1>:<1>RTE; CONNECT ADD<1>:<2>RTE;
@@ -16,7 +16,7 @@ const LOCATOR: &str = "DEL := F:DELTA; SEND FIX(1) TO <2>DEL; ADD := F:ADDC; SEN
 const ASK: &str = "CONNECT TABLETIN<3>:<1>DEL; CONNECT TABLETIN<6>:<1>PRT6;";
 const LEAVE: &str = "DISCONNECT TABLETIN<3>:<1>DEL; DISCONNECT TABLETIN<6>:<1>PRT6;";
 
-/// Waits until the machine has done what was sent. Nothing else must have been said.
+/// Waits until the machine has done what was sent. Nothing else must have been sent.
 fn meet(host: &mut Host) {
     host.send("SEND 'DONE' TO <1>HOST_MESSAGE;");
     assert_eq!(host.message(), "DONE");
@@ -33,8 +33,8 @@ fn next_code(before: u8, random: &mut Pcg64Mcg) -> u8 {
     }
 }
 
-/// Presses, releases, rolls, chords, connections and disconnections by chance; each press of one button while the program
-/// asks has one answer, with its code and its place.
+/// Presses, releases, rolls, chords, connections and disconnections by chance; each press of one button while the
+/// program asks has one answer, with its code and its position.
 fn locate(clock: &str, seed: u64, acts: usize) {
     let mut machine = Machine::start(PS340, &["--clock", clock]);
     let mut host = machine.attach();

@@ -1,4 +1,5 @@
-//! The front page holds what it says: it is short, and everything on it that can be run is run, in order, in one folder.
+//! The front page holds what it says: it is short, and everything on it that can be run is run, in order, in one
+//! folder.
 
 use std::{fs, os::unix::fs::symlink, path::Path, time::Duration};
 use tests::run;

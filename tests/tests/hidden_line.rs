@@ -1,7 +1,9 @@
-//! Back-face and hidden-line removal of a cube, of the bunny and of open surfaces against a z-buffer of this test's own.
+//! Back-face and hidden-line removal of a cube, of the bunny and of open surfaces against a z-buffer of this test's
+//! own.
 //!
-//! A z-buffer with its samples in the middles of pixels can say little about lines near an outline. Here the samples are
-//! points of the edges themselves, wherever they fall on the screen; cells only tell which triangles may cover them.
+//! A z-buffer with its samples in the middles of pixels can say little about lines near an outline. Here the samples
+//! are points of the edges themselves, wherever they fall on the screen; cells only list which triangles may cover
+//! them.
 //!
 //! # Source
 //! Samples at places of their own: Johnson, Lee, Burns and Mark 2005, The irregular Z-buffer.
@@ -173,7 +175,7 @@ impl Sample {
         let gradient = DVec2::new(u.z * v.y - v.z * u.y, v.z * u.x - u.z * v.x) / area;
         let ahead = a.z + gradient.dot((self.place - a).truncate()) - self.place.z;
         let in_a_step = gradient.length() + self.slope;
-        // Seen from its side, a triangle hides nothing, and says nothing for sure of what is close to it.
+        // Seen from its side, a triangle hides nothing, and decides nothing for sure about what is close to it.
         let behind =
             a.z.max(b.z).max(c.z) < self.place.z - AT_LEAST * self.slope || ahead < -AT_LEAST * in_a_step - 1e-12;
         self.hidden |= inside > SURELY && ahead > SURELY * in_a_step + 1e-12;
@@ -181,7 +183,7 @@ impl Sample {
     }
 }
 
-/// What was judged: points seen, hidden, and those that could not be told.
+/// The points that were checked: seen, hidden, and those that could not be decided.
 #[derive(Debug, Default)]
 struct Counts {
     seen: usize,
@@ -189,7 +191,7 @@ struct Counts {
     in_doubt: usize,
 }
 
-/// Judges lines seen from a point: what is drawn and hidden, or seen and not drawn, is wrong.
+/// Checks lines seen from a point: what is drawn and hidden, or seen and not drawn, is wrong.
 fn judge(polygons: &[Polygon], lines: &[Segment], from: DVec3) -> (Counts, Vec<String>) {
     let screen = Screen::new(polygons, from);
     let mut samples = screen.samples(&screen.drawn(lines, from));
@@ -212,7 +214,7 @@ fn judge(polygons: &[Polygon], lines: &[Segment], from: DVec3) -> (Counts, Vec<S
     (counts, wrong)
 }
 
-/// Checks that nothing shows through and nothing is missing, and that few points cannot be told.
+/// Checks that nothing shows through and nothing is missing, and that few points cannot be decided.
 fn check(polygons: &[Polygon], lines: &[Segment], from: DVec3) -> Counts {
     let (counts, wrong) = judge(polygons, lines, from);
     assert!(wrong.is_empty(), "{} wrong of {counts:?}, from {from}: {:#?}", wrong.len(), &wrong[..wrong.len().min(9)]);

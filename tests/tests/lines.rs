@@ -1,4 +1,4 @@
-//! What hosts and partners that misbehave cost: those that do not read, say nothing, or stand still.
+//! What hosts and partners that misbehave cost: those that do not read, send nothing, or stand still.
 
 use rustix::process::Signal;
 use std::{
@@ -40,7 +40,7 @@ fn counter(machine: &mut Machine, name: &str) -> u64 {
 
 #[test]
 fn eight_hosts_that_do_not_read_cost_at_most_200_megabytes() {
-    // Short messages cost most beside what they say; to fill the room of a host with them takes longer.
+    // Short messages cost most beside what they carry; to fill the output queue of a host with them takes longer.
     let (text, count) = if is_long() { ("a", 4_000_000) } else { ("twenty bytes of text", 600_000) };
     let mut machine = Machine::start(PS340, &[]);
     let mut hosts: Vec<TcpStream> = (0..8).map(|_| TcpStream::connect(&machine.line).unwrap()).collect();
@@ -177,7 +177,7 @@ fn a_machine_of_our_own_that_does_not_get_ready_is_given_up_and_ended() {
 #[test]
 fn orders_that_take_long_end_when_the_machine_stands_still() {
     let folder = tempfile::tempdir().unwrap();
-    // It says which process the machine is.
+    // It gives the number of the machine's process.
     let program = folder.path().join("still");
     let script = format!("#!/bin/sh\necho $$ > process\nexec {PS340} \"$@\"\n");
     fs::write(&program, script).unwrap();
@@ -192,7 +192,7 @@ fn orders_that_take_long_end_when_the_machine_stands_still() {
         .spawn()
         .unwrap();
     let mut orders = child.stdin.take().unwrap();
-    // An order that takes longer than the patience is no fault.
+    // An operator command that takes longer than the timeout is no fault.
     writeln!(orders, "frames 75").unwrap();
     let mut said = std::io::BufReader::new(child.stdout.take().unwrap());
     let mut line = String::new();

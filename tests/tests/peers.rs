@@ -71,8 +71,8 @@ fn means_of_blocks_are_those_of_mitsuba_within_the_errors_of_both() {
     }
 }
 
-/// How far off the mean of a picture by radiosity may be, and the mean of any of its regions, as a part of it or of a fifth
-/// of the mean of all if that is more.
+/// How far off the mean of a picture by radiosity may be, and the mean of any of its regions, as a part of it or of a
+/// fifth of the mean of all if that is more.
 const WHOLE: f64 = 0.01;
 const REGION: f64 = 0.03;
 /// Where the mean is more, the lamp is in sight; regions above, below and beside do not count, either.

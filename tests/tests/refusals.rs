@@ -1,5 +1,5 @@
-//! What the corpus scores, what `peris boolean` says and what a script gets come from one function: results are the same to
-//! the bit, and refusals the same to the letter.
+//! What the corpus scores, what `peris boolean` says and what a script gets come from one function: results are the
+//! same to the bit, and refusals the same to the letter.
 
 use glam::{DQuat, DVec3};
 use host::mesh::{Format, Mesh, parse, print};
@@ -14,8 +14,8 @@ use tests::{TIMEOUT, run};
 const PERIS: &str = env!("CARGO_BIN_EXE_peris-under-test");
 
 /// Three coarse spheres, turned by anything from a rounding to a hundredth: what is in an odd number of them is hard to
-/// round, and may be refused. They have normals, since a script gives flat ones to what has none, and points where normals
-/// change stay.
+/// round, and may be refused. They have normals, since a script gives flat ones to what has none, and points where
+/// normals change stay.
 fn spheres(seed: u64) -> [Mesh; 3] {
     let mut random = Pcg64Mcg::seed_from_u64(seed);
     let mut vector = || DVec3::from([0; 3].map(|_| random.random_range(-1.0..1.0)));

@@ -1,5 +1,5 @@
-//! Processes that are ended at any moment, and places that take no files: older files stay whole or are replaced by whole
-//! ones, nothing else is left, and interrupted work goes on to the same bytes.
+//! Processes that are ended at any moment, and places that take no files: older files stay whole or are replaced by
+//! whole ones, nothing else is left, and interrupted work goes on to the same bytes.
 
 use std::collections::BTreeMap;
 use std::io::Read;

@@ -1,4 +1,4 @@
-//! The order of the house: layers, first lines, top-level entries, sizes of files.
+//! The order of the source tree: layers, first lines, top-level entries, sizes of files.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -176,7 +176,7 @@ fn one_file_of_the_host_names_the_crate_of_binary_forms() {
     assert_eq!(files, [src.join("encoding.rs")]);
 }
 
-/// Families of kinds that grow: the crate, the enumeration, and the room that may tell its kinds apart, if any may.
+/// Families of kinds that grow: the crate, the enumeration, and the module that may distinguish its kinds, if any may.
 const FAMILIES: &[(&str, &str, Option<&str>)] = &[
     ("host", "Technique", Some("render/renderers")),
     ("host", "AnyLobe", Some("illumination/optics")),
@@ -199,7 +199,7 @@ fn names_a_kind(pattern: &str, family: &str) -> bool {
     })
 }
 
-/// Lines of a `match` that tell kinds of a family apart.
+/// Lines of a `match` that distinguish kinds of a family.
 fn arms<'a>(code: &'a str, family: &str) -> Vec<&'a str> {
     let is_arm = |line: &&str| {
         let pattern = line.split_once("=>").map_or(line.trim(), |(pattern, _)| pattern);

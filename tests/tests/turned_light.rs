@@ -1,5 +1,5 @@
-//! A solution by radiosity on the workstation, with both processes: the host solves, the machine shades whatever view its
-//! dials set.
+//! A solution by radiosity on the workstation, with both processes: the host solves, the machine shades whatever view
+//! its dials set.
 
 use glam::DMat4;
 use host::{

@@ -72,7 +72,8 @@ fn dials_keys_puck_and_keyboard_reach_the_machine() {
     desk.act(&format!("mousemove {} {y}", x + 60));
     desk.expect("message 60", "ok V 0.");
 
-    // The knob of the brightness at its lowest. Where frames are slow, a whole drag may fall into one: it is done again.
+    // The knob of the brightness at its lowest. Where frames are slow, a whole drag may fall into one: it is done
+    // again.
     desk.inspect("Display");
     let begin = Instant::now();
     while !desk.operator_command("knob").contains("brightness 0,") {
@@ -167,7 +168,7 @@ fn a_scene_is_turned_rendered_while_one_looks_on_and_kept() {
     desk.drag("vector screen", [60, 24]);
     assert_ne!(desk.operator_command("show PERIS.RY"), before);
 
-    // Rows arrive while it renders, and the label tells how far it is.
+    // Rows arrive while it renders, and the label shows how far it is.
     desk.click("key 1");
     desk.expect("panel", "of 40000 samples");
     let raster = file("raster.png");
@@ -205,7 +206,7 @@ fn a_scene_is_turned_rendered_while_one_looks_on_and_kept() {
     let again = picture.pixels().filter(|pixel| pixel.0.iter().any(|byte| *byte > 8)).count();
     assert!(again > 2000 && rendered.abs_diff(again) <= again / 50, "{rendered} and {again} pixels");
 
-    // A script that is saved is shown within a second, and stays turned; one that is wrong is told of.
+    // A script that is saved is shown within a second, and stays turned; one that is wrong is reported.
     let turned = desk.operator_command("show PERIS.RY");
     fs::write(file("pot.rhai"), POT.replace("teapot()", "sphere(1)")).expect("written");
     let saved = Instant::now();

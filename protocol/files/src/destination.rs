@@ -95,11 +95,11 @@ impl Destination {
         self.try_write(content).map_err(|problem| self.failed(problem))
     }
 
-    /// Writes the file as [`Destination::write`] does; where that fails, into the folder for temporary files or the current one,
-    /// under a name that no file has.
+    /// Writes the file as [`Destination::write`] does; where that fails, into the folder for temporary files or the
+    /// current one, under a name that no file has.
     ///
     /// # Errors
-    /// [`WriteError`], also with [`Problem::Elsewhere`] if the content is kept there.
+    /// [`WriteError`], also with [`Problem::Elsewhere`] if the content is saved there.
     pub fn write_or_save_elsewhere(
         &self,
         content: impl Fn(&mut Writer<'_>) -> io::Result<()>,
@@ -108,9 +108,9 @@ impl Destination {
         self.try_write(&content).map_err(|problem| self.failed(saved_elsewhere(name, problem, &content)))
     }
 
-    /// Makes a file that begins as more than an empty one, such as a database, unless there is one with more than nothing in
-    /// it: the content is made under no name, and only then gets its own. Of several processes that do so at once, one makes
-    /// the file, and the others find it.
+    /// Makes a file that begins as more than an empty one, such as a database, unless there is one with more than
+    /// nothing in it: the content is made under no name, and only then gets its own. Of several processes that do so at
+    /// once, one makes the file, and the others find it.
     ///
     /// - `content`: makes the content of a file that is open for reading and writing.
     ///
@@ -189,11 +189,11 @@ impl Folder {
         &self.path
     }
 
-    /// Writes a file in it, as [`Destination::write_or_save_elsewhere`] does, also where the name turns out to be taken by a folder or
-    /// device; where it is.
+    /// Writes a file in it, as [`Destination::write_or_save_elsewhere`] does, also where the name turns out to be taken
+    /// by a folder or device; where it is.
     ///
     /// # Errors
-    /// [`WriteError`], also with [`Problem::Elsewhere`] if the content is kept elsewhere.
+    /// [`WriteError`], also with [`Problem::Elsewhere`] if the content is saved elsewhere.
     pub fn write_or_save_elsewhere(
         &self,
         name: &str,
@@ -311,7 +311,7 @@ mod tests {
         destination.write(|file| file.write_all(bytes))
     }
 
-    /// The problem of a destination, as it is told.
+    /// The problem of a destination, as it is printed.
     fn problem(path: impl AsRef<Path>) -> String {
         Destination::of(path).expect_err("no destination").problem.to_string()
     }

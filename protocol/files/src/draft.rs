@@ -82,8 +82,8 @@ impl Drop for Draft {
 /// Held while a file that is whole has a name of its own and not yet that of the older one, which is a moment.
 static NAMING: Mutex<()> = Mutex::new(());
 
-/// Waits until no file is on its way from one name to another: who ends the process while holding this leaves no other name
-/// behind. A process that is killed may, once in thousands of times, where an older file is replaced.
+/// Waits until no file is on its way from one name to another: who ends the process while holding this leaves no other
+/// name behind. A process that is killed may, once in thousands of times, where an older file is replaced.
 pub fn naming() -> MutexGuard<'static, ()> {
     NAMING.lock().unwrap_or_else(PoisonError::into_inner)
 }

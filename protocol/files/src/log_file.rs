@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 
 /// A file that grows: its name has `.part` behind it until it is finished.
 ///
-/// When the process is killed, what was written until then is left under that name, and an older file under the whole name
-/// is as it was.
+/// When the process is killed, what was written until then is left under that name, and an older file under the whole
+/// name is as it was.
 #[derive(Debug)]
 pub struct LogFile {
     file: File,

@@ -4,8 +4,8 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read};
 use std::path::Path;
 
-/// The content of an ordinary file. Devices, pipes and sockets, which may have no end or never answer, are refused, and its
-/// length is looked at before there is memory for it.
+/// The content of an ordinary file. Devices, pipes and sockets, which may have no end or never answer, are refused, and
+/// its length is looked at before there is memory for it.
 ///
 /// - `most`: bytes that it may have.
 ///

@@ -8,8 +8,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A folder that is open. Files get their places below it, and nowhere else: the system itself resolves their names inside
-/// the folder, so that neither `..` nor a link, even one that changes meanwhile, leads out of it.
+/// A folder that is open. Files get their places below it, and nowhere else: the system itself resolves their names
+/// inside the folder, so that neither `..` nor a link, even one that changes meanwhile, leads out of it.
 ///
 /// Where the system cannot do so, names are resolved step by step, and no link is followed. Where it cannot even name a
 /// folder by its open file (other systems than Linux), whoever may change folders inside it at the same time can win.

@@ -5,7 +5,8 @@ pub mod widest;
 
 use std::io;
 
-/// Whether the process ignores a signal. One that was started by `nohup` ignores a hang-up, which then is no reason to end.
+/// Whether the process ignores a signal. One that was started by `nohup` ignores a hang-up, which then is no reason to
+/// end.
 ///
 /// - `signal`: its number, 1 to 64.
 ///
@@ -18,8 +19,8 @@ pub fn is_ignored(signal: u32) -> bool {
     signal.checked_sub(1).and_then(|bit| mask.checked_shr(bit)).is_some_and(|rest| rest & 1 == 1)
 }
 
-/// From now on the system kills this process when the thread that started it ends, however that ends, even if this process
-/// is stopped. Files of sockets stay.
+/// From now on the system kills this process when the thread that started it ends, however that ends, even if this
+/// process is stopped. Files of sockets stay.
 ///
 /// A parent that ended before this call is not noticed. Only Linux knows such a thing; elsewhere nothing is done.
 ///

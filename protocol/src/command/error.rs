@@ -85,7 +85,7 @@ pub enum Problem {
     /// Too many lengths in a pattern.
     #[error("a pattern has at most {} lengths", Pattern::MAX_SEGMENTS)]
     LongPattern,
-    /// A statement without an end in sight.
+    /// A statement whose end does not come within the limit.
     #[error("the statement is longer than {MAX_STATEMENT} bytes")]
     LongStatement,
 }

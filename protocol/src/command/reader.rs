@@ -9,13 +9,13 @@ use super::{
 };
 use std::ops::Range;
 
-/// Room that the buffer keeps after a long statement, in bytes.
+/// Capacity that the buffer retains after a long statement, in bytes.
 const RETAINED_CAPACITY: usize = 1 << 20;
 
 /// What gives up an unfinished statement.
 const RESET: &[u8] = b"!RESET";
 
-/// A command and its place.
+/// A command and its position.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spanned<T> {
     /// The command.
@@ -26,7 +26,7 @@ pub struct Spanned<T> {
     pub warnings: Vec<CommandError>,
 }
 
-/// Where in the language a byte of the stream stands.
+/// The lexical state of a byte of the stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum LexicalState {
     Code,
@@ -73,7 +73,7 @@ pub struct CommandReader {
     consumed: u64,
     /// Where in the stream the latest packet ends.
     packet_end: u64,
-    /// Where in the stream the text or the comment begins that `place` is in.
+    /// Where in the stream the text or the comment begins that `lexical_state` is in.
     opened: u64,
     /// How far lines were counted, as an offset into the buffer: line ends before, and bytes behind the last of them.
     counted: usize,
@@ -258,7 +258,7 @@ impl CommandReader {
         self.counted = at;
     }
 
-    /// A fault in a statement that begins at the current start, with its place in the stream.
+    /// A fault in a statement that begins at the current start, with its position in the stream.
     fn error(&mut self, end: usize, fault: Fault) -> CommandError {
         self.count_lines_to(self.start);
         CommandError::new(&self.buffer[self.start..end], fault).behind(self.lines, self.columns)

@@ -14,8 +14,8 @@ pub struct Block {
     pub words: u16,
 }
 
-/// The list at the beginning of a block: a word with the number of pieces, then for each the low word of its address, the
-/// high word, and its number of words. All words have their highest byte first.
+/// The list at the beginning of a block: a word with the number of pieces, then for each the low word of its address,
+/// the high word, and its number of words. All words have their highest byte first.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AddressList(pub Vec<Block>);
 
@@ -34,7 +34,8 @@ impl AddressList {
     /// Reads a list; also what follows it.
     ///
     /// # Errors
-    /// [`ParallelError::ByteCount`] for bytes that end before the list does, or for none or more than [`MAX_BLOCKS`] pieces.
+    /// [`ParallelError::ByteCount`] for bytes that end before the list does, or for none or more than [`MAX_BLOCKS`]
+    /// pieces.
     pub fn read(bytes: &[u8]) -> Result<(AddressList, &[u8]), ParallelError> {
         let word = |at: usize| {
             let pair = bytes.get(2 * at..2 * at + 2).ok_or(ParallelError::ByteCount)?;

@@ -11,7 +11,7 @@ const ROW: usize = 16;
 /// Rows of a block that are shown.
 const ROWS: usize = 4;
 
-/// Who says something.
+/// The sender of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// The host.
@@ -34,7 +34,7 @@ pub struct ParallelListing {
 }
 
 impl ParallelListing {
-    /// Lists what a side says next; a frame is listed when it is complete.
+    /// Lists what a side sends next; a frame is listed when it is complete.
     pub fn push(&mut self, side: Side, bytes: &[u8], out: &mut String) {
         let reader = if side == Side::Host { &mut self.host } else { &mut self.machine };
         reader.push(bytes);

@@ -2,7 +2,7 @@
 //!
 //! # Source
 //! Codes, replies and the order of words are those of a UNIX driver of the time. The frames around them, the reply that
-//! tells an error, and everything called ours are of this project.
+//! reports an error, and everything called ours are of this project.
 
 mod address;
 mod frame;
@@ -14,10 +14,10 @@ pub use listing::{ParallelListing, Side};
 
 /// Added to a command word in the answer that its block has been taken or given.
 pub const DONE: u16 = 0x0a00;
-/// Added to a command word in the answer that tells something before a block or instead of one: LOOKUP an address, the
+/// Added to a command word in the answer that gives a value before a block or instead of one: LOOKUP an address, the
 /// reads a byte count.
 pub const INFORMATION: u16 = 0x0100;
-/// Added to a command word in the answer that tells an error, whose number follows. Ours.
+/// Added to a command word in the answer that reports an error, whose number follows. Ours.
 pub const ERROR: u16 = 0x0f00;
 /// Longest name in a LOOKUP, in bytes.
 pub const MAX_LOOKUP: usize = 256;
@@ -153,7 +153,7 @@ impl ParallelError {
         ParallelError::Data,
     ];
 
-    /// The trouble with a number.
+    /// The error with a number.
     pub fn from_number(number: u16) -> Option<ParallelError> {
         ParallelError::ALL.into_iter().find(|error| *error as u16 == number)
     }

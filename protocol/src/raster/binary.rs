@@ -9,7 +9,7 @@ pub const MAX_RUNS: usize = 65_535;
 /// Most entries in one lookup-table record. Ours: as many as the tables have.
 pub const MAX_LOOKUP_ENTRIES: usize = 256;
 
-/// Runs and entries that the witness is told of one by one.
+/// Runs and entries that are reported to the witness one by one.
 const LISTED: usize = 4;
 
 /// Bytes of a run: count and colour.

@@ -6,7 +6,7 @@ use super::packet::{
 };
 use std::ops::Range;
 
-/// Bytes that the buffer makes room for at least, and that [`FrameDecoder::feed`] takes at a time.
+/// Bytes that the buffer has capacity for at least, and that [`FrameDecoder::feed`] takes at a time.
 const BUFFER_CAPACITY: usize = 256 << 10;
 
 /// Bytes of an escape packet that [`FrameDecoder::feed`] takes at a time, since its length is not known before its end.
@@ -28,7 +28,7 @@ pub enum Frame<'a> {
         /// All its bytes as they stand in the stream.
         raw: &'a [u8],
     },
-    /// An escape packet without a route: it ends the one before it, and says nothing itself.
+    /// An escape packet without a route: it ends the one before it, and carries nothing itself.
     Empty(&'a [u8]),
     /// Bytes that are dropped.
     Noise {
@@ -90,11 +90,12 @@ pub struct Counters {
 /// Cuts a stream of bytes into frames, however it arrives.
 ///
 /// Reading into the decoder's own buffer spares a copy: [`space`](Self::space), [`advance`](Self::advance), then
-/// [`next_frame`](Self::next_frame) until it gives none. [`feed`](Self::feed) does the same for bytes that lie elsewhere.
+/// [`next_frame`](Self::next_frame) until it gives none. [`feed`](Self::feed) does the same for bytes that lie
+/// elsewhere.
 ///
-/// A packet with a bad header is one byte of noise, and the search goes on at the next byte; a count packet has no check,
-/// so noise that looks like one swallows up to 4 KiB, and noise that looks like an escape packet swallows what is there
-/// up to the next start byte. Each byte is looked at a constant number of times.
+/// A packet with a bad header is one byte of noise, and the search goes on at the next byte; a count packet has no
+/// check, so noise that looks like one swallows up to 4 KiB, and noise that looks like an escape packet swallows what
+/// is there up to the next start byte. Each byte is looked at a constant number of times.
 #[derive(Clone, Debug)]
 pub struct FrameDecoder {
     buffer: Vec<u8>,
@@ -154,7 +155,7 @@ impl FrameDecoder {
         FrameDecoder { historical: false, ..FrameDecoder::default() }
     }
 
-    /// Room for more bytes of the stream, at least 256 KiB. Take all frames out first, or the buffer grows.
+    /// Space for more bytes of the stream, at least 256 KiB. Take all frames out first, or the buffer grows.
     pub fn space(&mut self) -> &mut [u8] {
         if self.start == self.end {
             self.start = 0;
@@ -173,7 +174,7 @@ impl FrameDecoder {
         &mut self.buffer[self.end..]
     }
 
-    /// Says that the first `count` bytes of [`space`](Self::space) were filled; more than there are count as all.
+    /// Notes that the first `count` bytes of [`space`](Self::space) were filled; more than there are count as all.
     pub fn advance(&mut self, count: usize) {
         self.end = (self.end + count).min(self.buffer.len());
     }
@@ -191,8 +192,8 @@ impl FrameDecoder {
         Some(frame)
     }
 
-    /// Takes bytes that lie elsewhere and gives all frames that they complete to `each`. Only what is not complete yet is
-    /// copied.
+    /// Takes bytes that lie elsewhere and gives all frames that they complete to `each`. Only what is not complete yet
+    /// is copied.
     pub fn feed(&mut self, bytes: &[u8], mut each: impl FnMut(Frame<'_>)) {
         self.feed_quoted(bytes, |frame| {
             each(frame);
@@ -200,8 +201,8 @@ impl FrameDecoder {
         });
     }
 
-    /// Does the same as [`feed`](Self::feed), and asks `each` whether the text outside packets is inside quotes now. Start
-    /// bytes are characters there.
+    /// Does the same as [`feed`](Self::feed), and asks `each` whether the text outside packets is inside quotes now.
+    /// Start bytes are characters there.
     pub fn feed_quoted(&mut self, mut bytes: &[u8], mut each: impl FnMut(Frame<'_>) -> bool) {
         while self.is_unfinished() && !bytes.is_empty() {
             bytes = self.complete(bytes, &mut each);

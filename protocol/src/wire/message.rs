@@ -1,12 +1,12 @@
 //! Messages to the host, one string each, in three forms.
 //!
-//! A connection begins in the text form: the bytes of a message, then CR LF. The CR is historical \[M\]; the LF is ours, so
-//! that a terminal shows lines. A CR that ends the message is that of CR LF: a typed RETURN, which is a message of one CR,
-//! ends one line and not two. A packet on the route `=` with the body `P` switches the messages of that connection to
-//! the packet form: one long packet on the route `=` for each message, with exactly its bytes. The body `O` asks for
-//! packets of the connection's own: messages that its own commands lead to HOST_MESSAGE, and, on the route `?`, what the
-//! machine reports about its commands; no other host receives them, and it receives those of no other. The body `T`
-//! switches back. All three are ours.
+//! A connection begins in the text form: the bytes of a message, then CR LF. The CR is historical \[M\]; the LF is
+//! ours, so that a terminal shows lines. A CR that ends the message is that of CR LF: a typed RETURN, which is a
+//! message of one CR, ends one line and not two. A packet on the route `=` with the body `P` switches the messages of
+//! that connection to the packet form: one long packet on the route `=` for each message, with exactly its bytes. The
+//! body `O` asks for packets of the connection's own: messages that its own commands lead to HOST_MESSAGE, and, on the
+//! route `?`, what the machine reports about its commands; no other host receives them, and it receives those of no
+//! other. The body `T` switches back. All three are ours.
 
 use super::{
     deframe::{Frame, FrameDecoder, NoiseReason},
@@ -167,8 +167,8 @@ impl MessageReader {
         });
     }
 
-    /// The next report of the machine about a command of this host, such as `E 2 *** Name not found: CUBE`. It stood in the
-    /// stream before every message that was read after it.
+    /// The next report of the machine about a command of this host, such as `E 2 *** Name not found: CUBE`. It stood in
+    /// the stream before every message that was read after it.
     pub fn next_report(&mut self) -> Option<String> {
         self.reports.pop_front()
     }

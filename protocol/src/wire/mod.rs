@@ -1,7 +1,7 @@
 //! Bytes on the host line: text and packets, and messages back to the host.
 //!
-//! Bytes outside packets are plain text. A packet begins with one of three start bytes, carries a [`Route`] that says who
-//! is to read it, and its data. `PROTOCOL.md` shows every byte.
+//! Bytes outside packets are plain text. A packet begins with one of three start bytes, carries a [`Route`] that says
+//! who is to read it, and its data. `PROTOCOL.md` shows every byte.
 
 mod packet;
 mod six_bit;

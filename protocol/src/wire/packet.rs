@@ -15,8 +15,8 @@ pub const MAX_COUNT_DATA: usize = COUNT_RADIX * COUNT_RADIX - 2;
 pub const ESCAPE_START: u8 = 22;
 /// Escape character of escape packets: DLE, control-P. The byte after it is data, whatever it is. \[U\]
 pub const ESCAPE: u8 = 16;
-/// Most bytes of an escape packet in the stream: its start byte, then route and [`MAX_PAYLOAD`] bytes of data, each behind
-/// an escape character. Ours.
+/// Most bytes of an escape packet in the stream: its start byte, then route and [`MAX_PAYLOAD`] bytes of data, each
+/// behind an escape character. Ours.
 pub const MAX_ESCAPE_STREAM: usize = 3 + 2 * MAX_PAYLOAD;
 
 /// Start byte of a long packet: GS. Ours.
@@ -225,8 +225,8 @@ pub fn unescape(escaped: &[u8], out: &mut Vec<u8>) {
     out.extend_from_slice(rest);
 }
 
-/// The check of the first six bytes of a long packet: CRC-16 with polynomial 0x1021 and start value 0xFFFF, bits from the
-/// highest on.
+/// The check of the first six bytes of a long packet: CRC-16 with polynomial 0x1021 and start value 0xFFFF, bits from
+/// the highest on.
 pub fn header_check(bytes: &[u8]) -> u16 {
     bytes.iter().fold(0xffff, |mut check: u16, &byte| {
         check ^= u16::from(byte) << 8;

@@ -92,7 +92,7 @@ impl Sending {
 struct Packer<'s, E> {
     sending: Sending,
     route: Route,
-    /// Room for the header of a long packet, then the data.
+    /// Space for the header of a long packet, then the data.
     packet: Vec<u8>,
     /// A packet of another form.
     stream: Vec<u8>,
@@ -195,8 +195,8 @@ pub fn send_commands<'c, E>(
 
 /// Sends commands in a form of data and packets, as [`send_commands`] does.
 ///
-/// Long vector lists are cut so that they fit the packets. A command with a record that is too long for a packet is sent
-/// as text, which may be cut anywhere.
+/// Long vector lists are cut so that they fit the packets. A command with a record that is too long for a packet is
+/// sent as text, which may be cut anywhere.
 ///
 /// # Errors
 /// Those of [`send_commands`].

@@ -1,12 +1,12 @@
 //! The 6-bit form: any bytes as printable characters, for lines that do not carry all eight bits. Ours.
 //!
-//! Four characters carry three bytes. The bits of the three bytes, the highest of the first byte first, are cut into four
-//! numbers of six bits, and each number is sent as the character [`SIX_BIT_ZERO`] plus that number: `0` to `9`, then
-//! `: ; < = > ? @`, the capitals, `[ \ ] ^ _` and the grave accent, then `a` to `o`. One byte at the end takes two characters,
-//! two bytes take three; their unused low bits are 0.
+//! Four characters carry three bytes. The bits of the three bytes, the highest of the first byte first, are cut into
+//! four numbers of six bits, and each number is sent as the character [`SIX_BIT_ZERO`] plus that number: `0` to `9`,
+//! then `: ; < = > ? @`, the capitals, `[ \ ] ^ _` and the grave accent, then `a` to `o`. One byte at the end takes two
+//! characters, two bytes take three; their unused low bits are 0.
 //!
-//! Blanks and control characters between the characters are skipped, so that a host may break lines. The manuals say that
-//! a 6-bit mode existed, not which characters it used.
+//! Blanks and control characters between the characters are skipped, so that a host may break lines. The manuals say
+//! that a 6-bit mode existed, not which characters it used.
 
 /// The character that stands for 0.
 pub const SIX_BIT_ZERO: u8 = b'0';

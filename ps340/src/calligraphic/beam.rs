@@ -12,8 +12,8 @@ pub struct Beam {
     pub width: u32,
     /// Height of the picture in pixels, 1..=[`MAX_SIZE`](super::MAX_SIZE).
     pub height: u32,
-    /// Standard deviation of the spot in focus, in screen units; kept between [`SPOT_FLOOR`](super::SPOT_FLOOR) pixels and
-    /// [`SPOT_CEILING`](super::SPOT_CEILING).
+    /// Standard deviation of the spot in focus, in screen units; kept between [`SPOT_FLOOR`](super::SPOT_FLOOR) pixels
+    /// and [`SPOT_CEILING`](super::SPOT_CEILING).
     pub spot_radius: f32,
     /// How many times wider the spot is out of focus, at least 1; its light stays the same in all.
     pub blur: f32,

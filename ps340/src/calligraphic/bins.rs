@@ -13,7 +13,7 @@ const BLOCK: usize = 1 << 17;
 /// Strokes in all tiles together that are kept at a time: a bound on memory. It has no influence on the light.
 const MOST: usize = 1 << 21;
 
-/// The strokes of each tile. The room is kept from picture to picture.
+/// The strokes of each tile. Its scratch buffers are reused from picture to picture.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bins {
     chunks: Vec<Chunk>,

@@ -21,7 +21,7 @@ pub struct Controls {
     ///
     /// On at the start, as light that flickers 3 to 30 times a second can harm people.
     pub steady: bool,
-    /// Which of the screens that SET DISPLAYS tells apart is looked at, 0..=3.
+    /// Which of the screens that SET DISPLAYS distinguishes is looked at, 0..=3.
     pub screen: u8,
 }
 
@@ -31,7 +31,7 @@ impl Default for Controls {
     }
 }
 
-/// Screens that SET DISPLAYS tells apart.
+/// Screens that SET DISPLAYS distinguishes.
 pub const SCREENS: u8 = 4;
 
 /// A knob of the display.

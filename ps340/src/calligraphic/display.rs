@@ -27,7 +27,7 @@ use rayon::prelude::*;
 
 /// Pixels that are exposed together.
 const LANES: usize = 16;
-/// The part of a change that is not waited for: less than a step of the pixels.
+/// The visible remainder of a change that is not waited for: less than a step of the pixels.
 const UNSEEN: f64 = 1e-4;
 /// Light that is darkness.
 const DARK: f32 = 2e-5;
@@ -67,7 +67,8 @@ struct Written {
 }
 
 impl Display {
-    /// A dark display of some width and height in pixels, at most [`super::MAX_SIZE`], whose light the processor writes.
+    /// A dark display of some width and height in pixels, at most [`super::MAX_SIZE`], whose light the processor
+    /// writes.
     pub fn new(controls: Controls, size: [u32; 2]) -> Self {
         Self::drawn_by(Drawer::Processor, controls, size)
     }
@@ -117,7 +118,7 @@ impl Display {
         }
     }
 
-    /// Gives back the room for strokes, which grows again with the next ones.
+    /// Releases the memory for strokes, which grows again with the next ones.
     pub fn shrink(&mut self) {
         self.bins = Bins::default();
     }
@@ -189,8 +190,8 @@ impl Display {
         self.unexposed = false;
     }
 
-    /// Shows strokes that come part by part, as a picture that has stood there for long and is refreshed in every frame. The
-    /// processor writes their light.
+    /// Shows strokes that come part by part, as a picture that has stood there for long and is refreshed in every
+    /// frame. The processor writes their light.
     ///
     /// - `give`: hands the parts to what it gets, in their order; together they are as one list.
     pub fn show_parts(&mut self, give: impl FnOnce(&mut dyn FnMut(&[Stroke]))) {
@@ -234,7 +235,8 @@ impl Display {
         if self.controls.steady { 1 } else { Refresh::of(strokes).frames }
     }
 
-    /// Whether the picture is refreshed in every frame, and the phosphor glows as it will for ever.
+    /// Whether the display is steady: the picture is refreshed in every frame, and the phosphor glows as it will for
+    /// ever.
     fn is_steady(&self, written: &Written) -> bool {
         let steady = self.controls.steady || written.period == 1;
         steady

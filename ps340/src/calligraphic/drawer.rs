@@ -9,7 +9,8 @@ use std::sync::Arc;
 
 /// Who writes the light of the strokes.
 ///
-/// Both write the same light, within 1/255 of what is seen of it. That of the processor is the same to the bit everywhere.
+/// Both write the same light, within 1/255 of what is seen of it. That of the processor is the same to the bit
+/// everywhere.
 #[derive(Clone, Debug, Default)]
 pub enum Drawer {
     /// The processor.
@@ -50,8 +51,8 @@ pub enum Choice {
 impl Choice {
     /// Who writes the light.
     ///
-    /// - `has_window`: whether somebody waits for pictures. Without a window few are made, in files, and these are to be
-    ///   the same everywhere.
+    /// - `has_window`: whether somebody waits for pictures. Without a window few are made, in files, and these are to
+    ///   be the same everywhere.
     ///
     /// # Errors
     /// Why a graphics processor that must be is not there.

@@ -25,7 +25,7 @@ impl Default for Exposure {
     }
 }
 
-/// The strongest light that is told from stronger.
+/// The strongest light that is distinguished from stronger.
 const BLINDING: f32 = 1e30;
 
 impl Exposure {

@@ -1,4 +1,4 @@
-//! What the beam can do: bounds of the spot, of places, intensities and pictures, and lengths of time.
+//! What the beam can do: bounds of the spot, of positions, intensities and pictures, and lengths of time.
 
 /// Smallest standard deviation of the spot, in pixels.
 pub const SPOT_FLOOR: f64 = 0.75;
@@ -8,7 +8,7 @@ pub const SPOT_CEILING: f64 = 0.02;
 pub const MAX_SIZE: u32 = 8192;
 /// Farthest coordinate of a stroke that is drawn, in screen units.
 pub const FAR: f32 = 1e10;
-/// Strongest intensity and colour that is told from stronger.
+/// Strongest intensity and colour that is distinguished from stronger.
 pub const STRONGEST: f32 = 1e6;
 /// Length of the stroke that takes as long to write as a dot, in screen units. Ours.
 pub const DOT_LENGTH: f32 = 0.006;

@@ -10,11 +10,11 @@
 //! A stroke of no length is a dot, during which the beam dwells as long as it takes to write
 //! [`Beam::dot_length`]. The formula of the stroke, divided by its length, has the dot as its limit.
 //!
-//! The processor adds the light up in tiles, or a graphics processor in a texture (`gpu`); [`Drawer`] says who.
+//! The processor adds the light up in tiles, or a graphics processor in a texture (`gpu`); [`Drawer`] chooses which.
 //!
 //! From there on: the phosphor gives the light colour and duration (`phosphor`), the length of the list decides how
-//! often it is drawn (`refresh`), and the exposure makes pixels of it (`exposure`); [`Display`] holds all this over time,
-//! and [`SharedDisplay`] is the one display that window and files show.
+//! often it is drawn (`refresh`), and the exposure makes pixels of it (`exposure`); [`Display`] holds all this over
+//! time, and [`SharedDisplay`] is the one display that window and files show.
 //!
 //! # Energy
 //! A stroke deposits length times mean intensity times colour, whatever its angle, place and the size of
@@ -25,8 +25,9 @@
 //! deviations, and what lies beyond (7e-6) is spread over the rest.
 //!
 //! # Cost
-//! Strokes are sorted into tiles of 64 by 32 pixels. A tile without light costs nothing, in memory either, and a picture
-//! that stands still costs nothing at all. A graphics processor adds the cost of its way back: 16 bytes a pixel, lit or not.
+//! Strokes are sorted into tiles of 64 by 32 pixels. A tile without light costs nothing, in memory either, and a
+//! picture that stands still costs nothing at all. A graphics processor adds the cost of its way back: 16 bytes a
+//! pixel, lit or not.
 //!
 //! # Not modelled
 //! The growth of the spot with the current and towards the corners, the pattern of the shadow mask, halation in the

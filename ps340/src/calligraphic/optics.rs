@@ -1,4 +1,4 @@
-//! From strokes to places, spot and current of the beam in pixels.
+//! From strokes to positions, spot and current of the beam in pixels.
 
 use super::spot::REACH;
 use super::{Beam, FAR, MAX_SIZE, SPOT_CEILING, SPOT_FLOOR, STRONGEST};
@@ -88,8 +88,8 @@ impl Optics {
         Some([range(0)?, range(1)?])
     }
 
-    /// The columns of pixels that light of a stroke reaches, of that part of the stroke whose light can reach rows from `top` to
-    /// `bottom`.
+    /// The columns of pixels that light of a stroke reaches, of that part of the stroke whose light can reach rows from
+    /// `top` to `bottom`.
     pub fn columns_touched(&self, stroke: &Stroke, top: usize, bottom: usize) -> Option<[usize; 2]> {
         let (start, end, _) = self.beam(stroke)?;
         let dx = end[0] - start[0];
@@ -100,7 +100,7 @@ impl Optics {
         self.pixels(0, ends[0].min(ends[1]) - self.reach, ends[0].max(ends[1]) + self.reach)
     }
 
-    /// First and last place of the part of a stroke whose light can reach the picture; `None` if there is none.
+    /// First and last position of the part of a stroke whose light can reach the picture; `None` if there is none.
     #[cfg(feature = "window")]
     pub fn clipped_to_picture(&self, start: [f64; 2], end: [f64; 2]) -> Option<[[f64; 2]; 2]> {
         let mut parts = [0.0, 1.0];
@@ -118,7 +118,7 @@ impl Optics {
         (high >= 0.0 && low <= end).then(|| [low.max(0.0) as usize, high.min(end) as usize])
     }
 
-    /// A place on the screen in pixels from the upper left corner of the picture.
+    /// A position on the screen in pixels from the upper left corner of the picture.
     #[inline(always)]
     fn to_pixels(&self, [x, y]: [f32; 2]) -> [f64; 2] {
         [f64::from(x).mul_add(self.half, self.center[0]), f64::from(-y).mul_add(self.half, self.center[1])]

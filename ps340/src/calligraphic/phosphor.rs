@@ -38,13 +38,13 @@ pub struct Component {
 }
 
 impl Component {
-    /// What is left of its light after a frame.
+    /// The remainder of its light after a frame.
     fn remaining(&self) -> f64 {
         (-FRAME_SECONDS / self.decay).exp()
     }
 }
 
-/// What is left after a frame of light that is not over by then.
+/// The least remainder after a frame of light that is still visible.
 const VISIBLE_REMAINDER: f64 = 1e-3;
 
 const fn component(gun: usize, chromaticity: [f64; 2], decay: f64, part: f64) -> Component {
@@ -185,7 +185,7 @@ pub(super) struct Slow {
     pub gun: usize,
     /// Linear sRGB of all its light, times its part.
     pub color: [f32; 3],
-    /// What is left after a frame.
+    /// The remainder after a frame.
     pub remaining: f32,
 }
 

@@ -8,8 +8,8 @@
 //! # Source
 //! That the rate is 60 Hz at best and falls with number and length of the vectors is remembered (also 40 Hz, which is
 //! no part of 60; whole frames are ours: a rate in between would beat with the frames of a window). The times are
-//! ours, such that they agree with what is told of these machines: about 95,000 short connected vectors at 30 Hz, and
-//! 20,000 short separate ones at 60 Hz.
+//! ours, such that they agree with what is reported of these machines: about 95,000 short connected vectors at 30 Hz,
+//! and 20,000 short separate ones at 60 Hz.
 //!
 //! # Not modelled
 //! The brighter and slower drive of SET CSM ON, positioning that depends on direction, lines that the generator
@@ -69,7 +69,7 @@ impl Refresh {
     }
 }
 
-/// Distance of two places, at most the diagonal of the screen, also if it is not finite.
+/// Distance of two positions, at most the diagonal of the screen, also if it is not finite.
 fn distance(from: [f32; 2], to: [f32; 2]) -> f64 {
     let [dx, dy] = [0, 1].map(|axis| f64::from(to[axis]) - f64::from(from[axis]));
     let square = dx * dx + dy * dy;

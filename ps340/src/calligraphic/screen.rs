@@ -1,10 +1,10 @@
 //! The one display of the vector screen, for all who look at it.
 //!
 //! # One picture
-//! A window draws on a thread of its own, so that neither it nor the machine waits for the other; pictures for files are
-//! ordered of the machine. Both look at this one display: a file holds what the window shows, to the byte, afterglow and
-//! flicker included. Two displays with one rule for what they were shown would agree only as long as both had the same
-//! size and neither ever left a frame out, and a window that cannot keep up must leave some out.
+//! A window draws on a thread of its own, so that neither it nor the machine waits for the other; pictures for files
+//! are requested of the machine. Both look at this one display: a file holds what the window shows, to the byte,
+//! afterglow and flicker included. Two displays with one rule for what they were shown would agree only as long as both
+//! had the same size and neither ever left a frame out, and a window that cannot keep up must leave some out.
 //!
 //! Whoever looks brings the display to the scene. One that is older than what is shown already changes nothing, so that
 //! it does not matter who comes first. A picture of another size than the window's is drawn by itself, and has no past.
@@ -13,7 +13,7 @@ use super::{Controls, Display, Drawer};
 use crate::traversal::Stroke;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Width and height of the display if nobody says otherwise, in pixels.
+/// Width and height of the display by default, in pixels.
 pub const DISPLAY_SIZE: [u32; 2] = [1024, 1024];
 
 /// What the vector screen is to show at a moment of the machine. No number of a later scene is less.
@@ -44,7 +44,7 @@ pub struct SharedDisplay {
     state: Mutex<Option<DisplayState>>,
 }
 
-/// The display, once somebody has looked.
+/// The state of the display, once somebody has looked.
 #[derive(Debug)]
 struct DisplayState {
     display: Display,
@@ -53,7 +53,7 @@ struct DisplayState {
     shown: u64,
 }
 
-/// What somebody sees who looks.
+/// What the display looks like to somebody who looks.
 pub struct DisplayLook<'a> {
     /// The display at the scene, or at a later one.
     pub display: &'a Display,
@@ -106,7 +106,7 @@ impl SharedDisplay {
         see(DisplayLook { display, shown: *shown, is_animated: goes_on })
     }
 
-    /// Gives back the room that the display keeps for pictures as large as those before.
+    /// Releases the memory that the display keeps for pictures as large as those before.
     pub fn shrink(&self) {
         if let Some(state) = &mut *self.lock() {
             state.display.shrink();

@@ -42,7 +42,7 @@ pub(super) fn dot(u: f32, v: f32) -> f32 {
     if greater(along, across) <= REACH * REACH { light } else { 0.0 }
 }
 
-/// The place in the spot that counts for `x`: beyond the reach nothing changes any more.
+/// The position in the spot that counts for `x`: beyond the reach nothing changes any more.
 #[inline(always)]
 pub(super) fn within(x: f32) -> f32 {
     greater(lesser(x, REACH), -REACH)

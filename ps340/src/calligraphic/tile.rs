@@ -1,17 +1,17 @@
 //! The tiles in which the light of a picture lies.
 
-/// Pixels are written in multiples of this number, into room beyond the last one if need be.
+/// Pixels are written in multiples of this number, into padding beyond the last one if need be.
 pub(super) const LANES: usize = 8;
 /// Width of a tile in pixels.
 pub(super) const TILE_WIDTH: usize = 64;
 /// Height of a tile in pixels.
 pub(super) const TILE_HEIGHT: usize = 32;
-/// Floats of a row of a tile: room for a whole vector of lanes that begins at the last pixel.
+/// Floats of a row of a tile: with padding for a whole vector of lanes that begins at the last pixel.
 pub(super) const STRIDE: usize = TILE_WIDTH + LANES;
 /// Floats of a plane of a tile.
 pub(super) const PLANE: usize = STRIDE * TILE_HEIGHT;
 
-/// The light of 64 by 32 pixels. Room is made when light first falls on it.
+/// The light of 64 by 32 pixels. Memory is allocated when light first falls on it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Tile {
     /// A plane for each gun: what one refresh writes. Worth something if `lit`.

@@ -5,18 +5,19 @@ use super::spot::{self, REACH, greater, lesser};
 use super::tile::{LANES, PLANE, STRIDE, TILE_HEIGHT, TILE_WIDTH};
 use crate::traversal::Stroke;
 
-/// How many of these multiples, from any rows, are reckoned together: the widest instructions hold two.
+/// How many of these multiples, from any rows, are computed together: the widest instructions hold two.
 const TOGETHER: usize = 2;
 /// Rows that are looked at together.
 const BLOCK: usize = 16;
-/// Room for the rows of a tile, for a block of them that begins at the last, and, as the very last, one without light.
+/// Capacity for the rows of a tile, for a block of them that begins at the last, and, as the very last, one without
+/// light.
 const ROWS: usize = 2 * TILE_HEIGHT;
 /// Below this length, in spots, a stroke is the moments of its current around its middle: the difference of
 /// two error functions would be all rounding. The first term left out is 1e-7 of the stroke's light here.
 const SHORT: f64 = 0.25;
-/// Room for the places of a tile, and for some that are not counted.
+/// Most groups of eight pixels of a tile, and some that are not counted.
 const MAX_GROUPS: usize = TILE_HEIGHT * TILE_WIDTH / LANES + TOGETHER;
-/// What a row counts in a place of the list; more than its columns.
+/// What a row counts in an entry of the list; more than its columns.
 const ROW: u16 = 256;
 /// Stands for the pixels per spot along a row where the direction makes them infinitely many.
 const ENDLESS: f32 = 1e9;
@@ -185,7 +186,7 @@ impl Track {
             }
             count += eights;
         }
-        // What is missing in the last of those reckoned together lies where no light is.
+        // What is missing in the last of those computed together lies where no light is.
         if let Some(rest) = groups[count..].first_chunk_mut::<{ TOGETHER - 1 }>() {
             *rest = [(ROWS as u16 - 1) * ROW; TOGETHER - 1];
         }
@@ -229,7 +230,7 @@ impl Track {
     }
 }
 
-/// The numbers of the columns of a tile, and of the room beyond.
+/// The numbers of the columns of a tile, and of the padding beyond.
 const COLUMNS: [f32; STRIDE] = {
     let mut columns = [0.0; STRIDE];
     let mut column = 0;
@@ -240,7 +241,7 @@ const COLUMNS: [f32; STRIDE] = {
     columns
 };
 
-/// What is noted of a stroke before it is written; what was noted before does not matter.
+/// Scratch for what is noted of a stroke before it is written; what was noted before does not matter.
 pub(super) struct Scratch {
     rows: Rows,
     groups: [u16; MAX_GROUPS],
@@ -278,7 +279,7 @@ fn whole(x: f32) -> i32 {
 
 /// How the light of a pixel follows from its distances from the start, from the end and across, in spots.
 ///
-/// A trait and not a closure, which could not be told to be inlined everywhere.
+/// A trait and not a closure, which could not be forced inline everywhere.
 trait Profile {
     /// Light for the colour 1.
     fn light(&self, u: f32, rest: f32, v: f32) -> f32;

@@ -1,11 +1,11 @@
-//! What can go wrong while a tool runs, and the files that all tools read and write.
+//! Errors of the tools, and the files that all tools read and write.
 
 use std::{
     io::{self, Read, Write},
     path::Path,
 };
 
-/// What went wrong while a tool ran.
+/// An error of a tool.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum ToolError {
     /// A file cannot be read or written.
@@ -13,7 +13,7 @@ pub(super) enum ToolError {
     File {
         /// The file.
         file: String,
-        /// What the system says.
+        /// The error of the system.
         error: io::Error,
     },
     /// The reader of the output has gone, as `head` does; no error.
@@ -53,7 +53,7 @@ pub(super) fn print(text: &str) -> Result<(), ToolError> {
     out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(of_output)
 }
 
-/// What an error of the standard output is.
+/// The tool error for an error of the standard output.
 pub(super) fn of_output(error: io::Error) -> ToolError {
     match error.kind() {
         io::ErrorKind::BrokenPipe => ToolError::Closed,

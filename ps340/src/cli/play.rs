@@ -58,7 +58,8 @@ pub struct PlayArguments {
     /// Writes what was sent and said: > text, @ directive, = reply, < message to the host, ! message of the machine.
     #[arg(long, value_name = "FILE")]
     transcript: Option<PathBuf>,
-    /// Lets directives write files and end the machine, such as '@ picture vector a.png' and '@ quit'; 'ps340 lint' lists them.
+    /// Lets directives write files and end the machine, such as '@ picture vector a.png' and '@ quit'; 'ps340 lint'
+    /// lists them.
     #[arg(long)]
     orders: bool,
     /// The folder below which directives write files.
@@ -129,7 +130,7 @@ fn play(player: &mut Player, scripts: &[Script], frames: u64, screen: &mut Trans
     end
 }
 
-/// Writes what is to be left at the end, and judges.
+/// Writes what is to be left at the end, and returns the exit code.
 fn finish(
     player: &mut Player,
     end: PlayEnd,
@@ -160,7 +161,7 @@ fn finish(
     })
 }
 
-/// Where what is heard goes: standard output, the transcript, progress on a terminal.
+/// Where the log goes: standard output, the transcript, progress on a terminal.
 struct Transcript {
     transcript: Option<BufWriter<LogFile>>,
     /// The first error of the transcript; it is reported at the end.

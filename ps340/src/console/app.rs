@@ -177,7 +177,7 @@ impl eframe::App for App {
         }
         self.hosts.note(&shown);
         if shown.hosts.is_empty() {
-            // How long ago the last one left is told.
+            // How long ago the last one left is shown.
             ui.ctx().request_repaint_after(Duration::from_secs(1));
         }
         let usual = if shown.tablet_is_read { MouseRole::Puck } else { MouseRole::Dials };

@@ -1,4 +1,5 @@
-//! The bar at the top: who is attached, and what the window shows and does. It is one row, however narrow the window is.
+//! The bar at the top: who is attached, and what the window shows and does. It is one row, however narrow the window
+//! is.
 
 use super::{
     choices::{Choices, MouseRole, RasterPlacement},
@@ -10,7 +11,7 @@ use super::{
 use crate::{machine::KeyboardMode, shell::MirrorFrame};
 use egui::{Align, Layout, RichText, Sense, Ui, vec2};
 
-/// From this width on, menus say what is chosen.
+/// From this width on, menus show what is chosen.
 const WIDE: f32 = 940.0;
 
 /// What a mode of the keyboard is called, the key that chooses it, and where characters go then.
@@ -42,7 +43,7 @@ pub struct Bar<'a> {
 }
 
 impl Bar<'_> {
-    /// Shows it; what is chosen becomes so, or an order.
+    /// Shows it; what is chosen becomes so, or an operator command.
     pub fn show(&self, ui: &mut Ui, choices: &mut Choices, orders: &mut OperatorCommands) {
         let is_wide = ui.available_width() >= WIDE;
         ui.horizontal(|ui| {
@@ -67,7 +68,7 @@ impl Bar<'_> {
     }
 }
 
-/// The name of a menu, with what is chosen in it if there is room.
+/// The name of a menu, with what is chosen in it if there is space.
 fn title(name: &str, chosen: &str, is_wide: bool) -> String {
     if is_wide { format!("{name}: {chosen}") } else { name.into() }
 }

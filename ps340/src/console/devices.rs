@@ -15,7 +15,7 @@ const BUTTONS: f32 = 264.0;
 /// Dials and keys grow up to this width.
 const MOST: f32 = 1400.0;
 
-/// Shows them, and orders what is turned and pressed.
+/// Shows them, and gives the operator commands of what is turned and pressed.
 pub fn show(ui: &mut Ui, panel: &Panel, dials: &mut DialPanel, row: &mut Row, orders: &mut OperatorCommands) {
     ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
     let width = ui.available_width();

@@ -27,7 +27,7 @@ pub const LIT: Color32 = Color32::from_rgb(255, 84, 56);
 pub struct DialPanel {
     /// Where each mark points, in turns.
     turned: [f64; 8],
-    /// What is turned but was not ordered yet.
+    /// Turns for which no operator command was given yet.
     pending: [f64; 8],
     /// Where the mouse was when the dial that it holds was turned last.
     drag: Option<(u8, Pos2)>,
@@ -42,7 +42,7 @@ impl DialPanel {
         }
     }
 
-    /// Shows the dials in a row of a width, and orders what is turned.
+    /// Shows the dials in a row of a width, and gives the operator commands of what is turned.
     pub fn show(&mut self, ui: &mut Ui, panel: &Panel, width: f32) {
         ui.horizontal(|ui| {
             let column = ((width - 7.0 * ui.spacing().item_spacing.x) / 8.0).max(1.0);
@@ -60,7 +60,7 @@ impl DialPanel {
         });
     }
 
-    /// Gives the orders of what was turned.
+    /// Gives the operator commands of what was turned.
     pub fn give(&mut self, orders: &mut OperatorCommands) {
         for (dial, pending) in (1..).zip(&mut self.pending) {
             if *pending != 0.0 {

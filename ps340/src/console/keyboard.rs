@@ -1,11 +1,11 @@
-//! The keyboard of the window: typed characters and keys become orders.
+//! The keyboard of the window: typed characters and keys become operator commands.
 
 use super::{mapping::Mapping, operator_commands::OperatorCommands};
 use egui::{Event, Key, Modifiers};
 
-/// The orders that events of the keyboard mean.
+/// The operator commands that events of the keyboard mean.
 ///
-/// A key of the mapping is its order; CONTROL with a letter is the control character; other text is typed.
+/// A key of the mapping is its operator command; CONTROL with a letter is the control character; other text is typed.
 pub fn commands_of(events: &[Event], mapping: &Mapping) -> Vec<String> {
     let mut orders: Vec<String> = Vec::new();
     let mut typed = String::new();
@@ -28,7 +28,7 @@ pub fn commands_of(events: &[Event], mapping: &Mapping) -> Vec<String> {
     orders
 }
 
-/// Gives the orders.
+/// Gives the operator commands.
 pub fn type_events(events: &[Event], mapping: &Mapping, orders: &mut OperatorCommands) {
     commands_of(events, mapping).into_iter().for_each(|order| orders.give(order));
 }
@@ -39,7 +39,7 @@ fn flush(typed: &mut String, orders: &mut Vec<String>) {
     }
 }
 
-/// CONTROL with a letter, as the order that types its control character.
+/// CONTROL with a letter, as the operator command that types its control character.
 fn control(key: Key, held: Modifiers) -> Option<String> {
     let mut letters = key.name().bytes();
     match (letters.next(), letters.next()) {
@@ -48,12 +48,12 @@ fn control(key: Key, held: Modifiers) -> Option<String> {
     }
 }
 
-/// Text as the order `type` has it: the machine's characters are ASCII, others are left out.
+/// Text as the operator command `type` has it: the machine's characters are ASCII, others are left out.
 fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars().filter(char::is_ascii) {
         match character {
-            // An order loses blanks at its ends.
+            // An operator command loses blanks at its ends.
             '\\' => escaped.push_str("\\\\"),
             ' ' => escaped.push_str("\\x20"),
             '!'..='~' => escaped.push(character),

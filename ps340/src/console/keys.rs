@@ -25,7 +25,7 @@ const BUTTON_HEIGHT: f32 = 22.0;
 /// Width of the choice of the row.
 const CHOICE: f32 = 58.0;
 
-/// Shows the function keys in a row of a width, and orders those that are pressed.
+/// Shows the function keys in a row of a width, and gives the operator commands of those that are pressed.
 pub fn show_keys(ui: &mut Ui, panel: &Panel, row: &mut Row, width: f32, orders: &mut OperatorCommands) {
     ui.horizontal(|ui| {
         let column = ((width - CHOICE - 12.0 * ui.spacing().item_spacing.x) / 12.0).max(1.0);
@@ -67,7 +67,7 @@ pub fn show_keys(ui: &mut Ui, panel: &Panel, row: &mut Row, width: f32, orders: 
     });
 }
 
-/// Shows the lighted buttons in rows, and orders those that are pressed.
+/// Shows the lighted buttons in rows, and gives the operator commands of those that are pressed.
 ///
 /// - `grid`: rows, and buttons in each of them. `width`: of a row.
 pub fn show_buttons(ui: &mut Ui, panel: &Panel, [rows, columns]: [u8; 2], width: f32, orders: &mut OperatorCommands) {

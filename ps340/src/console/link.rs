@@ -9,9 +9,9 @@ pub(super) const WINDOW: [f32; 2] = [1280.0, 860.0];
 
 /// What window and machine share.
 pub(super) struct Link {
-    /// What is to be seen of the machine.
+    /// The mirror of the machine.
     pub(super) mirror: Arc<Mirror>,
-    /// Where orders go.
+    /// Where operator commands go.
     pub(super) operator_commands: mpsc::Sender<OperatorLine>,
     /// Where hosts attach, as soon as that is known.
     pub(super) lines: Arc<Mutex<Vec<String>>>,
@@ -22,6 +22,6 @@ pub(super) struct Link {
 pub struct Appearance {
     /// What keys do.
     pub mapping: Mapping,
-    /// Points on the screen per unit of the window; none for what the display says.
+    /// Points on the screen per unit of the window; none for what the display reports.
     pub scale: Option<f32>,
 }

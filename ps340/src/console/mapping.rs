@@ -1,5 +1,5 @@
-//! What keys of the window, the mouse and a game controller do: a table from a file, each entry an order of the
-//! operator.
+//! What keys of the window, the mouse and a game controller do: a table from a file, each entry an
+//! operator command.
 
 use crate::operator::{self, OperatorCommand, OperatorCommandError};
 use egui::{Key, Modifiers, PointerButton};
@@ -31,12 +31,12 @@ type Turn = (u8, f64);
 pub enum Click {
     /// It is a button of the puck, with this code, as long as it is down.
     Puck(u8),
-    /// An order, when it goes down.
+    /// An operator command, when it goes down.
     OperatorCommand(String),
 }
 
-/// What the mouse does: over a picture of the tablet, besides moving the puck, and over the vector screen while it turns
-/// dials.
+/// What the mouse does: over a picture of the tablet, besides moving the puck, and over the vector screen while it
+/// turns dials.
 #[derive(Clone, Debug, Default)]
 pub struct Mouse {
     /// What drags turn, along x and y.
@@ -45,7 +45,7 @@ pub struct Mouse {
     roll: Option<Turn>,
     /// In the order of [`MOUSE_BUTTONS`].
     buttons: [Option<Click>; MOUSE_BUTTONS.len()],
-    /// Orders of a step of the wheel, up and down.
+    /// Operator commands of a step of the wheel, up and down.
     wheel: [Option<String>; 2],
 }
 
@@ -63,7 +63,7 @@ const MOUSE_BUTTONS: [(&str, PointerButton); 5] = [
 pub struct Mapping {
     keys: HashMap<Chord, String>,
     mouse: Mouse,
-    /// Orders by button.
+    /// Operator commands by button.
     buttons: HashMap<u8, String>,
     /// Dial, and its turns a second at the end of the way, by axis.
     axes: HashMap<u8, Turn>,
@@ -90,10 +90,10 @@ pub enum MappingProblem {
         "'{0}' is no key; examples: F1, Ctrl+Alt+C, Up, mouse left, wheel up, drag Shift+left x, drag wheel, pad button 0, pad axis 1"
     )]
     Key(String),
-    /// The order is none.
+    /// It is no operator command.
     #[error(transparent)]
     OperatorCommand(#[from] OperatorCommandError),
-    /// The order of an axis or a drag does not turn a dial.
+    /// The operator command of an axis or a drag does not turn a dial.
     #[error("axes and drags turn a dial: 'dial N TURNS'")]
     Axis,
 }
@@ -109,7 +109,7 @@ impl Default for Mapping {
 }
 
 impl Mapping {
-    /// Changes and adds entries by the lines of a file. An empty order takes the entry away.
+    /// Changes and adds entries by the lines of a file. An empty operator command takes the entry away.
     ///
     /// # Errors
     /// The first line that is wrong; the lines before it are in force.
@@ -154,7 +154,7 @@ impl Mapping {
         Ok(())
     }
 
-    /// The order of a key.
+    /// The operator command of a key.
     pub fn key(&self, key: Key, held: Modifiers) -> Option<&str> {
         self.keys.get(&Chord { key, modifiers: held.into() }).map(String::as_str)
     }
@@ -164,7 +164,7 @@ impl Mapping {
         &self.mouse
     }
 
-    /// The order of a button of a game controller.
+    /// The operator command of a button of a game controller.
     pub fn button(&self, button: u8) -> Option<&str> {
         self.buttons.get(&button).map(String::as_str)
     }
@@ -209,7 +209,7 @@ impl Mouse {
         Some(&mut self.drags.entry((place, held)).or_default()[axis])
     }
 
-    /// The order of a step of the wheel.
+    /// The operator command of a step of the wheel.
     pub fn wheel(&self, is_up: bool) -> Option<&str> {
         self.wheel[usize::from(!is_up)].as_deref()
     }
@@ -224,7 +224,7 @@ fn put<K: std::hash::Hash + Eq>(table: &mut HashMap<K, String>, key: K, order: &
     }
 }
 
-/// The dial that an order turns; none for no order.
+/// The dial that an operator command turns; none if it turns none.
 fn turn(order: Option<OperatorCommand>) -> Result<Option<Turn>, MappingProblem> {
     match order {
         None => Ok(None),

@@ -1,7 +1,7 @@
 //! The console: a window with both screens and every device of the machine.
 //!
 //! It is the only user of egui and eframe, and owns no state of the machine: it sees by a mirror
-//! ([`crate::shell::Mirror`]) and acts by orders, as an operator on a line does.
+//! ([`crate::shell::Mirror`]) and acts by operator commands, as an operator on a line does.
 
 mod operator_commands;
 mod widget_positions;

@@ -1,27 +1,27 @@
-//! Orders from the window to the machine.
+//! Operator commands from the window to the machine.
 
 use crate::line::{OperatorLine, Reply};
 use std::sync::mpsc;
 use tokio::sync::oneshot;
 
-/// Orders that wait for their reply at most; more than a person gives.
+/// Operator commands that wait for their reply at most; more than a person gives.
 const MAX_WAITING: usize = 1024;
 
-/// Gives orders to the machine, and takes its replies.
+/// Gives operator commands to the machine, and takes its replies.
 pub struct OperatorCommands {
     sender: mpsc::Sender<OperatorLine>,
     waiting: Vec<(String, oneshot::Receiver<Reply>)>,
-    /// The latest reply that says that something went wrong, with its order.
+    /// The latest reply that reports an error, with its operator command.
     pub failure: Option<String>,
 }
 
 impl OperatorCommands {
-    /// Orders that go to the other end of `sender`.
+    /// Operator commands that go to the other end of `sender`.
     pub fn new(sender: mpsc::Sender<OperatorLine>) -> OperatorCommands {
         OperatorCommands { sender, waiting: Vec::new(), failure: None }
     }
 
-    /// Gives an order, a line of the operator's language. A machine that has ended takes none.
+    /// Gives an operator command, a line of the operator's language. A machine that has ended takes none.
     pub fn give(&mut self, order: impl Into<String>) {
         let text = order.into();
         let (reply, answer) = oneshot::channel();

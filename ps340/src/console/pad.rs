@@ -1,8 +1,8 @@
-//! A game controller: its buttons give orders, its axes turn dials.
+//! A game controller: its buttons give operator commands, its axes turn dials.
 //!
 //! # Source
-//! The joystick interface of Linux (`/dev/input/jsN`): records of eight bytes, in the byte order of the machine: time in
-//! milliseconds (u32), value (i16), kind (u8: 1 button, 2 axis, 128 added for the state at the start), number (u8).
+//! The joystick interface of Linux (`/dev/input/jsN`): records of eight bytes, in the byte order of the machine: time
+//! in milliseconds (u32), value (i16), kind (u8: 1 button, 2 axis, 128 added for the state at the start), number (u8).
 //! Elsewhere there is no controller.
 
 use super::{dials::DialPanel, mapping::Mapping, operator_commands::OperatorCommands};
@@ -34,12 +34,12 @@ const LONGEST_FRAME: f64 = 0.1;
 pub enum PadEvent {
     /// A button goes down.
     Press(u8),
-    /// An axis moves to a place, -1..=1.
+    /// An axis moves to a position, -1..=1.
     Move(u8, f64),
 }
 
 impl PadEvent {
-    /// What a record says; none for a button that comes up, or is down at the start.
+    /// The event of a record; none for a button that comes up, or is down at the start.
     fn read(record: [u8; RECORD]) -> Option<PadEvent> {
         let [_, _, _, _, low, high, kind, number] = record;
         let value = i16::from_ne_bytes([low, high]);
@@ -71,7 +71,7 @@ impl Pad {
         Pad { events, axes: BTreeMap::new() }
     }
 
-    /// Gives the orders of the buttons, and turns dials by the axes.
+    /// Gives the operator commands of the buttons, and turns dials by the axes.
     ///
     /// - `seconds`: since the frame before.
     pub fn act(

@@ -4,7 +4,7 @@ use crate::calligraphic::{Scene, SharedDisplay};
 use egui::ColorImage;
 use std::sync::{Arc, Condvar, Mutex};
 
-/// What is to be drawn.
+/// A request to draw.
 #[derive(Clone)]
 pub struct DrawRequest {
     /// What to show.
@@ -20,7 +20,7 @@ impl DrawRequest {
     }
 }
 
-/// What the two threads share.
+/// The state that the two threads share.
 #[derive(Default)]
 struct PainterState {
     request: Option<DrawRequest>,
@@ -30,7 +30,7 @@ struct PainterState {
     closed: bool,
 }
 
-/// Draws what was wanted last, as often as it can.
+/// Draws what was requested last, as often as it can.
 pub struct Painter {
     state: Arc<(Mutex<PainterState>, Condvar)>,
     last_request: Option<DrawRequest>,
@@ -45,7 +45,7 @@ impl Painter {
         Painter { state: painter_state, last_request: None }
     }
 
-    /// Says what is to be seen. A picture that is drawn already, or being drawn, is not drawn again.
+    /// Requests a picture. One that is drawn already, or being drawn, is not drawn again.
     pub fn want(&mut self, wanted: DrawRequest) {
         let same = self.last_request.as_ref().is_some_and(|asked| asked.is(&wanted));
         // A display that remembers goes along with every frame.

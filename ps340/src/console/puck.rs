@@ -27,7 +27,7 @@ pub struct Puck {
 }
 
 impl Puck {
-    /// Gives the orders that the mouse means while it is over the area of `response`.
+    /// Gives the operator commands that the mouse means while it is over the area of `response`.
     pub fn follow(&mut self, ui: &Ui, response: &Response, orders: &mut OperatorCommands) {
         // Under another window, or a menu, the mouse is no puck.
         let is_covered = !response.contains_pointer() && self.pressed == 0 && ui.ui_contains_pointer();
@@ -64,7 +64,8 @@ impl Puck {
         self.pressed
     }
 
-    /// The orders that events of the mouse mean, in their order, so that none is lost however slowly pictures come.
+    /// The operator commands that events of the mouse mean, in their sequence, so that none is lost however slowly
+    /// pictures come.
     ///
     /// A press counts where it began: on the screen. Until it ends, the puck stays on the tablet.
     fn commands(&mut self, events: &[Event], area: Rect) -> Vec<String> {
@@ -129,7 +130,7 @@ impl Puck {
     }
 }
 
-/// The place of the tablet under a point of the screen, -1..=1.
+/// The position on the tablet under a point of the screen, -1..=1.
 fn position_in(at: Pos2, area: Rect) -> [f32; 2] {
     let from_center = (at - area.center()) / (area.size() / 2.0);
     [from_center.x, 0.0 - from_center.y].map(|c| c.clamp(-1.0, 1.0))
@@ -168,7 +169,7 @@ mod tests {
         let drawn = [button(true, 150.0), Event::PointerMoved(Pos2::new(300.0, 100.0)), button(false, 300.0)];
         assert_eq!(orders(&drawn), "puck press 2; puck move 1 0; puck release; puck away");
         assert_eq!(orders(&[button(true, 300.0), button(false, 300.0), Event::PointerGone]), "");
-        // The wheel and a button that are mapped to orders.
+        // The wheel and a button that are mapped to operator commands.
         let mut mapping = Mapping::default();
         mapping.read("wheel up = dial 4 0.02\nmouse middle = key 5").expect("good lines");
         let mut puck = Puck::new(mapping.mouse());

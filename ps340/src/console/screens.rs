@@ -39,8 +39,8 @@ impl VectorScreen {
         }
     }
 
-    /// Shows the screen as the largest square of the space that is left, and orders what mouse and keyboard do. Returns the
-    /// square.
+    /// Shows the screen as the largest square of the space that is left, and gives the operator commands of mouse and
+    /// keyboard. Returns the square.
     ///
     /// - `dials`: what the mouse turns; without them, it is the puck.
     pub fn show(
@@ -94,7 +94,7 @@ impl VectorScreen {
     }
 }
 
-/// Says what the mouse does, at the upper edge of the screen.
+/// Shows what the mouse does, at the upper edge of the screen.
 fn hint(ui: &Ui, screen: Rect) {
     let text = "drag turns   \u{b7}   SHIFT or right button moves   \u{b7}   wheel scales";
     let at = screen.center_top() + vec2(0.0, 12.0);

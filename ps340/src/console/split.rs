@@ -14,7 +14,7 @@ pub struct Split {
     part: Option<f32>,
 }
 
-/// How the two lie.
+/// The axis along which the two lie.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Axis {
     /// Beside one another.
@@ -24,8 +24,8 @@ enum Axis {
 }
 
 impl Split {
-    /// Parts a space between a square screen and one of 4 by 3: as large as they go, and equally high beside one another or
-    /// equally wide below, unless somebody has dragged the bar.
+    /// Parts a space between a square screen and one of 4 by 3: as large as they go, and equally high beside one
+    /// another or equally wide below, unless somebody has dragged the bar.
     pub fn show(&mut self, ui: &mut Ui, space: Rect) -> [Rect; 2] {
         let way = way(space);
         let length = if way == Axis::Across { space.width() } else { space.height() } - BAR;

@@ -11,7 +11,8 @@ const ZOOM_PER_STEP: f64 = 1.1;
 /// A mouse that turns dials.
 #[derive(Debug, Default)]
 pub struct Steering {
-    /// The button that is down since it was pressed over the screen, what is held beside it, and where the mouse was last.
+    /// The button that is down since it was pressed over the screen, what is held beside it, and where the mouse was
+    /// last.
     drag: Option<(PointerButton, Modifiers, Pos2)>,
     /// Whether it was ever used.
     is_known: bool,

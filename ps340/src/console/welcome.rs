@@ -12,7 +12,7 @@ const INK: Color32 = Color32::from_gray(205);
 const WEAK: Color32 = Color32::from_gray(135);
 const GOOD: Color32 = Color32::from_rgb(120, 200, 130);
 
-/// Hosts as they came and went.
+/// Hosts as they attached and left.
 #[derive(Debug, Default)]
 pub struct AttachedHosts {
     /// Who is attached.

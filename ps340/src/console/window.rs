@@ -15,7 +15,7 @@ use std::{
 
 /// Runs the machine with a window until its end; blocks. Must be called by the first thread of the process.
 ///
-/// `ready` is told each address in use, as a line of text.
+/// `ready` receives each address in use, as a line of text.
 ///
 /// # Errors
 /// Why there is no window; then the machine is not run either.
@@ -58,14 +58,14 @@ pub fn open(
             end
         });
         let shown = show(context, Link { mirror, operator_commands: sender, lines }, appearance, opened);
-        // The other end of the orders is gone: the machine ends if it has not yet.
+        // The other end of the operator commands is gone: the machine ends if it has not yet.
         let end = machine.join().unwrap_or_else(|_| Err(io::Error::other("the machine's thread failed")));
         shown?;
         Ok(end?)
     })
 }
 
-/// Shows the window until it is closed; tells `opened` when it is there.
+/// Shows the window until it is closed; notifies `opened` when it is there.
 fn show(
     context: Arc<OnceLock<egui::Context>>,
     link: Link,

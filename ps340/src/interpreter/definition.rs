@@ -23,7 +23,7 @@ pub const MAX_RAWBLOCK: u32 = 16 << 20;
 /// What a name can be made to denote.
 #[derive(Debug)]
 pub(super) enum Content {
-    /// What one command says.
+    /// What one command defines.
     Object(Object),
     /// What stood between BEGIN_FONT and END_FONT.
     Font(BTreeMap<u8, FontCharacter>),
@@ -62,7 +62,7 @@ impl Scope<'_> {
 }
 
 impl Content {
-    /// What one command says, with its numbers looked at: in a structure too, a fault is found where it stands.
+    /// What one command defines, with its numbers checked: in a structure too, a fault is found where it stands.
     ///
     /// - `of`: what to call it in messages.
     ///

@@ -60,7 +60,7 @@ fn user_object(name: &Name, memory: &MassMemory) -> Result<Option<ObjectId>, Mes
     }
 }
 
-/// Deletes what it can, and says what it cannot.
+/// Deletes what it can, and reports what it cannot.
 pub(super) fn delete(patterns: &[NamePattern], memory: &mut MassMemory, messages: &mut Vec<Message>) {
     let mut gone = Vec::new();
     for pattern in patterns {

@@ -23,7 +23,7 @@ fn doubtful(operate: &Operate, of: impl Fn() -> String) -> Option<Message> {
 }
 
 impl Interpreter {
-    /// Carries out one command; what it has to say goes to `messages`.
+    /// Carries out one command; what it has to report goes to `messages`.
     pub fn execute(&mut self, command: Command, memory: &mut MassMemory, messages: &mut Vec<Message>) {
         memory.privileged = self.privileged;
         if let Err(message) = self.try_execute(command, memory, messages) {
@@ -32,7 +32,7 @@ impl Interpreter {
         memory.privileged = false;
     }
 
-    /// Says of a name that is not found, if it is in the structure that is open, when it will be.
+    /// Reports of a name that is not found, if it is in the structure that is open, when it will be.
     fn explain(&self, message: Message) -> Message {
         match &message {
             Message::Refused(Refusal::NotFound(name)) => self.still_open(name).unwrap_or(message),

@@ -67,7 +67,7 @@ fn no_port(
     Some(format!("No such input {input} of {name}; {}", inputs_of(node, name.as_str())))
 }
 
-/// Makes the arcs that it can, and says which it cannot.
+/// Makes the arcs that it can, and reports which it cannot.
 pub(super) fn connect_several(
     source: &Name,
     output: u16,

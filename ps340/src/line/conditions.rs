@@ -16,7 +16,7 @@ pub(super) const INPUT_QUEUE: usize = 4096;
 pub(super) struct Flow {
     /// The host sent XOFF: nothing may be sent to it.
     pub(super) host_holds: bool,
-    /// The input queue is nearly full: the host is told XOFF.
+    /// The input queue is nearly full: XOFF is sent to the host.
     pub(super) machine_holds: bool,
 }
 
@@ -38,8 +38,8 @@ impl Flow {
         }
     }
 
-    /// Says how many bytes wait in the input queue: at three quarters of it the host is to stop, at one quarter it may go
-    /// on.
+    /// Notes how many bytes wait in the input queue: at three quarters of it the host is to stop, at one quarter it may
+    /// go on.
     pub(super) fn waiting(&mut self, conditions: Conditions, bytes: usize) {
         if !conditions.flow || bytes <= INPUT_QUEUE / 4 {
             self.machine_holds = false;

@@ -1,4 +1,4 @@
-//! Places at a listening socket: a visitor who has never said anything gives way to one who comes later.
+//! Connection slots of a listening socket: a peer that has never sent anything gives way to one that comes later.
 
 use super::listener::SocketStream;
 use std::{
@@ -15,14 +15,14 @@ use tokio::{
     time::timeout,
 };
 
-/// How long a newcomer waits until a silent visitor has left.
+/// How long a new connection waits until a silent peer has left.
 const LEAVING_TIME: Duration = Duration::from_millis(700);
-/// How long one who is turned away may take to read why.
+/// How long a rejected peer may take to read why.
 const REJECTION_TIME: Duration = Duration::from_secs(1);
-/// Those who are told why at the same time; of a crowd, not everybody is.
+/// Rejections that are explained at the same time; of a crowd, not all are.
 const MAX_REJECTIONS: usize = 64;
 
-/// What is known of a visitor who is there, shared by those who serve them and those who want the place.
+/// What is known of an attached peer, shared by those who serve it and those who want its slot.
 #[derive(Debug, Default)]
 pub(super) struct Presence {
     has_sent: AtomicBool,
@@ -30,44 +30,44 @@ pub(super) struct Presence {
 }
 
 impl Presence {
-    /// The visitor has said something that counts: nobody takes the place.
+    /// The peer has sent something that counts: nobody takes its slot.
     pub(super) fn note_sent(&self) {
         self.has_sent.store(true, Ordering::Relaxed);
     }
 
-    /// Waits until the place is wanted by somebody else.
+    /// Waits until the peer is evicted, since somebody else wants its slot.
     pub(super) async fn is_evicted(&self) {
         self.leave.notified().await;
     }
 }
 
-/// A place that is taken until this is dropped.
+/// A connection slot that is taken until this is dropped.
 #[derive(Debug)]
 pub(super) struct ConnectionSlot {
     pub(super) presence: Arc<Presence>,
     _taken: OwnedSemaphorePermit,
 }
 
-/// The places of a socket.
+/// The connection slots of a socket.
 #[derive(Debug)]
 pub(super) struct ConnectionSlots {
     free: Arc<Semaphore>,
     rejections: Arc<Semaphore>,
-    /// What one who is turned away reads.
+    /// The text that a rejected peer reads.
     full: Arc<str>,
-    /// Who came, the first first; some have gone.
+    /// The peers in the sequence of their arrival; some have gone.
     peers: VecDeque<Weak<Presence>>,
 }
 
 impl ConnectionSlots {
-    /// - `count`: visitors who may be there at once.
-    /// - `full`: what one more reads.
+    /// - `count`: peers that may be attached at once.
+    /// - `full`: the text that one more reads.
     pub(super) fn new(count: usize, full: &str) -> ConnectionSlots {
         let rejections = Arc::new(Semaphore::new(MAX_REJECTIONS));
         ConnectionSlots { free: Arc::new(Semaphore::new(count)), rejections, full: full.into(), peers: VecDeque::new() }
     }
 
-    /// Lets a newcomer in, if there is a place; else tells them why not, and closes the connection.
+    /// Admits a new connection, if there is a slot; else sends the reason, and closes the connection.
     pub(super) async fn admit(
         &mut self,
         stream: Box<dyn SocketStream>,
@@ -83,7 +83,8 @@ impl ConnectionSlots {
         None
     }
 
-    /// A place for a newcomer, if need be that of the visitor who has been silent for longest. None if all have spoken.
+    /// A slot for a new connection, if need be that of the peer that has been silent for longest. None if all have sent
+    /// something.
     async fn take(&mut self) -> Option<ConnectionSlot> {
         self.peers.retain(|visitor| visitor.strong_count() > 0);
         let taken = match self.free.clone().try_acquire_owned() {
@@ -101,7 +102,7 @@ impl ConnectionSlots {
     }
 }
 
-/// Tells one who came in vain why, and closes the connection.
+/// Sends a rejected peer the reason, and closes the connection.
 async fn reject(mut stream: Box<dyn SocketStream>, text: Arc<str>, _farewell: OwnedSemaphorePermit) {
     let said = async {
         stream.write_all(text.as_bytes()).await?;
@@ -126,7 +127,7 @@ mod tests {
         tokio::runtime::Builder::new_current_thread().enable_time().build().unwrap().block_on(test)
     }
 
-    /// Holds a place until it is unwanted.
+    /// Holds a slot until it is evicted.
     fn sit(place: ConnectionSlot) -> tokio::task::JoinHandle<()> {
         tokio::spawn(async move {
             place.presence.is_evicted().await;

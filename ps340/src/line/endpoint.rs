@@ -1,4 +1,4 @@
-//! Places where hosts come from: opens them, and serves whoever comes.
+//! Endpoints that hosts attach to: opens them, and serves whoever attaches.
 
 use super::{
     Address, AllowedPeers, Interface, LineAddress, LineContext, LineEvent, Listener, PseudoTerminal,
@@ -27,7 +27,7 @@ const DEVICE_PAUSE: Duration = Duration::from_secs(1);
 /// Bytes that are on their way to and from the standard streams.
 const STANDARD_BYTES: usize = 64 << 10;
 
-/// A place that is open for hosts.
+/// An endpoint that is open for hosts.
 #[derive(Debug)]
 pub struct HostEndpoint {
     kind: Kind,
@@ -44,7 +44,7 @@ enum Kind {
 }
 
 impl HostEndpoint {
-    /// Opens a place; needs a tokio runtime.
+    /// Opens an endpoint; needs a tokio runtime.
     ///
     /// # Errors
     /// Those of the system, e.g. the address is in use, or the file does not exist.
@@ -90,7 +90,7 @@ impl HostEndpoint {
         matches!(&self.kind, Kind::Sockets(listener, _) if listener.is_public())
     }
 
-    /// Serves hosts until no more can come, which it says, or until the machine's thread is gone.
+    /// Serves hosts until no more can attach, which it reports, or until the machine's thread is gone.
     pub async fn serve(self, around: LineContext) {
         let HostEndpoint { kind, conditions } = self;
         match kind {

@@ -18,10 +18,10 @@ use tokio::{
 
 /// Hosts that may be attached to a socket at once; each may hold an open statement and an open vector list.
 pub const MAX_HOSTS: usize = 64;
-/// Bytes taken from a line at a time: so few that an order behind all that waits is carried out soon.
+/// Bytes taken from a line at a time: so few that an operator command after all that waits is carried out soon.
 const READ_BYTES: usize = 64 << 10;
 
-/// The way to a host that is not there: what it is told is captured, and that is all. Needs a tokio runtime.
+/// The transport to a host that is not there: what is sent to it is captured, and that is all. Needs a tokio runtime.
 pub(super) fn silent_writer(line: LineId, around: LineContext) -> Writer {
     let (writer, mut waiting) = Writer::new();
     tokio::spawn(async move {
@@ -37,15 +37,15 @@ pub(super) fn silent_writer(line: LineId, around: LineContext) -> Writer {
 pub(super) struct Host {
     /// Who, for messages.
     pub(super) peer: String,
-    /// What it speaks.
+    /// Its protocol.
     pub(super) interface: Interface,
     /// How its line behaves.
     pub(super) conditions: Conditions,
-    /// Whether it can close its side and still be told what it asked for.
+    /// Whether it can close its side and still receive what it asked for.
     pub(super) half_closes: bool,
-    /// Whether it has spoken, and whether somebody else wants its place.
+    /// Whether it has sent something, and whether somebody else wants its connection slot.
     pub(super) presence: Arc<Presence>,
-    /// Whether it may be a page in a browser, which speaks HTTP.
+    /// Whether it may be a page in a browser, which sends HTTP.
     pub(super) may_be_browser: bool,
 }
 
@@ -58,7 +58,7 @@ enum End {
 }
 
 impl Host {
-    /// A host that speaks text and packets, on a line that closes in each direction by itself.
+    /// A host that sends text and packets, on a line that closes in each direction by itself.
     pub(super) fn stream(peer: String, conditions: Conditions) -> Host {
         Host {
             peer,
@@ -71,7 +71,7 @@ impl Host {
     }
 }
 
-/// Serves a host until it has closed its side and was told everything, or its place is wanted.
+/// Serves a host until it has closed its side and received everything, or is evicted from its slot.
 pub(super) async fn serve(
     stream: impl AsyncRead + AsyncWrite + Send + Unpin + 'static,
     host: Host,
@@ -197,7 +197,7 @@ impl<W: AsyncWrite + Unpin> Sender<W> {
         let begin = Instant::now();
         let mut pace = Pace::new(self.conditions.speed);
         let (mut bytes, mut sent) = (Vec::new(), 0);
-        // Whether the host was told to stop, and whether the receiver of the line is still there.
+        // Whether the host was asked to stop, and whether the receiver of the line is still there.
         let (mut stopped, mut followed) = (false, true);
         loop {
             let flow = if followed { *self.flow.borrow_and_update() } else { Flow::default() };

@@ -1,7 +1,7 @@
 //! Request lines of HTTP: whoever sends one, such as a page in a browser, takes the machine for something else.
 //!
-//! CONNECT and DELETE begin commands of the machine and requests of HTTP alike. What tells a request is the whole line:
-//! `METHOD target HTTP/1.1`, which is no command.
+//! CONNECT and DELETE begin commands of the machine and requests of HTTP alike. What distinguishes a request is the
+//! whole line: `METHOD target HTTP/1.1`, which is no command.
 
 /// Bytes of a line that may be a request line; longer ones are none.
 const MAX_LINE: usize = 8192;
@@ -31,8 +31,8 @@ fn begins_request(line: &[u8]) -> bool {
 
 /// Looks for request lines in a stream, wherever that is cut.
 ///
-/// A request begins what is said on a connection. There, a line that can only become a request is held back until it ends,
-/// so that nothing of its path is taken for a command.
+/// A request begins what is sent on a connection. There, a line that can only become a request is held back until it
+/// ends, so that nothing of its path is taken for a command.
 #[derive(Debug, Default)]
 pub(super) struct RequestDetector {
     /// The current line as far as it is there, up to [`MAX_LINE`] bytes and one more.
@@ -44,8 +44,8 @@ pub(super) struct RequestDetector {
 }
 
 impl RequestDetector {
-    /// Takes the next bytes, and leaves those that may pass. Returns whether a request line ends in them; then the bytes of
-    /// that line and all behind it do not pass.
+    /// Takes the next bytes, and leaves those that may pass. Returns whether a request line ends in them; then the
+    /// bytes of that line and all behind it do not pass.
     pub(super) fn finds_request(&mut self, bytes: &mut Vec<u8>) -> bool {
         if !self.held.is_empty() {
             self.line.truncate(self.line.len() - self.held.len());

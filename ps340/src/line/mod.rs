@@ -48,7 +48,7 @@ pub enum Interface {
     Parallel,
 }
 
-/// What the lines tell the machine's thread.
+/// The events that the lines send to the machine's thread.
 #[derive(Debug)]
 pub enum LineEvent {
     /// A host attached.
@@ -57,7 +57,7 @@ pub enum LineEvent {
         line: LineId,
         /// Who, for messages.
         peer: String,
-        /// What it speaks.
+        /// Its protocol.
         interface: Interface,
         /// Where bytes for it go.
         writer: Writer,
@@ -71,7 +71,7 @@ pub enum LineEvent {
         /// Why, if not by a plain end.
         error: Option<io::Error>,
     },
-    /// A place of which all hosts have gone and no other will come: standard input, or a file.
+    /// An endpoint from which all hosts have gone and to which no other will attach: standard input, or a file.
     SourceEnded,
     /// An operator's line of text, which wants one line of reply.
     Operator(OperatorLine),
@@ -81,20 +81,20 @@ pub enum LineEvent {
     Interrupted,
 }
 
-/// The way into the machine's thread. It is bounded: when the machine is slower than a host, that host waits.
+/// The channel into the machine's thread. It is bounded: when the machine is slower than a host, that host waits.
 pub type Events = mpsc::Sender<LineEvent>;
 
-/// What a line works with: the machine's thread, and the capture.
+/// The context of a line: the machine's thread, and the capture.
 #[derive(Clone, Debug)]
 pub struct LineContext {
-    /// The way into the machine's thread.
+    /// The channel into the machine's thread.
     pub events: Events,
     /// Takes what passes, if it is wanted.
     pub capture: Option<Capture>,
 }
 
 impl LineContext {
-    /// Tells the machine's thread; false if that is gone.
+    /// Sends an event to the machine's thread; false if that is gone.
     async fn send(&self, event: LineEvent) -> bool {
         self.events.send(event).await.is_ok()
     }

@@ -1,4 +1,4 @@
-//! Operator lines: one order a line, one reply a line.
+//! Operator lines: one operator command a line, one reply a line.
 
 use super::{
     Events, LineEvent, Listener, Token,
@@ -20,16 +20,16 @@ use tokio::{
 /// Operators that may be attached at once.
 const MAX_OPERATORS: usize = 16;
 
-/// The reply to an order that is longer.
+/// The reply to an operator command that is longer.
 const TOO_LONG: &str = "error an order has at most 65536 bytes\n";
 
-/// How long one may take to tell the token.
+/// How long an operator may take to send the token.
 const TOKEN_TIME: Duration = Duration::from_secs(30);
 /// The reply to one who does not know the token.
 const NO_TOKEN: &[u8] =
     b"error the first line must be 'token TOKEN', with what the machine said behind 'ready token'\n";
 
-/// An order and the way back for its reply.
+/// An operator command and the channel for its reply.
 #[derive(Debug)]
 pub struct OperatorLine {
     /// The line without its end.
@@ -40,7 +40,7 @@ pub struct OperatorLine {
     pub is_replayed: bool,
 }
 
-/// The reply to an order.
+/// The reply to an operator command.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Reply {
     /// The line, without its end.
@@ -55,10 +55,10 @@ impl From<String> for Reply {
     }
 }
 
-/// Takes operators in from a listener until the machine's thread is gone. One who has given no order yet, nor told the token,
-/// gives way to another.
+/// Takes operators in from a listener until the machine's thread is gone. One who has given no operator command yet,
+/// nor sent the token, gives way to another.
 ///
-/// - `token`: what they must tell before their first order, if anything.
+/// - `token`: what they must send before their first operator command, if anything.
 pub async fn serve_operators(listener: Listener, token: Option<Token>, events: Events) {
     let full = format!("error {MAX_OPERATORS} operators are attached; come again when one has left\n");
     let mut places = ConnectionSlots::new(MAX_OPERATORS, &full);
@@ -92,7 +92,7 @@ async fn serve(
     }
 }
 
-/// Takes one order after the other, until the operator leaves or the machine ends.
+/// Takes one operator command after the other, until the operator leaves or the machine ends.
 async fn obey(
     stream: Box<dyn SocketStream>,
     peer: &str,
@@ -114,7 +114,7 @@ async fn obey(
         match read_bytes {
             Ok(0) | Err(_) => return,
             Ok(n) if n == MAX_OPERATOR_COMMAND && !line.ends_with(b"\n") => {
-                // The rest of the line is not another order.
+                // The rest of the line is not another operator command.
                 if skip_line(&mut read).await.is_err() || write.write_all(TOO_LONG.as_bytes()).await.is_err() {
                     return;
                 }
@@ -181,8 +181,8 @@ fn for_people(reply: &str) -> String {
     text
 }
 
-/// Takes orders from standard input, and replies on standard output; on a terminal, a reply has lines. Blocks until the
-/// end of the input.
+/// Takes operator commands from standard input, and replies on standard output; on a terminal, a reply has lines.
+/// Blocks until the end of the input.
 pub fn serve_stdio(events: &Events) {
     let mut people = std::io::stdout().is_terminal();
     for line in std::io::stdin().lock().split(b'\n') {
@@ -206,7 +206,7 @@ pub fn serve_stdio(events: &Events) {
     let _ = events.blocking_send(LineEvent::OperatorGone);
 }
 
-/// Takes orders from a window until that is closed. Blocks.
+/// Takes operator commands from a window until that is closed. Blocks.
 pub fn serve_window(orders: std::sync::mpsc::Receiver<OperatorLine>, events: &Events) {
     for order in orders {
         if events.blocking_send(LineEvent::Operator(order)).is_err() {
@@ -220,7 +220,7 @@ pub fn serve_window(orders: std::sync::mpsc::Receiver<OperatorLine>, events: &Ev
 mod tests {
     use super::*;
 
-    /// Answers every order with two lines; `lines on` and `lines off` as the machine does.
+    /// Answers every operator command with two lines; `lines on` and `lines off` as the machine does.
     async fn answer(mut orders: tokio::sync::mpsc::Receiver<LineEvent>) {
         while let Some(LineEvent::Operator(order)) = orders.recv().await {
             let lines = match order.text.as_str() {

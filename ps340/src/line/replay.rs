@@ -25,12 +25,12 @@ use tokio::{
 const READ_BYTES: usize = 64 << 10;
 /// Latest time in a capture that is waited for: a year. Ours.
 const MAX_MICROS: u64 = 365 * 24 * 3600 * 1_000_000;
-/// How the names of hosts on the parallel interface begin, so that a capture tells them from others.
+/// How the names of hosts on the parallel interface begin, so that a capture distinguishes them from others.
 pub(super) const PARALLEL: &str = "parallel:";
-/// Pieces that are read ahead.
+/// Chunks that are read ahead.
 const READ_AHEAD: usize = 4;
 
-/// The pieces of something that is read by a thread of its own, so that a slow file stops no line.
+/// The chunks of something that is read by a thread of its own, so that a slow file stops no line.
 pub(super) fn pieces(mut from: impl Read + Send + 'static) -> mpsc::Receiver<io::Result<Vec<u8>>> {
     let (sender, receiver) = mpsc::channel(READ_AHEAD);
     std::thread::spawn(move || {
@@ -80,7 +80,7 @@ pub(super) async fn replay(path: &Path, file: File, timed: bool, conditions: Con
     }
 }
 
-/// Writes pieces, as they come, and then closes.
+/// Writes chunks, as they come, and then closes.
 pub(super) async fn feed(
     peer: &str,
     beginning: Vec<u8>,
@@ -98,7 +98,7 @@ pub(super) async fn feed(
     let _ = to.shutdown().await;
 }
 
-/// The next piece; none at the end, or where it cannot be read.
+/// The next chunk; none at the end, or where it cannot be read.
 async fn next_piece(peer: &str, pieces: &mut mpsc::Receiver<io::Result<Vec<u8>>>) -> Option<Vec<u8>> {
     match pieces.recv().await? {
         Ok(piece) => Some(piece),
@@ -185,7 +185,7 @@ async fn play(
     }
 }
 
-/// What a captured line spoke, and how the names of such hosts begin.
+/// The protocol of a captured line, and how the names of such hosts begin.
 fn interface(opened: &Event) -> (&'static str, Interface) {
     match opened {
         Event::Open(peer) if peer.starts_with(PARALLEL) => (PARALLEL, Interface::Parallel),

@@ -1,23 +1,23 @@
-//! Who may give orders over a network: whoever knows the token.
+//! Who may give operator commands over a network: whoever knows the token.
 
 use std::{
     fs::File,
     io::{self, Read},
 };
 
-/// The environment variable with the token: of a machine that is started, instead of one that it makes, and of programs that
-/// give it orders.
+/// The environment variable with the token: of a machine that is started, instead of one that it makes, and of programs
+/// that give it operator commands.
 pub const TOKEN_VARIABLE: &str = "PS340_TOKEN";
 /// The word before the token in the first line that an operator sends.
 const WORD: &str = "token ";
 /// Bytes of chance in a token.
 const TOKEN_BYTES: usize = 16;
 
-/// A secret that operators must tell before their first order.
+/// A secret that operators must send before their first operator command.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Token {
     text: String,
-    /// Whether the machine made it, and must say it once.
+    /// Whether the machine made it, and must announce it once.
     is_own: bool,
 }
 
@@ -47,7 +47,7 @@ impl Token {
         self.is_own.then_some(&self.text)
     }
 
-    /// Whether a line tells the token. It takes as long for a wrong one as for a nearly right one.
+    /// Whether a line matches the token. It takes as long for a wrong one as for a nearly right one.
     pub(super) fn matches(&self, line: &str) -> bool {
         let told = line.trim().strip_prefix(WORD).unwrap_or_default().trim().as_bytes();
         let differences = told.iter().zip(self.text.as_bytes()).fold(0, |all, (a, b)| all | (a ^ b));

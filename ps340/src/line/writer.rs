@@ -1,4 +1,4 @@
-//! The way to a host: bytes that wait until it reads, within a limit on the memory that they take.
+//! The output to a host: bytes that wait until it reads, within a limit on the memory that they take.
 
 use std::{
     collections::VecDeque,
@@ -11,7 +11,7 @@ pub const MAX_WAITING_BYTES: usize = 8 << 20;
 /// Bytes that lie side by side: so many short messages share one piece of memory.
 const BLOCK_BYTES: usize = 64 << 10;
 
-/// The way to a host. When it is dropped, the host is told what still waits, and then the end.
+/// The output to a host. When it is dropped, what still waits is sent, and then the end.
 #[derive(Debug)]
 pub struct Writer {
     shared: Arc<Shared>,
@@ -47,7 +47,7 @@ impl Shared {
 }
 
 impl Writer {
-    /// A way to a host, and its other end.
+    /// An output to a host, and its other end.
     pub(super) fn new() -> (Writer, OutputQueue) {
         let shared = Arc::<Shared>::default();
         (Writer { shared: shared.clone() }, OutputQueue { shared, lent_bytes: 0 })

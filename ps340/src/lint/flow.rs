@@ -16,7 +16,7 @@ use crate::{
 use protocol::{Kind, Name, Value, command::Input};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// Values of an input that are kept as they were sent; of more, only the kinds matter.
+/// Values of an input that are stored as they were sent; of more, only the kinds matter.
 const STORED_VALUES: usize = 8;
 /// Trials that are made; in a larger program, functions whose trials are left may send anything.
 const TRIALS: usize = 50_000;
@@ -36,7 +36,7 @@ struct Arriving {
     arcs: Vec<usize>,
     /// What commands send.
     values: Vec<Value>,
-    /// Kinds of what commands send that are not kept as values.
+    /// Kinds of what commands send that are not stored as values.
     kinds: BTreeSet<Kind>,
     /// Messages that commands send.
     sends: usize,
@@ -318,7 +318,7 @@ impl<'p> Flow<'p> {
         })
     }
 
-    /// Why a function never fires; none if that was told at another place.
+    /// Why a function never fires; none if that was reported at another location.
     fn why_silent(&self, name: &Name, instance: &Instance<'_>) -> Option<String> {
         let function = instance.function;
         let (mut unfed, mut waits) = (Vec::new(), Vec::new());

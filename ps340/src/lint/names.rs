@@ -45,7 +45,7 @@ pub(super) fn check(
     notes
 }
 
-/// Whether the files define a name that is used, in a structure around the place or outside.
+/// Whether the files define a name that is used, in a structure around the location or outside.
 fn is_defined(program: &Program, used: &Use) -> bool {
     let known = |name: &Name| program.definitions.contains_key(name);
     let mut scope = used.scope.as_ref().map(Name::as_str);

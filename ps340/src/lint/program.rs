@@ -23,11 +23,11 @@ pub(super) struct Program {
     pub(super) sends: Vec<SentMessage>,
     /// Names that were defined again, and where.
     pub(super) again: Vec<(Name, Location, Location)>,
-    /// Inputs about which SETUP CNESS said something.
+    /// Inputs that SETUP CNESS named.
     pub(super) set_up: Vec<(Name, Input)>,
-    /// Functions of a type that does not exist, and the place of the type.
+    /// Functions of a type that does not exist, and the location of the type.
     pub(super) no_functions: Vec<(Name, Location)>,
-    /// Structures that are open: full name and place of the BEGIN.
+    /// Structures that are open: full name and location of the BEGIN.
     open: Vec<(Name, Location)>,
 }
 
@@ -266,7 +266,7 @@ impl Program {
             self.no_functions.push((function.clone(), location));
             return DefinitionKind::NoFunction;
         };
-        // A wrong size is what the machine says itself.
+        // A wrong size is reported by the machine itself.
         row.shape(size)
             .map_or(DefinitionKind::NoFunction, |shape| DefinitionKind::Function(Function { row, size, shape }))
     }

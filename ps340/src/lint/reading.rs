@@ -1,4 +1,4 @@
-//! Reading the files: commands, what the machine says to each, and where one program ends and the next begins.
+//! Reading the files: commands, what the machine replies to each, and where one program ends and the next begins.
 
 use super::{
     Finding, Level, Note, flow, names, ports,
@@ -18,8 +18,9 @@ const LINE: LineId = LineId(1);
 
 /// Finds what is wrong in files, which are read one after the other as if one host sent them.
 ///
-/// - `files`: name and content of each. Lines that begin with `@` are directives for the player; those that write files or end the machine are found, the others passed over.
-/// - Returns the findings by file and place.
+/// - `files`: name and content of each. Lines that begin with `@` are directives for the player; those that write files
+///   or end the machine are found, the others passed over.
+/// - Returns the findings by file and location.
 pub fn lint(files: &[(String, Vec<u8>)]) -> Vec<Finding> {
     let sources: Vec<SourceFile> = files.iter().map(|(name, text)| SourceFile::new(name, text)).collect();
     let mut reading = Reading {
@@ -56,10 +57,10 @@ struct Reading<'s> {
     sources: &'s [SourceFile],
     /// Carries every command out.
     machine: Machine,
-    /// Messages that it has said.
+    /// The number of messages that it has sent.
     message_count: u64,
     program: Program,
-    /// What the machine said to the commands of this program.
+    /// The messages of the machine about the commands of this program.
     messages: Vec<MachineMessage>,
     /// The command that was read last.
     latest: Option<Location>,
@@ -141,7 +142,7 @@ impl Reading<'_> {
         }
     }
 
-    /// Gives the machine a command and returns what it says.
+    /// Sends the machine a command and returns its messages.
     fn send_command(&mut self, command: &Command) -> Vec<String> {
         let mut text = Vec::new();
         print(command, &mut text);
@@ -149,7 +150,7 @@ impl Reading<'_> {
         self.send_text(text)
     }
 
-    /// Gives the machine a text and returns what it says.
+    /// Sends the machine a text and returns its messages.
     fn send_text(&mut self, text: Vec<u8>) -> Vec<String> {
         self.machine.step([Input::Bytes(LINE, text)], 0);
         let said = self.machine.counters().messages;
@@ -182,16 +183,16 @@ impl Reading<'_> {
             let (text, _) = said.text.split_once("; did you mean ").unwrap_or((&said.text, ""));
             let undefined =
                 notes.iter().any(|note| note.text.contains("never defined") && text.ends_with(note_name(note)));
-            // What is said to a function that could not be made follows from that.
+            // Messages about a function that could not be made follow from that.
             let unmade = text.starts_with("E 2 ") && program.is_undefined(text.rsplit(' ').next().unwrap_or(""));
-            // What comes along an arc that clashes is told of the arc; what the command itself sends there is not.
+            // What comes along an arc that clashes is reported of the arc; what the command itself sends there is not.
             let follows = |input: &String| mentions(text, input) && said.sent_to.as_ref() != Some(input);
             let clashes = flow.clashes.iter().any(follows);
             if said.known || undefined || unmade || clashes {
                 continue;
             }
             let level = match said.text.as_bytes() {
-                // Redefinitions are told with the place of the first definition.
+                // Redefinitions are reported with the location of the first definition.
                 [b'I', ..] | [b'W', b' ', b'3', b' ', ..] => continue,
                 [b'E', ..] => Level::Error,
                 _ => Level::Warning,
@@ -207,7 +208,7 @@ impl Reading<'_> {
     }
 }
 
-/// Whether a text speaks of an input, given as `<1>NAME`, and not of one whose name only begins so.
+/// Whether a text is about an input, given as `<1>NAME`, and not of one whose name only begins so.
 fn mentions(text: &str, input: &str) -> bool {
     text.match_indices(input).any(|(at, _)| {
         let next = text.as_bytes().get(at + input.len());

@@ -1,11 +1,11 @@
-//! The files that are read, and places in them.
+//! The files that are read, and locations in them.
 
 use crate::operator::parse;
 use protocol::capture::{CaptureReader, Event, Record, is_capture};
 use protocol::command::token::{Lexer, TokenKind};
 use std::ops::Range;
 
-/// A place in the files.
+/// A location in the files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) struct Location {
     /// Which file.
@@ -22,7 +22,7 @@ pub(super) struct SourceFile {
     pub(super) text: Vec<u8>,
     /// Where each line begins.
     lines: Vec<usize>,
-    /// Orders of directives or of a capture that write files or end the machine, and where they stand.
+    /// Operator commands of directives or of a capture that write files or end the machine, and where they stand.
     pub(super) outgoing: Vec<(usize, String)>,
 }
 
@@ -66,12 +66,12 @@ impl SourceFile {
     }
 }
 
-/// The place of a name in a command, from its beginning; the beginning if it does not stand there.
+/// The offset of a name in a command, from its beginning; the beginning if it does not stand there.
 pub(super) fn first_offset(command: &[u8], name: &str) -> usize {
     occurrences(command, name).next().map_or(0, |span| span.start)
 }
 
-/// The last place of a name in a command.
+/// The last offset of a name in a command.
 pub(super) fn last_offset(command: &[u8], name: &str) -> usize {
     occurrences(command, name).last().map_or(0, |span| span.start)
 }

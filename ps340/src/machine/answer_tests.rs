@@ -14,7 +14,7 @@ use protocol::{
 
 const LINE: LineId = LineId(1);
 
-/// A machine with one host, and what it was told so far carried out.
+/// A machine with one host, and all that it received carried out.
 fn told(text: &str) -> Machine {
     let mut machine = Machine::new(Settings::default());
     machine.step([Input::Attach(LINE)], 0);
@@ -181,7 +181,7 @@ fn commands_that_cause_themselves_stop_neither_frames_nor_lines() {
 
 #[test]
 fn what_no_interpreter_can_keep_up_with_is_lost_and_counted() {
-    // Each message becomes two, so the interpreter falls behind at once.
+    // Each message becomes two, so the interpreter lags at once.
     let mut machine = told(
         "K := F:CONSTANT; C := F:CI; CONNECT K<1>:<1>C; SEND 'SEND 1 TO <1>K; SEND 1 TO <1>K; {                  }' TO <2>K;
          SEND TRUE TO <1>K;",

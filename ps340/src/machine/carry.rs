@@ -39,7 +39,7 @@ impl Machine {
             Effect::ForgetRequests => {
                 self.latest.pending = PendingRequests::default();
                 self.renderings = Renderings::default();
-                // The identities of objects are given out again: trouble with a new object is no old trouble.
+                // The identities of objects are given out again: a fault of a new object is no old fault.
                 self.latest.update.fault = None;
             }
             Effect::RequestWriteBack { node } => self.latest.pending.add_write_back(node),
@@ -92,7 +92,7 @@ impl Machine {
         }
     }
 
-    /// A request for which there was no room is lost, and reported as of a full queue.
+    /// A request for which the queue had no space is lost, and reported as of a full queue.
     fn lose_without(&mut self, room: bool, function: ObjectId, row: &'static str) {
         if !room {
             let fault = Fault { function: row, cause: Cause::Flood { input: 1, lost: 1 } };

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// Counters since the start of the machine, except where it says "now".
+/// Counters since the start of the machine, except where "now" is stated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
     /// Frames.

@@ -1,4 +1,4 @@
-//! What a device says.
+//! The message of a device.
 
 use protocol::Value;
 

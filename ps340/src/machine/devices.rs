@@ -1,6 +1,6 @@
 //! What a person does at the devices, and what their initial instances send for it.
 //!
-//! Dials speak at samples, everything else at once. Keyboard and screen have rooms of their own (`keyboard`, `tube`).
+//! Dials send at samples, everything else at once. Keyboard and screen have modules of their own (`keyboard`, `tube`).
 
 use super::{
     device_message::DeviceMessage,
@@ -43,7 +43,7 @@ pub(super) struct Devices {
 }
 
 impl Devices {
-    /// Whether nothing waits for a frame.
+    /// Whether all are idle: nothing waits for a frame.
     pub(super) fn is_quiet(&self) -> bool {
         self.dials.is_idle()
     }

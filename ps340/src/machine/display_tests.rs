@@ -1,4 +1,4 @@
-//! What of the structure is seen: depth cues, blinking, screens, knobs.
+//! The vector display of a structure: depth cues, blinking, screens, knobs.
 
 use super::{Input, Machine, Settings};
 use crate::calligraphic::{Controls, phosphor};

@@ -1,8 +1,8 @@
-//! What is seen of the machine: the display with its settings, and which strokes it shows.
+//! The vector display of the machine: its settings, and which strokes it shows.
 //!
-//! The light on the screen is made when somebody looks. Only where what is seen depends on what was seen before, with a
-//! phosphor that glows on or a picture that may flicker, does the display go along with every frame: by the machine, or
-//! by the window that shares the screen ([`Machine::share_screen`]), as fast as it can.
+//! The light on the screen is computed when somebody looks. Only where what is seen depends on what was seen before,
+//! with a phosphor that glows on or a picture that may flicker, does the display go along with every frame: by the
+//! machine, or by the window that shares the screen ([`Machine::share_screen`]), as fast as it can.
 
 use super::{
     Machine,
@@ -115,7 +115,7 @@ impl Machine {
         self.with_display(size, Display::picture)
     }
 
-    /// A picture of so many vectors that their strokes are written as they are made, and not kept.
+    /// A picture of so many vectors that their strokes are written as they are made, and not stored.
     fn large_picture(&self, size: Option<[u32; 2]>) -> Picture {
         let VectorDisplay { screen, controls, .. } = &self.vector_display;
         let size = size.or(screen.size()).unwrap_or(DISPLAY_SIZE);
@@ -136,7 +136,7 @@ impl Machine {
         self.vector_display.is_watched || self.vector_display.controls.remembers()
     }
 
-    /// Lets nothing refer to strokes of before, and gives the room of them back.
+    /// Lets nothing refer to earlier strokes, and releases their memory.
     pub(super) fn shrink_display(&mut self) {
         match self.vector_display.screen.size() {
             Some(_) => self.with_display(None, |_| ()),

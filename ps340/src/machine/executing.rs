@@ -30,8 +30,8 @@ impl Machine {
 
     /// Carries out a command and what it causes.
     ///
-    /// What it sends into the network is carried out before the next one, as long as the share of this step lasts; after
-    /// that the queues fill, and what is too much for them is counted and reported.
+    /// What it sends into the network is carried out before the next one, as long as the share of this step lasts;
+    /// after that the queues fill, and what is too much for them is counted and reported.
     pub(super) fn execute(&mut self, interpreter: &mut Interpreter, command: Command) {
         self.counters.commands += 1;
         let rested = self.network_idle;
@@ -43,7 +43,8 @@ impl Machine {
         self.settle_after(rested);
     }
 
-    /// A message from an initial instance of the host line, or the one of the line that speaks, and what it causes.
+    /// A message from an initial instance of the host line, or from that of the line whose commands are carried out,
+    /// and what it causes.
     pub(super) fn emit_from_line(&mut self, instance: &str, value: Value) {
         let rested = self.network_idle;
         self.memory.set_speaker(self.lines.reporting_to);
@@ -58,8 +59,8 @@ impl Machine {
         self.settle_after(rested);
     }
 
-    /// Lets the network work. What functions report while they work is told to the line that speaks only if the network
-    /// had come to rest before: otherwise nobody knows whose doing it is.
+    /// Lets the network work. What functions report while they work is reported to the line whose commands are carried
+    /// out only if the network had come to rest before: otherwise nobody knows whose doing it is.
     fn settle_after(&mut self, rested: bool) {
         let speaking = self.lines.reporting_to.filter(|_| rested);
         let speaking = std::mem::replace(&mut self.lines.reporting_to, speaking);

@@ -37,7 +37,7 @@ pub(super) struct Decoders {
 }
 
 impl HostLine {
-    /// A line on which nothing has been said.
+    /// A line on which nothing has been sent.
     pub(super) fn new(line: LineId, plain_text: PlainText) -> HostLine {
         HostLine {
             frames: FrameDecoder::default(),
@@ -56,7 +56,7 @@ impl HostLine {
         self.decoders.interpreter = Interpreter::default();
     }
 
-    /// What is open, for a prompt; `...` behind it for a command without its `;`.
+    /// What is open, for a prompt; `...` after it for a command without its `;`.
     pub(super) fn open(&self) -> String {
         let open = self.decoders.interpreter.open().unwrap_or_default();
         let unfinished = if self.decoders.text.is_unfinished() { "..." } else { "" };

@@ -8,7 +8,7 @@ use crate::line::LineId;
 pub enum Input {
     /// A host line opens.
     Attach(LineId),
-    /// A host line opens that speaks the words of the parallel interface.
+    /// A host line opens that carries the words of the parallel interface.
     AttachParallel(LineId),
     /// Bytes from a host.
     Bytes(LineId, Vec<u8>),

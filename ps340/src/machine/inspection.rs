@@ -7,7 +7,7 @@ use crate::{
 };
 
 impl Machine {
-    /// Whether anybody takes what stylus or puck of the tablet say, the system aside.
+    /// Whether a function other than the system's takes what stylus or puck of the tablet send.
     pub fn tablet_is_read(&self) -> bool {
         let objects = &self.memory.objects;
         let (Some(tablet), location) = (objects.find("TABLETIN"), objects.find("PICK_LOCATION")) else { return false };
@@ -54,8 +54,8 @@ impl Machine {
         self.reports.log()
     }
 
-    /// What the machine has counted. Strokes and refresh are those of the latest picture that was drawn: one of many vectors
-    /// is drawn when somebody looks ([`Machine::renew_picture`]).
+    /// What the machine has counted. Strokes and refresh are those of the latest picture that was drawn: one of many
+    /// vectors is drawn when somebody looks ([`Machine::renew_picture`]).
     pub fn counters(&self) -> Counters {
         let refresh = self.refresh();
         Counters {

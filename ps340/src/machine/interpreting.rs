@@ -28,7 +28,7 @@ const BYTES_PER_UNIT: usize = 8;
 impl Machine {
     /// Lets bytes wait for the interpreter of a function.
     pub(super) fn queue_stream(&mut self, function: ObjectId, stream: StreamKind, bytes: Box<[u8]>, fresh: bool) {
-        // An empty message takes room too.
+        // An empty message takes memory too.
         let size = bytes.len() + size_of::<StreamChunk>();
         if self.streams.bytes + size > MAX_WAITING {
             self.streams.lost += 1;

@@ -27,9 +27,9 @@ pub(super) struct Keyboard {
     pub(super) back: usize,
     /// Whether a prompt stands at the cursor and waits.
     pub(super) prompted: bool,
-    /// The host that spoke to the terminal last.
+    /// The host that sent to the terminal last.
     pub(super) host: Option<LineId>,
-    /// What the terminal sent to its host, for whoever looks on.
+    /// What the terminal sent to its host, for whoever observes it.
     pub(super) typed: Vec<u8>,
 }
 

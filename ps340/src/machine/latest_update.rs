@@ -1,4 +1,4 @@
-//! The picture that was drawn last, and what functions want of the next.
+//! The latest update, and what functions request of the next.
 
 use super::pending::PendingRequests;
 use crate::traversal::Update;
@@ -9,6 +9,6 @@ pub(super) struct LatestUpdate {
     pub(super) update: Update,
     /// Version of the structure that `update` shows; none before the first.
     pub(super) version: Option<u64>,
-    /// What functions want of the next update.
+    /// What functions request of the next update.
     pub(super) pending: PendingRequests,
 }

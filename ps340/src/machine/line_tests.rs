@@ -116,7 +116,7 @@ fn what_functions_do_later_is_nobodys_command() {
     let heard = room.heard(SHARED).0;
     assert!(heard.len() == 1 && heard[0].starts_with("E "), "{heard:?}");
     room.assert_heard(ONE, &[], &[]);
-    // A function that interprets commands speaks for nobody.
+    // What a function that interprets commands causes is reported to no line alone.
     room.send(ONE, "CI := F:CI; SEND 'SEND ''to all'' TO <1>HOST_MESSAGE; NONSENSE;' TO <1>CI;");
     let heard = room.heard(SHARED).0;
     assert!(heard.len() == 2 && heard[0] == "to all" && heard[1].starts_with("E 1"), "{heard:?}");

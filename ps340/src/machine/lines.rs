@@ -27,7 +27,7 @@ impl Lines {
         self.writers.insert(line, MessageWriter::default());
     }
 
-    /// A line opens on the parallel interface. Returns what the machine says there.
+    /// A line opens on the parallel interface. Returns what the machine sends there.
     pub(super) fn attach_parallel(&mut self, line: LineId, plain_text: PlainText) -> Vec<u8> {
         let mut bytes = Vec::new();
         let parallel = ParallelLine::new(line, plain_text, &mut bytes);
@@ -40,14 +40,14 @@ impl Lines {
         self.mailboxes.entry(line).or_default()
     }
 
-    /// What is reported from now on is about the commands of a line: if it asked for messages of its own, it alone is
-    /// told.
+    /// What is reported from now on is about the commands of a line: if it asked for messages of its own, the reports
+    /// go to it alone.
     pub(super) fn report_to(&mut self, line: LineId) {
         let own = |writer: &MessageWriter| writer.form() == MessageForm::Own;
         self.reporting_to = self.writers.get(&line).is_some_and(own).then_some(line);
     }
 
-    /// The lines with a writer that hear what an instance of the host line sends.
+    /// The recipients of what an instance of the host line sends: lines with a writer.
     ///
     /// - `of`: the line to which the instance belongs, if it belongs to one.
     pub(super) fn recipients(&self, of: Option<LineId>) -> Vec<(LineId, MessageWriter)> {

@@ -1,21 +1,22 @@
-//! Giving memory back when a picture or a structure was much larger than it is now.
+//! Memory release: memory is given back when a picture or a structure was much larger than it is now.
 //!
-//! Lists of strokes, tables of nodes and the like keep their room from frame to frame, since the next one is usually as
-//! large. When much of what was there has gone, as after INITIALIZE, that room is given back.
+//! Lists of strokes, tables of nodes and the like keep their memory from frame to frame, since the next one is usually
+//! as large. When much of what was there has gone, as after INITIALIZE, that memory is released.
 
-/// Bytes by which structures and strokes must have become fewer, since they were most.
+/// Bytes by which structures and strokes must have become fewer than at most before memory is released.
 const RELEASE_BYTES: usize = 8 << 20;
 
-/// How much there was, and whether the process should give memory back.
+/// How much memory there was, and whether the process should release it.
 #[derive(Debug, Default)]
 pub(super) struct MemoryRelease {
-    /// Bytes of structures and strokes when they were most since the latest relief.
+    /// Most bytes of structures and strokes since the latest release.
     most: usize,
     is_due: bool,
 }
 
 impl MemoryRelease {
-    /// Whether much of what was there has gone, now that there are so many bytes of structures and strokes.
+    /// Whether a release is needed: much of what was there has gone, now that there are so many bytes of structures and
+    /// strokes.
     pub(super) fn is_needed(&mut self, burden: usize) -> bool {
         if burden + RELEASE_BYTES > self.most {
             self.most = self.most.max(burden);

@@ -1,4 +1,4 @@
-//! The whole machine: owns the parts, wires them, and moves in steps. No thread, window or wall clock here.
+//! The machine as a whole: owns the parts, wires them, and moves in steps. No thread, window or wall clock here.
 
 mod time;
 mod counters;

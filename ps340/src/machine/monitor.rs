@@ -2,22 +2,22 @@
 
 use super::FRAMES_PER_SECOND;
 
-/// Percent by which the use of memory must fall before an alarm speaks again. Ours.
+/// Percent by which the use of memory must fall before an alarm fires again. Ours.
 const HYSTERESIS: f64 = 5.0;
 
-/// What was seen last.
+/// What the monitor saw last.
 #[derive(Debug, Default)]
 pub(super) struct Monitor {
-    /// The limit at which each alarm spoke, while that lasts.
+    /// The limit at which each alarm fired, while that lasts.
     alerted: [Option<f64>; 2],
     /// The frame at which somebody last did something.
     active: u64,
 }
 
 impl Monitor {
-    /// Whether an alarm speaks: when the use of memory reaches its limit, once until it falls or the limit changes.
+    /// Whether an alarm fires: when the use of memory reaches its limit, once until it falls or the limit changes.
     ///
-    /// - `place`: which of the alarms.
+    /// - `place`: the alarm, by its index.
     /// - `percent`: of the memory that is in use.
     pub(super) fn alarms(&mut self, alarm: usize, percent: f64, limit: f64) -> bool {
         let alerted = &mut self.alerted[alarm];

@@ -11,11 +11,11 @@ pub(super) const MAX_STEP_BYTES: usize = 4 << 20;
 pub struct HostOutput {
     /// On which line.
     pub line: LineId,
-    /// Whole messages, one behind the other.
+    /// Whole messages, one after the other.
     pub bytes: Vec<u8>,
     /// How many these are.
     pub messages: u64,
-    /// Messages for which there was no room.
+    /// Messages for which there was no space.
     pub lost: u64,
 }
 
@@ -26,7 +26,7 @@ pub(super) struct Outgoing {
 }
 
 impl Outgoing {
-    /// One more message for a host. A single one always has room.
+    /// One more message for a host. A single one always has space.
     pub(super) fn push(&mut self, line: LineId, message: Vec<u8>) {
         let output = self.outputs.entry(line).or_insert_with(|| HostOutput { line, ..HostOutput::default() });
         if output.bytes.is_empty() {

@@ -3,8 +3,8 @@
 //! These strokes are made anew only when something of them changes.
 //!
 //! # Source
-//! That the system itself displays CURSOR and moves it with the tablet is confirmed; that it does so while stylus or puck
-//! is in range is ours.
+//! That the system itself displays CURSOR and moves it with the tablet is confirmed; that it does so while stylus or
+//! puck is in range is ours.
 
 use super::{
     KeyboardMode, Machine,
@@ -23,8 +23,8 @@ use std::borrow::Cow;
 const BLINK_FRAMES: u64 = 30;
 
 impl Machine {
-    /// The strokes that the screen that is looked at shows: those of the structure, then terminal, message line and cursor, as
-    /// far as the keys GRAPH and TERM and the screen saver let them be seen.
+    /// The strokes that the screen that is looked at shows: those of the structure, then terminal, message line and
+    /// cursor, as far as the keys GRAPH and TERM and the screen saver let them be seen.
     pub fn visible_strokes(&self) -> Cow<'_, [Stroke]> {
         let Tube { graphics, blanked, overlay, .. } = &self.tube;
         match (*blanked, *graphics) {

@@ -16,11 +16,11 @@ use protocol::{
     },
 };
 
-/// Frames that the words and blocks of a command may take: half a minute. Ours; the driver of the time gave up after half
-/// a second, but there was no network between.
+/// Frames that the words and blocks of a command may take: half a minute. Ours; the driver of the time gave up after
+/// half a second, but there was no network between.
 const TRANSFER_FRAMES: u64 = 1800;
 impl ParallelLine {
-    /// Takes bytes from the host and does what they say; the answers are appended to `out`.
+    /// Takes bytes from the host and carries them out; the answers are appended to `out`.
     pub(super) fn receive(&mut self, bytes: &[u8], machine: &mut Machine, out: &mut Vec<u8>) {
         self.frames.push(bytes);
         while let Some(frame) = self.frames.next() {

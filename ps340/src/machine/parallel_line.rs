@@ -30,7 +30,7 @@ pub(super) enum Attached {
     ForMemory,
 }
 
-/// What the host is to say next.
+/// What the host is to send next.
 #[derive(Debug)]
 pub(super) enum ParallelState {
     /// A command.
@@ -48,7 +48,7 @@ pub(super) enum ParallelState {
 }
 
 impl ParallelLine {
-    /// A line on which nothing has been said; the machine tells that it is there.
+    /// A line on which nothing has been sent; the machine announces that it is there.
     pub(super) fn new(line: LineId, plain_text: PlainText, out: &mut Vec<u8>) -> ParallelLine {
         write_word(Code::Reset as u16, out);
         ParallelLine {

@@ -1,4 +1,4 @@
-//! What functions want of the next update: matrices, vectors, picks, and the picture itself.
+//! What functions request of the next update: matrices, vectors, picks, and the picture itself.
 
 use crate::port::ObjectId;
 use glam::DVec2;
@@ -12,11 +12,11 @@ const MAX_WAITING: usize = 1_000;
 pub(super) struct PendingRequests {
     pub(super) transforms: Vec<TransformRequest>,
     pub(super) picks: Vec<Pick>,
-    /// Nodes whose picture is to be written back; none for all that is displayed.
+    /// Nodes whose picture is to be written back; `None` for all that is displayed.
     pub(super) write_backs: Vec<Option<ObjectId>>,
 }
 
-/// The matrix or vectors of an XFORM node are wanted.
+/// A request for the matrix or vectors of an XFORM node.
 #[derive(Debug)]
 pub(super) struct TransformRequest {
     /// The function that asked.
@@ -31,14 +31,14 @@ pub(super) struct TransformRequest {
     pub(super) count: u32,
 }
 
-/// A pick is wanted.
+/// A request for a pick.
 #[derive(Debug)]
 pub(super) struct Pick {
     /// The function that asked.
     pub(super) function: ObjectId,
     /// The centre of the box.
     pub(super) at: DVec2,
-    /// Whether coordinates are wanted.
+    /// Whether pick coordinates are requested.
     pub(super) coordinates: bool,
     /// Updates that are still tried.
     pub(super) frames: u32,
@@ -50,12 +50,12 @@ impl PendingRequests {
         self.transforms.is_empty() && self.picks.is_empty() && self.write_backs.is_empty()
     }
 
-    /// Whether the strokes of the picture themselves are wanted.
+    /// Whether the strokes of the picture themselves are needed.
     pub(super) fn need_strokes(&self) -> bool {
         !self.write_backs.is_empty()
     }
 
-    /// One more; false if there is no room.
+    /// One more; false if there is no space.
     pub(super) fn add_transform(&mut self, request: TransformRequest) -> bool {
         let room = self.transforms.len() < MAX_WAITING;
         if room {

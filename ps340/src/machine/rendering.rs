@@ -1,9 +1,9 @@
 //! What rendering nodes are asked for: one after the other, each in slices of a frame.
 //!
 //! # Decided here
-//! - All messages to input `<1>` of rendering nodes wait in one queue, so that FIX(0) behind FIX(4) toggles that
+//! - All messages to input `<1>` of rendering nodes wait in one queue, so that FIX(0) after FIX(4) toggles that
 //!   rendering. While the picture is held between BEGIN and END they wait.
-//! - In a frame one rendering is begun, at once if none is under way, so that it is of the moment in which it was asked
+//! - In a frame one rendering is begun, at once if none is running, so that it is of the moment in which it was asked
 //!   for; others wait for a frame of their own.
 //! - Every message ends with TRUE or FALSE from output `<1>`.
 //! - What changes while a rendering is made does not matter to it.
@@ -132,7 +132,7 @@ impl Machine {
         self.end_request(node, done);
     }
 
-    /// Reports why a request failed, and says at the output whether it did.
+    /// Reports why a request failed, and sends from the output whether it did.
     fn end_request(&mut self, node: ObjectId, done: Result<(), Failure>) {
         let success = Value::Boolean(done.is_ok());
         match done {

@@ -22,7 +22,7 @@ fn told(text: &str) -> Machine {
     machine
 }
 
-/// Tells something and lets the machine finish it.
+/// Sends something and lets the machine finish it.
 fn tell(machine: &mut Machine, text: &str) {
     machine.step([Input::Bytes(LINE, text.as_bytes().to_vec())], 0);
     finish(machine);

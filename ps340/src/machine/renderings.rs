@@ -1,4 +1,4 @@
-//! What rendering nodes are asked for and waits, and the rendering that is under way.
+//! Requests to rendering nodes that wait, and the running rendering.
 
 use crate::{
     port::{ObjectId, RenderingRequest},
@@ -6,7 +6,7 @@ use crate::{
 };
 use std::collections::VecDeque;
 
-/// Requests that wait, and the rendering that is under way.
+/// Requests that wait, and the running rendering.
 #[derive(Debug, Default)]
 pub(super) struct Renderings {
     pub(super) waiting: VecDeque<(ObjectId, RenderingRequest)>,
@@ -25,7 +25,7 @@ pub(super) struct RunningRendering {
 }
 
 impl Renderings {
-    /// Whether nothing waits or is under way.
+    /// Whether nothing waits or is running.
     pub(super) fn are_done(&self) -> bool {
         self.waiting.is_empty() && self.task.is_none()
     }

@@ -1,4 +1,4 @@
-//! What the machine says: messages to its hosts, and its own numbered messages.
+//! Reporting: messages to the hosts, and the machine's own numbered messages.
 
 use super::Machine;
 use crate::{
@@ -61,7 +61,7 @@ impl Machine {
 
     /// Logs a message of the machine and gives it to ERROR, WARNING or INFORMATION, or to the line whose command it is
     /// about, if that asked for messages of its own. Of a name that is not known, the one that was probably meant is
-    /// told, as long as it is no flood of messages.
+    /// added, as long as it is no flood of messages.
     pub(super) fn report(&mut self, message: Message) {
         let unknown = message.unknown().filter(|_| self.reports.are_few());
         let text = match unknown.and_then(|name| self.memory.meant(&name)) {
@@ -91,7 +91,7 @@ impl Machine {
         }
     }
 
-    /// Says how many messages were too many for the log and for ERROR and WARNING since the latest frame.
+    /// Reports how many messages were too many for the log and for ERROR and WARNING since the latest frame.
     pub(super) fn account_for_reports(&mut self) {
         let (rest, unheard) = self.reports.begin_frame();
         if rest > 0 {

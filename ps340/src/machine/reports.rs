@@ -1,23 +1,24 @@
-//! The machine's own numbered messages: those that wait to be told, the latest, and how many of them one frame hears.
+//! The machine's own numbered messages: those that wait to be reported, the latest, and how many of them one frame
+//! admits.
 
 use crate::interpreter::Message;
 use std::collections::VecDeque;
 
-/// Messages of the machine that reach ERROR, WARNING and INFORMATION between two frames, those that one line alone is told
-/// not counted; the rest are logged and counted only, so that a message that causes messages ends. The terminal shows as
-/// many of all.
+/// Messages of the machine that reach ERROR, WARNING and INFORMATION between two frames, those reported to one line
+/// alone not counted; the rest are logged and counted only, so that a message that causes messages ends. The terminal
+/// shows as many of all.
 pub const REPORTS_PER_FRAME: u64 = 1000;
 /// Messages of the machine between two frames that are written to the log of the process one by one.
 const LOGGED_PER_FRAME: u64 = 20;
-/// Messages of the machine that are kept for whoever asks for the log.
+/// Messages of the machine that are stored for whoever asks for the log.
 const LOG_LINES: usize = 1000;
 
 /// Messages of the machine.
 #[derive(Debug, Default)]
 pub(super) struct Reports {
-    /// Messages that wait to be told.
+    /// Messages that wait to be reported.
     pub(super) pending: Vec<Message>,
-    /// The latest that were told, oldest first.
+    /// The latest that were reported, oldest first.
     log: VecDeque<String>,
     /// Messages since the latest frame: all, those given to ERROR, WARNING or INFORMATION, and those that were too many
     /// for these.
@@ -27,12 +28,12 @@ pub(super) struct Reports {
 }
 
 impl Reports {
-    /// One more that waits to be told.
+    /// One more that waits to be reported.
     pub(super) fn push(&mut self, message: Message) {
         self.pending.push(message);
     }
 
-    /// The latest that were told, oldest first.
+    /// The latest that were reported, oldest first.
     pub(super) fn log(&self) -> impl Iterator<Item = &str> {
         self.log.iter().map(String::as_str)
     }
@@ -42,7 +43,7 @@ impl Reports {
         self.reported < LOGGED_PER_FRAME
     }
 
-    /// Keeps one more that is told. Returns whether the terminal may show it.
+    /// Logs the text of one more that is reported. Returns whether the terminal may show it.
     pub(super) fn log_text(&mut self, text: &str) -> bool {
         if self.log.len() >= LOG_LINES {
             self.log.pop_front();

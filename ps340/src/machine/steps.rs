@@ -41,7 +41,7 @@ impl Machine {
         self.outputs.take()
     }
 
-    /// Something that a person does. Dials speak at the next frame, everything else at once.
+    /// Something that a person does. Dials send at the next frame, everything else at once.
     pub fn event(&mut self, event: Event) {
         self.work_left = WORK_PER_STEP;
         self.activity();
@@ -57,7 +57,7 @@ impl Machine {
         self.settle();
     }
 
-    /// Lets one frame pass: dials and clocks speak, the network runs, the picture is updated.
+    /// Lets one frame pass: dials and clocks send, the network runs, the picture is updated.
     pub fn next_frame(&mut self) {
         self.frame += 1;
         self.work_left = WORK_PER_STEP;
@@ -223,7 +223,7 @@ impl Machine {
         self.reports.push(Message::Information("the machine was started again".into()));
     }
 
-    /// Gives back the room of what has gone, if that is much.
+    /// Releases the memory of what has gone, if that is much.
     fn relieve(&mut self) {
         if self.memory_release.is_needed(self.memory.bytes() + size_of_val(self.latest.update.strokes.as_slice())) {
             self.memory.shrink();

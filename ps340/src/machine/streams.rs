@@ -14,11 +14,11 @@ pub(super) struct Streams {
     pub(super) waiting: VecDeque<StreamChunk>,
     pub(super) bytes: usize,
     pub(super) lost: u64,
-    /// Whether a piece is being interpreted.
+    /// Whether a chunk is being interpreted.
     pub(super) busy: bool,
 }
 
-/// A message that waits.
+/// A chunk of a stream that waits.
 #[derive(Debug)]
 pub(super) struct StreamChunk {
     pub(super) function: ObjectId,
@@ -36,7 +36,7 @@ pub(super) struct StreamReader {
 }
 
 impl Streams {
-    /// Whether nothing waits.
+    /// Whether all queues are empty.
     pub(super) fn are_empty(&self) -> bool {
         self.waiting.is_empty()
     }

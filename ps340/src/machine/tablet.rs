@@ -1,17 +1,17 @@
 //! The data tablet with its stylus or puck.
 //!
 //! # Source
-//! A press sends `<6>` exactly once and `<3>` with the new code, a release `<3>` = 0 and `<2>` = FALSE, as clients of the
-//! time rely on; `<1>` and `<4>` are the position while in range (remembered) and while pressed (uncertain).
+//! A press sends `<6>` exactly once and `<3>` with the new code, a release `<3>` = 0 and `<2>` = FALSE, as clients of
+//! the time rely on; `<1>` and `<4>` are the position while in range (remembered) and while pressed (uncertain).
 //!
-//! That `<3>` says 0 with every report of the tablet while nothing is down is deduced from a client. Its locator passes
-//! `<3>` through F:DELTA, which would be needless if `<3>` spoke on change only, and takes the arc away between press and
-//! release: a second press of the same button is a change for F:DELTA only if 0 came in between.
+//! That `<3>` sends 0 with every report of the tablet while nothing is down is deduced from a client. Its locator
+//! passes `<3>` through F:DELTA, which would be needless if `<3>` sent on change only, and takes the arc away between
+//! press and release: a second press of the same button is a change for F:DELTA only if 0 came in between.
 //!
-//! The rest is ours: the order of the messages of one event; that `<1>` speaks only when a position is reported; the
-//! commands; that a 0 goes before every code of a single button, and `<6>` with it, which keeps the two in pairs whatever
-//! rolls, chords and changes of the network come between; that a held code is not repeated, since a program that
-//! connects meanwhile would take it for a press without a position.
+//! The rest is ours: the order of the messages of one event; that `<1>` sends only when a position is reported; the
+//! commands; that a 0 goes before every code of a single button, and `<6>` with it, which keeps the two in pairs
+//! whatever rolls, chords and changes of the network come between; that a held code is not repeated, since a program
+//! that connects meanwhile would take it for a press without a position.
 
 use super::device_message::DeviceMessage;
 use crate::port::TabletCommand;
@@ -21,7 +21,7 @@ use protocol::Value;
 /// What stylus or puck does. The tip switch of the stylus is button 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TabletEvent {
-    /// Is put or moved to a place, -1..=1.
+    /// Is put or moved to a position, -1..=1.
     Move([f64; 2]),
     /// Buttons with this sum of codes (1, 2, 4, 8) are down.
     Press(u8),
@@ -45,7 +45,7 @@ pub(super) struct Tablet {
     in_range: bool,
     position: [f64; 2],
     buttons: u8,
-    /// When `<1>` speaks: never [`TabletCommand::Trigger`].
+    /// When `<1>` sends: never [`TabletCommand::Trigger`].
     mode: TabletCommand,
 }
 
@@ -107,7 +107,7 @@ impl Tablet {
         }
     }
 
-    /// A press somewhere off the tablet is one at the last place. Ours.
+    /// A press somewhere off the tablet is one at the last position. Ours.
     fn press(&mut self, buttons: u8, out: &mut Vec<DeviceMessage>) {
         if !self.in_range {
             out.extend(self.event(TabletEvent::Move(self.position)));

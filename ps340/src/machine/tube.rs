@@ -19,20 +19,20 @@ pub(super) struct Tube {
     pub(super) message: Vec<u8>,
     pub(super) cursor: Update,
     pub(super) cursor_key: Option<CursorKey>,
-    /// The strokes of words and cursor.
+    /// The strokes of text and cursor.
     pub(super) overlay: Vec<Stroke>,
-    /// Changes with them.
+    /// A number that changes with them.
     pub(super) overlay_version: u64,
 }
 
-/// Strokes of terminal and message line.
+/// The text strokes of terminal and message line.
 #[derive(Debug, Default)]
 pub(super) struct TextStrokes {
     pub(super) strokes: Vec<Stroke>,
     pub(super) blinking: bool,
 }
 
-/// Of what the strokes of terminal and message line were made, but for the message.
+/// What the text strokes of terminal and message line were made of, but for the message.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TextKey {
     /// Version of the terminal, and whether its cursor is drawn; none if it is not seen.
@@ -42,7 +42,7 @@ pub(super) struct TextKey {
     pub(super) ink: Ink,
 }
 
-/// Of what the strokes of the cursor were made: version of the structure, and place.
+/// What the strokes of the cursor were made of: version of the structure, and position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct CursorKey {
     pub(super) structure: u64,

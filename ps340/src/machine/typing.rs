@@ -1,10 +1,11 @@
 //! The keyboard: its three modes, its keys, and the command line of its command mode.
 //!
 //! # Source
-//! Three modes, the prompt `@@` and that what is open shows in it, KEYBOARD, SPECKEYS and the names of the keys are remembered; KBHANDLER `<4>` with one
-//! character a message is confirmed. Ours: HOST, COMMAND and LOCAL choose the terminal's, the command and the
-//! interactive mode. The machine starts in interactive mode, in which KBHANDLER `<4>` speaks as clients expect; with
-//! `--plain-text terminal` it starts as a terminal, where a connected KBHANDLER `<4>` takes the characters from the line.
+//! Three modes, the prompt `@@` and that what is open shows in it, KEYBOARD, SPECKEYS and the names of the keys are
+//! remembered; KBHANDLER `<4>` with one character a message is confirmed. Ours: HOST, COMMAND and LOCAL choose the
+//! terminal's, the command and the interactive mode. The machine starts in interactive mode, in which KBHANDLER `<4>`
+//! sends as clients expect; with `--plain-text terminal` it starts as a terminal, where a connected KBHANDLER `<4>`
+//! takes the characters from the line.
 
 use super::{
     Key, KeyboardMode, Machine, PlainText, WORK_PER_STEP,
@@ -14,9 +15,9 @@ use super::{
 use crate::{line::LineId, terminal::SpecialKey};
 use protocol::Value;
 
-/// The prompt; what is open is said behind it.
+/// The prompt; what is open is shown after it.
 const PROMPT: &str = "@@";
-/// Most bytes to the host that are kept for whoever looks on; those after them are not.
+/// Most bytes to the host that are kept for whoever observes the terminal; those after them are not.
 const MAX_TYPED: usize = 4096;
 
 impl Machine {
@@ -137,7 +138,7 @@ impl Machine {
         }
     }
 
-    /// Shows the prompt of the command mode, with what was typed behind it.
+    /// Shows the prompt of the command mode, with what was typed after it.
     fn prompt(&mut self) {
         if self.keyboard.mode == KeyboardMode::Command {
             self.keyboard.prompted = true;
@@ -185,7 +186,7 @@ impl Machine {
         self.send_to_terminal_host(sent);
     }
 
-    /// Sends what the terminal says to the host that spoke to it last, or else to the one that came first.
+    /// Sends what the terminal sends to the host that sent to it last, or else to the one that came first.
     fn send_to_terminal_host(&mut self, bytes: Vec<u8>) {
         let host = self.lines.terminal_host(self.keyboard.host);
         if let (Some(line), false) = (host, bytes.is_empty()) {

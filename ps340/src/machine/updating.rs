@@ -1,4 +1,4 @@
-//! Updates of the picture, and the answers to what functions want of them.
+//! Updates of the picture, and the answers to what functions request of them.
 
 use super::{
     Machine,
@@ -22,15 +22,15 @@ use protocol::{
 };
 use std::sync::Arc;
 
-/// Vectors of a picture that is drawn in each frame in which it changes, though nobody may look: about a tenth of the frame.
-/// Ours.
+/// Vectors of a picture that is drawn in each frame in which it changes, though nobody may look: about a tenth of the
+/// frame. Ours.
 const ALWAYS_DRAWN: u64 = 200_000;
 
 impl Machine {
-    /// Makes the picture anew if something of it changed, or something is wanted of it.
+    /// Makes the picture anew if something of it changed, or a request for it waits.
     ///
-    /// A picture that stands still costs nothing. One of many vectors is drawn when somebody looks; till then its vectors
-    /// are counted, so that frames pass and orders are answered in time.
+    /// A picture that stands still costs nothing. One of many vectors is drawn when somebody looks; till then its
+    /// vectors are counted, so that frames pass and operator commands are answered in time.
     pub(super) fn update_picture(&mut self) {
         let is_looked_at = self.is_followed() || self.latest.pending.need_strokes();
         self.update_picture_of(if is_looked_at { MAX_STORED_VECTORS } else { ALWAYS_DRAWN });
@@ -94,7 +94,7 @@ impl Machine {
         self.latest.version = Some(version);
     }
 
-    /// Reports what an update left out, unless it was said of the update before.
+    /// Reports what an update left out, unless it was reported of the update before.
     fn report_fault(&mut self, update: &Update) {
         match update.fault.filter(|fault| self.latest.update.fault != Some(*fault)) {
             Some(UpdateFault::ContainsItself(id)) => {
@@ -106,7 +106,7 @@ impl Machine {
         }
     }
 
-    /// Whether a function is still there: its object may have become another since it asked.
+    /// Whether a request is still pending: the object of its function may have become another since it asked.
     fn is_pending(&self, function: ObjectId, name: &str) -> bool {
         self.memory.network.function(function).is_some_and(|row| row.name == name)
     }

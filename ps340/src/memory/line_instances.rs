@@ -21,7 +21,8 @@ pub(super) struct LineInstance {
 }
 
 impl LineInstances {
-    /// The instance of the line that speaks, in place of the initial one with the name; that one itself if it has none.
+    /// The instance of the line whose command is carried out, in place of the initial one with the name; that one
+    /// itself if the line has none.
     pub(super) fn in_place_of(&self, id: ObjectId) -> ObjectId {
         let instances = self.speaker.and_then(|line| self.lines.get(&line));
         let own = instances.and_then(|instances| instances.iter().find(|instance| instance.shared == id));

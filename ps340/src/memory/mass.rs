@@ -16,8 +16,8 @@ use crate::{
 use protocol::{Name, Value};
 use std::collections::HashSet;
 
-/// Bytes of names, nodes and open structures that the machine holds. The real ones had 1 to 4 megabytes; ours, so that a
-/// hostile host cannot take all memory of the computer. Queues and lines have limits of their own.
+/// Bytes of names, nodes and open structures that the machine holds. The real ones had 1 to 4 megabytes; ours, so that
+/// a hostile host cannot take all memory of the computer. Queues and lines have limits of their own.
 pub const MASS_MEMORY: usize = 2 << 30;
 
 /// What a name table, a function and its queues take, for the account of memory.
@@ -136,7 +136,7 @@ impl MassMemory {
         }
     }
 
-    /// Gives an object another definition. What belonged to the one before goes, but for what `define` says is kept.
+    /// Gives an object another definition. What belonged to the one before goes, but for what `define` keeps.
     pub(super) fn replace(
         &mut self,
         id: ObjectId,
@@ -228,7 +228,7 @@ impl MassMemory {
         Ok(self.network.function(group).is_none() && self.structures.include(member, group))
     }
 
-    /// Gives back the room of what has gone.
+    /// Releases the memory of what has gone.
     pub fn shrink(&mut self) {
         self.structures.shrink();
         self.objects.shrink();

@@ -1,4 +1,5 @@
-//! The mass memory: names, display structure and function network together, and the operations that touch more than one.
+//! The mass memory: names, display structure and function network together, and the operations that touch more than
+//! one.
 
 mod refusal;
 mod system;

@@ -1,8 +1,8 @@
 //! Instances that one host line has for itself.
 //!
-//! HOST_MESSAGE, HOST_MESSAGEB, HOSTOUT and CHANNEL3 to CHANNEL7 exist once, for all lines. A line that asks for messages
-//! of its own has each of them once more, without a name: in its commands the names denote these. So a program need not
-//! be written in another way, and what its networks send reaches nobody else. Ours.
+//! HOST_MESSAGE, HOST_MESSAGEB, HOSTOUT and CHANNEL3 to CHANNEL7 exist once, for all lines. A line that asks for
+//! messages of its own has each of them once more, without a name: in its commands the names denote these. So a program
+//! need not be written in another way, and what its networks send reaches nobody else. Ours.
 
 use super::{MassMemory, Refusal, line_instances::LineInstance};
 use crate::{

@@ -6,7 +6,7 @@ use protocol::Value;
 use std::collections::BTreeSet;
 
 impl Network {
-    /// Counts anew what each instance waits for, who is ready, how many queues are lent and bytes of strings kept.
+    /// Counts anew what each instance waits for, who is ready, how many queues are in use and bytes of strings stored.
     ///
     /// # Errors
     /// What does not agree with the books that are kept while the network runs.

@@ -130,7 +130,7 @@ mod tests {
         network
     }
 
-    /// What comes of messages for F, by the short way or, since somebody looks on, by the long one.
+    /// What comes of messages for F, by the short way or, since an observer is there, by the long one.
     fn outcome(mut network: Network, sends: &[(u32, Literal)], watched: bool) -> (Vec<Effect>, NetworkCounters) {
         let mut effects = Vec::new();
         network.count_activity(watched);

@@ -21,7 +21,7 @@ impl Network {
         self.function(id).map(|_| counted.get(id.index()).copied().unwrap_or_default())
     }
 
-    /// Counts that a device speaks, if functions are counted.
+    /// Counts that a device emits a message, if functions are counted.
     pub fn note_emission(&mut self, id: ObjectId) {
         if let Some(instruments) = &mut self.instruments {
             instruments.emits(id);

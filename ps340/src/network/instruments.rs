@@ -17,7 +17,7 @@ pub const TRACED_BYTES: usize = 256;
 /// What a function did since its counters were started, or since it was instanced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Activity {
-    /// Firings, those that ended in a fault included; of a clock or a device, how often it spoke.
+    /// Firings, those that ended in a fault included; of a clock or a device, how often it emitted.
     pub firings: u64,
     /// Firings that ended in a fault, and faults of a clock.
     pub faults: u64,

@@ -7,8 +7,8 @@
 //! An object is its own place: instances lie in a table by the numbers of the objects, so an arc leads to its end
 //! without a search, and connections to a name outlive what the name stands for, until the name is deleted.
 //!
-//! A person may look on, see [`Network::snapshot`]: counters, a trace of messages, breaks, single
-//! firings. Nothing of it costs anything while nobody does.
+//! A person may observe it, see [`Network::snapshot`]: counters, a trace of messages, breaks, single
+//! firings. Nothing of it costs anything while there is no observer.
 //!
 //! Used: the execution model of the manuals. Modelled: queues, constants, faults, re-instancing. Not modelled:
 //! the time that a function took on the machine's own processor.

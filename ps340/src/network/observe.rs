@@ -1,4 +1,4 @@
-//! Who looks on while messages are on their way. Nobody, as a rule: then looking on costs nothing.
+//! Observers of messages on their way. There is none, as a rule: then observing costs nothing.
 
 use super::Destination;
 use crate::port::ObjectId;
@@ -13,7 +13,7 @@ pub struct ArcSource {
     pub output: u16,
 }
 
-/// What became of a message.
+/// The delivery of a message: what became of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Delivery {
     /// It arrived at an input of a function, where so many wait now.
@@ -21,7 +21,7 @@ pub enum Delivery {
         /// Messages that wait, itself included; 1 for a constant.
         waiting: usize,
     },
-    /// The queue was full, or strings had no more room: it was lost.
+    /// The queue was full, or strings had no more memory: it was lost.
     Lost,
     /// The function has no such input, or does not accept such a message there.
     Refused,
@@ -29,9 +29,9 @@ pub enum Delivery {
     Left,
 }
 
-/// Who looks on. The methods of [`NoObserver`] are empty, so that the compiler leaves them out.
+/// An observer of the network. The methods of [`NoObserver`] are empty, so that the compiler leaves them out.
 pub(super) trait Observer {
-    /// Whether it wants to know at all.
+    /// Whether the observer is active at all.
     const IS_ACTIVE: bool;
 
     /// Whether the network stands still before this function fires.
@@ -40,7 +40,7 @@ pub(super) trait Observer {
     /// A function fires.
     fn fires(&mut self, object: ObjectId);
 
-    /// A clock or a device sends, which no message made fire.
+    /// A clock or a device emits, which no message made fire.
     fn emits(&mut self, object: ObjectId);
 
     /// A function has a fault.
@@ -53,7 +53,7 @@ pub(super) trait Observer {
     fn delivered(&mut self, from: Option<ArcSource>, to: Destination, message: Option<Value>, outcome: Delivery);
 }
 
-/// Nobody looks on.
+/// The absence of an observer.
 pub(super) struct NoObserver;
 
 impl Observer for NoObserver {

@@ -20,7 +20,7 @@ impl Run {
     /// No items.
     pub(super) const EMPTY: Run = Run { start: 0, length: 0 };
 
-    /// The places of the items.
+    /// The indices of the items.
     #[inline]
     pub(super) fn range(self) -> Range<usize> {
         let start = self.start as usize;
@@ -36,7 +36,7 @@ impl<T> Pool<T> {
 
     /// Stores a run.
     ///
-    /// - Returns none if there is no more room for so many items.
+    /// - Returns none if there is no more space for so many items.
     pub(super) fn store(&mut self, items: impl ExactSizeIterator<Item = T>) -> Option<Run> {
         let length = u16::try_from(items.len()).ok()?;
         if let Some(start) = self.free.get_mut(&length).and_then(Vec::pop) {
@@ -49,7 +49,7 @@ impl<T> Pool<T> {
         Some(Run { start, length })
     }
 
-    /// Gives a run back, with something in each place that holds no memory.
+    /// Gives a run back, with something in each slot that holds no memory.
     pub(super) fn release(&mut self, run: Run, nothing: impl Fn() -> T) {
         if run.length > 0 {
             self.items[run.range()].fill_with(nothing);
@@ -63,7 +63,7 @@ impl<T> Pool<T> {
         &self.items[run.range()]
     }
 
-    /// The items of all runs, at their places.
+    /// The items of all runs, at their indices.
     #[inline]
     pub(super) fn items(&mut self) -> &mut [T] {
         &mut self.items

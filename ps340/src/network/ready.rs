@@ -2,9 +2,9 @@
 
 use crate::port::ObjectId;
 
-/// A queue of objects in places that are used again and again, going round.
+/// A queue of objects in slots that are used again and again: a ring.
 ///
-/// It does what the queue of the standard library does, in half the steps: the number of places is a power of two.
+/// It does what the queue of the standard library does, in half the steps: the number of slots is a power of two.
 #[derive(Debug, Default)]
 pub(super) struct Ready {
     slots: Vec<ObjectId>,
@@ -74,7 +74,7 @@ impl Ready {
         (0..self.length).map(|index| self.slots[(self.first + index) & (self.slots.len() - 1)])
     }
 
-    /// Doubles the places of a list that is full.
+    /// Doubles the slots of a list that is full.
     #[cold]
     fn grow(&mut self) {
         self.slots.rotate_left(self.first);

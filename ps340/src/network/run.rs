@@ -26,7 +26,7 @@ pub struct RunReport {
     pub stopped: Option<ObjectId>,
 }
 
-/// Calls a method with whoever looks on as its last argument.
+/// Calls a method with the observer as its last argument.
 macro_rules! observed {
     ($network:ident.$method:ident($($argument:expr),*)) => {
         match $network.instruments.take() {
@@ -298,7 +298,7 @@ impl Network {
         units * count as u64
     }
 
-    /// Delivers a message to where an arc ends. It is moved out of its place.
+    /// Delivers a message to where an arc ends. It is moved out of its slot.
     #[inline(always)]
     fn deliver<O: Observer>(
         &mut self,

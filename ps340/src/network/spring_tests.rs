@@ -2,8 +2,8 @@
 //!
 //! x'' = -k x - c x', as two accumulators of the changes of a step of h seconds, one step a frame:
 //!
-//! - *semi-implicit* (symplectic) Euler: V accumulates -h (k x + c v), and what leaves V goes through a factor h into X,
-//!   so that X moves with the *new* velocity. The spring is stable for k h^2 + 2 c h < 4.
+//! - *semi-implicit* (symplectic) Euler: V accumulates -h (k x + c v), and what leaves V goes through a factor h into
+//!   X, so that X moves with the *new* velocity. The spring is stable for k h^2 + 2 c h < 4.
 //! - *explicit* Euler: a SYNC holds the old velocity for X as well. The spring is stable for h k < c and
 //!   4 - 2 c h + k h^2 > 0.
 //!

@@ -1,4 +1,4 @@
-//! People who look on: counters, traces, breaks, single firings, snapshots.
+//! Observing a network: counters, traces, breaks, single firings, snapshots.
 
 use super::*;
 use crate::network::tests::Bench;

@@ -1,4 +1,4 @@
-//! The orders of the operator as data, and what a row of their table is.
+//! The operator commands as data, and what a row of their table is.
 
 use super::{Language, OperatorCommandError, Subject, word_reader::WordReader};
 use crate::{
@@ -7,7 +7,7 @@ use crate::{
     machine::{Key, KeyboardMode},
 };
 
-/// One row of the table of orders, from which `help` is made. Rows are the same if their words are.
+/// One row of the table of operator commands, from which `help` is made. Rows are the same if their words are.
 #[derive(Clone, Copy, Debug)]
 pub struct OperatorCommandRow {
     /// The first word.
@@ -34,18 +34,18 @@ pub enum Screen {
     Raster,
 }
 
-/// Something that a person sets at the display, or wants of it.
+/// A display command: something that a person sets at the display, or wants of it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DisplayCommand {
-    /// Turns a knob, or says how all stand.
+    /// Turns a knob, or reports how all stand.
     Knob(Option<(&'static Knob, f32)>),
     /// Takes another phosphor, or lists them.
     Phosphor(Option<&'static Phosphor>),
-    /// Whether a long picture stands still instead of flickering; or says so.
+    /// Sets whether a long picture stands still instead of flickering, or reports it.
     Steady(Option<bool>),
-    /// Looks at another screen, or says which is looked at.
+    /// Looks at another screen, or reports which is looked at.
     Screen(Option<u8>),
-    /// Says how long the beam needs, and how often it draws the picture.
+    /// Reports how long the beam needs, and how often it draws the picture.
     Refresh,
     /// The colour of a pixel of the raster screen.
     Pixel {
@@ -90,7 +90,7 @@ pub enum Inspection {
     Graph {
         /// What becomes a graph: the network or the structure.
         subject: Subject,
-        /// In which form it is told.
+        /// The form of the text.
         language: Language,
         /// Where to; into the reply if none.
         file: Option<String>,
@@ -113,7 +113,7 @@ pub enum OperatorCommand {
     Press(Key),
     /// Lists the names of the keys.
     Keys,
-    /// Gives the keyboard another mode, or says which it has.
+    /// Gives the keyboard another mode, or reports which it has.
     Mode(Option<KeyboardMode>),
     /// Presses a lighted button, 1..=32.
     Button(u8),
@@ -133,7 +133,7 @@ pub enum OperatorCommand {
     Idle(u64),
     /// Waits for a message to the host, for so many frames at most.
     Message {
-        /// Whether messages that came before the order do not count.
+        /// Whether messages that came before the operator command do not count.
         fresh: bool,
         /// For how many frames at most.
         frames: u64,
@@ -160,7 +160,7 @@ pub enum OperatorCommand {
     Inspect(Inspection),
     /// The latest numbered messages of the machine.
     Log,
-    /// Lists the orders, or says all about one.
+    /// Lists the operator commands, or describes one in full.
     Help(Option<&'static OperatorCommandRow>),
     /// Runs a program that ships with the machine, or lists them.
     Example(Option<&'static ExampleProgram>),

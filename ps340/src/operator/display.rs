@@ -1,4 +1,4 @@
-//! Orders for the display: knobs, phosphor, steadiness, which screen, and pictures in files.
+//! Display commands: knobs, phosphor, steadiness, which screen, and pictures in files.
 
 use super::{
     DisplayCommand, OperatorCommand, OperatorCommandError, OperatorCommandRow, Screen, fault::REFUSED,
@@ -14,7 +14,7 @@ use protocol::raster::{RASTER_HEIGHT, RASTER_WIDTH};
 use std::io::Write;
 use std::path::Path;
 
-/// The rows of these orders.
+/// The rows of these commands.
 pub(super) const DISPLAY_ROWS: &[OperatorCommandRow] = &[
     OperatorCommandRow {
         word: "picture",
@@ -138,7 +138,7 @@ fn size(word: &str) -> Option<[u32; 2]> {
     Some([pixels(width)?, pixels(height)?])
 }
 
-/// Carries out one of these orders.
+/// Carries out one of these commands.
 ///
 /// # Errors
 /// Why a file was not written.

@@ -1,6 +1,6 @@
-//! Why an order is not read, or not carried out.
+//! Why an operator command is not read, or not carried out.
 
-/// Why a line is no order.
+/// Why a line is no operator command.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum OperatorCommandError {
     /// The first word is unknown.
@@ -8,7 +8,7 @@ pub enum OperatorCommandError {
     Unknown {
         /// The word.
         word: String,
-        /// A sentence about the order that is probably meant; empty if there is none.
+        /// A sentence about the operator command that is probably meant; empty if there is none.
         hint: String,
     },
     /// Something is missing.
@@ -30,5 +30,5 @@ pub enum OperatorCommandError {
     TooMuch(String),
 }
 
-/// What is said of an order of a file that is played which reaches out.
+/// The error for an operator command of a played file that reaches out.
 pub(super) const REFUSED: &str = "a file that is played may not write files or end the machine without --orders";

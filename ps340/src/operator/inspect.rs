@@ -1,4 +1,4 @@
-//! Orders that look into the machine: traces, breaks, single firings, counters of functions, graphs.
+//! Operator commands that look into the machine: traces, breaks, single firings, counters of functions, graphs.
 
 use super::{
     Inspection, Language, OperatorCommand, OperatorCommandError, OperatorCommandRow, Subject,
@@ -17,12 +17,12 @@ use protocol::{Kind, Value};
 use std::collections::BTreeSet;
 use std::io::Write;
 
-/// Functions that `top` lists if the order does not say.
+/// Functions that `top` lists by default.
 const TOP: usize = 10;
 /// Characters of a message that a trace shows.
 const SHOWN: usize = 60;
 
-/// The rows of these orders.
+/// The rows of these commands.
 pub(super) const INSPECTION_ROWS: &[OperatorCommandRow] = &[
     OperatorCommandRow {
         word: "trace",
@@ -105,7 +105,7 @@ fn read_graph(words: &mut WordReader<'_>) -> Result<OperatorCommand, OperatorCom
     Ok(OperatorCommand::Inspect(Inspection::Graph { subject, language, file }))
 }
 
-/// Carries out one of these orders.
+/// Carries out one of these commands.
 ///
 /// # Errors
 /// A sentence for the person.

@@ -1,4 +1,4 @@
-//! What a person at the machine does, as a text protocol: one order a line, one reply a line.
+//! What a person at the machine does, as a text protocol: one operator command a line, one reply a line.
 //!
 //! A reply begins with `ok` or `error`. Line ends inside a reply are written `\n`.
 

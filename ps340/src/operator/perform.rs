@@ -1,4 +1,4 @@
-//! Carrying out an order on a machine.
+//! Carrying out an operator command on a machine.
 
 use super::{OperatorCommand, OperatorCommandRow, display, fault::REFUSED, inspect::inspect, rows};
 use crate::{
@@ -8,7 +8,7 @@ use crate::{
 };
 use files::Sandbox;
 
-/// What came of an order.
+/// The outcome of an operator command.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CommandOutcome {
     /// Done, with a text, or failed, with the reason.
@@ -19,7 +19,7 @@ pub enum CommandOutcome {
     Quit,
 }
 
-/// Something that an order waits for.
+/// Something that an operator command waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wait {
     /// That a frame is reached.
@@ -46,9 +46,10 @@ impl Wait {
     }
 }
 
-/// Carries out an order.
+/// Carries out an operator command.
 ///
-/// - `files`: the folder below which it writes. Without one, orders that reach out ([`OperatorCommand::reaches_out`]) are refused.
+/// - `files`: the folder below which it writes. Without one, operator commands that reach out
+///   ([`OperatorCommand::reaches_out`]) are refused.
 pub fn perform(command: &OperatorCommand, machine: &mut Machine, files: Option<&Sandbox>) -> CommandOutcome {
     if command.reaches_out() && files.is_none() {
         return CommandOutcome::Done(Err(REFUSED.into()));

@@ -1,10 +1,10 @@
-//! How the orders of a person at the machine are read.
+//! How operator commands are read.
 
 use super::{OperatorCommand, OperatorCommandError, word_reader::WordReader};
 use crate::machine::{Key, KeyboardMode};
 use clap::ValueEnum;
 
-/// Frames that `idle` and `message` wait for if the order does not say: ten seconds.
+/// Frames that `idle` and `message` wait for by default: ten seconds.
 pub(super) const DEFAULT_WAIT_FRAMES: u64 = 600;
 
 pub(super) fn message(words: &mut WordReader<'_>) -> Result<OperatorCommand, OperatorCommandError> {

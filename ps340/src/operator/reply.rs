@@ -1,4 +1,4 @@
-//! What an order is answered.
+//! The reply to an operator command.
 
 /// The reply line for a result: `ok`, `ok TEXT` or `error TEXT`, without the line end.
 pub fn reply(result: &Result<String, String>) -> String {

@@ -1,4 +1,4 @@
-//! The table of all orders, and how a line is read by it.
+//! The table of all operator commands, and how a line is read by it.
 
 use super::{
     Inspection, OperatorCommand, OperatorCommandError, OperatorCommandRow,
@@ -9,15 +9,15 @@ use super::{
 };
 use crate::example::example;
 
-/// Strokes that `strokes` lists if the order does not say.
+/// Strokes that `strokes` lists by default.
 const STROKES: usize = 10_000;
 
-/// Every order: what a person does at the machine, and what looks into it.
+/// Every operator command: what a person does at the machine, and what looks into it.
 pub fn rows() -> impl Iterator<Item = &'static OperatorCommandRow> {
     COMMANDS.iter().chain(DISPLAY_ROWS).chain(INSPECTION_ROWS)
 }
 
-/// The orders of a person at the machine.
+/// The operator commands of a person at the machine.
 const COMMANDS: &[OperatorCommandRow] = &[
     OperatorCommandRow {
         word: "dial",
@@ -140,7 +140,7 @@ const COMMANDS: &[OperatorCommandRow] = &[
     OperatorCommandRow { word: "quit", arguments: "", summary: "end the machine", read: |_| Ok(OperatorCommand::Quit) },
 ];
 
-/// The order that a word is nearly.
+/// The operator command that a word is nearly.
 fn meant(word: &str) -> String {
     let near = protocol::command::spelling::nearest(word, rows().map(|row| row.word));
     near.map_or(String::new(), |near| format!("did you mean '{near}'? "))
@@ -157,7 +157,7 @@ pub fn parse(line: &str) -> Result<OperatorCommand, OperatorCommandError> {
     if words.rest.is_empty() { Ok(order) } else { Err(OperatorCommandError::TooMuch(words.rest.into())) }
 }
 
-/// The row of an order.
+/// The row of an operator command.
 fn row(word: &str) -> Result<&'static OperatorCommandRow, OperatorCommandError> {
     rows()
         .find(|row| row.word.eq_ignore_ascii_case(word))

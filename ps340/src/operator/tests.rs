@@ -1,4 +1,4 @@
-//! Tests of the operator's orders.
+//! Tests of the operator commands.
 
 use super::*;
 use crate::{
@@ -110,7 +110,7 @@ fn orders_that_reach_out_need_a_folder_for_it() {
     }
 }
 
-/// A machine that was told a text, with the replies to orders.
+/// A machine that received a text, with the replies to operator commands.
 fn replies(text: &str, orders: &[&str]) -> Vec<String> {
     let mut machine = Machine::new(Settings::default());
     let line = LineId(1);

@@ -1,4 +1,4 @@
-//! The words of an order, taken one by one.
+//! The words of an operator command, taken one by one.
 
 use super::OperatorCommandError;
 

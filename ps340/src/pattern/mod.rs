@@ -14,8 +14,8 @@ pub const MAX_DASHES: usize = 1 << 20;
 
 /// A dash or a gap shorter than this part of the pattern's length is a rounding.
 const TOLERANCE: f64 = 1e-9;
-/// So is one that the coordinates of the line cannot tell, up to this part of the pattern's length: a line to 0.8, which is
-/// 0.80000001 in 32 bits, is two repetitions of 0.4 long.
+/// So is one that the coordinates of the line cannot tell, up to this part of the pattern's length: a line to 0.8,
+/// which is 0.80000001 in 32 bits, is two repetitions of 0.4 long.
 const UNTOLD: f64 = 1e-3;
 
 /// Why a pattern cannot be applied.

@@ -1,4 +1,4 @@
-//! Command files played on a machine in virtual time: text for the host line, orders of an operator, expectations.
+//! Command files played on a machine in virtual time: text for the host line, operator commands, expectations.
 //!
 //! A line that begins with `@` is a directive; every other line goes to the machine as it is, as if a host had sent it.
 //!

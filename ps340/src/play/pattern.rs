@@ -1,6 +1,6 @@
 //! Patterns in which `*` stands for any text.
 
-/// Whether a text is what a pattern says: `*` is any bytes, also none; every other byte is itself.
+/// Whether a text matches a pattern: `*` is any bytes, also none; every other byte is itself.
 ///
 /// Takes time proportional to the product of the lengths at most.
 pub(super) fn matches(pattern: &[u8], text: &[u8]) -> bool {

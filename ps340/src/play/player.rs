@@ -14,10 +14,10 @@ const LINE: LineId = LineId(1);
 /// Messages of the machine that wait to be expected; older ones of the classes W and I are forgotten.
 const MAX_PENDING_MESSAGES: usize = 10_000;
 
-/// How a run waits and judges.
+/// How a run waits, and what it forgives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlayOptions {
-    /// Frames that a step waits for a message, if it does not say.
+    /// Frames that a step waits for a message by default.
     pub frames: u64,
     /// Whether a failed step lets the run go on, and errors of the machine that no step expected are forgiven.
     pub keep_going: bool,
@@ -30,7 +30,7 @@ impl Default for PlayOptions {
     }
 }
 
-/// What somebody who watches a run is told. Methods may do nothing.
+/// What is reported to somebody who watches a run. Methods may do nothing.
 pub trait Watcher {
     /// A line of the transcript: `>` text to the machine, `@` a directive, `=` the reply of the operator's line, `<` a
     /// message to the host, `!` a message of the machine.
@@ -64,7 +64,7 @@ pub enum PlayEnd {
     Played,
     /// A step failed, and the run does not go on.
     Failed,
-    /// By the order `quit`.
+    /// By the operator command `quit`.
     Quit,
     /// Whoever watches ended it.
     Stopped,
@@ -75,7 +75,7 @@ pub enum PlayEnd {
 pub struct Player {
     machine: Machine,
     options: PlayOptions,
-    /// The folder below which orders write; none if they may not.
+    /// The folder below which operator commands write; none if they may not.
     files: Option<Sandbox>,
     /// Messages of the machine that were taken from its log.
     checked_messages: u64,
@@ -95,7 +95,8 @@ pub struct Player {
 impl Player {
     /// A machine as after its start, with a host on its line.
     ///
-    /// - `files`: the folder below which orders write; without one, those that write files or end the machine fail.
+    /// - `files`: the folder below which operator commands write; without one, those that write files or end the
+    ///   machine fail.
     pub fn new(settings: Settings, options: PlayOptions, files: Option<Sandbox>) -> Player {
         let mut machine = Machine::new(settings);
         machine.step([Input::Attach(LINE)], 0);
@@ -166,13 +167,13 @@ impl Player {
         PlayEnd::Played
     }
 
-    /// Ends the line of the host: what it began and did not end is given up, and said.
+    /// Ends the line of the host: what it began and did not end is given up, and reported.
     pub fn hang_up(&mut self, watcher: &mut dyn Watcher) {
         self.step([Input::Detach(LINE)], 0, watcher);
     }
 
-    /// The failures of the run in the order of their lines: steps that failed and, unless they are forgiven, errors of
-    /// the machine that no step expected. Those are given once.
+    /// The failures of the run in the sequence of their lines: steps that failed and, unless they are forgiven, errors
+    /// of the machine that no step expected. Those are given once.
     pub fn take_failures(&mut self) -> Vec<Failure> {
         let mut failures = std::mem::take(&mut self.failures);
         let unexpected = std::mem::take(&mut self.waiting).into_iter().filter(|message| message.text.starts_with('E'));

@@ -26,7 +26,7 @@ pub struct ScriptLine {
 pub enum Step {
     /// Goes to the machine as it is, with its line end.
     Text(Vec<u8>),
-    /// An order of the operator, and its text.
+    /// An operator command, and its text.
     OperatorCommand(OperatorCommand, String),
     /// Waits for something.
     Expect {
@@ -44,7 +44,7 @@ pub enum Step {
 pub enum Expected {
     /// The next message to the host is this text.
     Text(Vec<u8>),
-    /// The next message to the host is as the pattern says, in which `*` is any text.
+    /// The next message to the host matches the pattern, in which `*` is any text.
     Pattern(Vec<u8>),
     /// The next message to the host is a number.
     Number {
@@ -53,7 +53,7 @@ pub enum Expected {
         /// How far from it the message may be.
         tolerance: f64,
     },
-    /// The next message of the machine of this class begins as the pattern says, such as `E 5 *** Bad`.
+    /// The next message of the machine of this class begins with the pattern, such as `E 5 *** Bad`.
     Error(Vec<u8>),
     /// The terminal sends these characters to the host, as its keyboard was typed on.
     Typed(Vec<u8>),
@@ -76,7 +76,7 @@ pub struct ScriptError {
 /// What can be wrong with a directive.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ScriptProblem {
-    /// It is no order.
+    /// It is no operator command.
     #[error(transparent)]
     OperatorCommand(#[from] OperatorCommandError),
     /// What it waits for cannot be read.
@@ -85,7 +85,7 @@ pub enum ScriptProblem {
          [FRAMES]"
     )]
     Expected(String),
-    /// No number of frames behind `within`.
+    /// No number of frames after `within`.
     #[error("'{0}' is no number of frames")]
     Frames(String),
     /// A directive that is not text.

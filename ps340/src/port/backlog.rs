@@ -1,4 +1,4 @@
-//! The messages behind the first at each input: queues that are lent to the ports that need one.
+//! The messages after the first at each input: a pool of queues for the ports that need one.
 
 use super::moves::{self, PLACEHOLDER};
 use protocol::Value;
@@ -6,12 +6,12 @@ use protocol::Value;
 /// Most messages that wait at one input; later ones are lost, counted and reported. Ours.
 pub const MAX_QUEUE: usize = 10_000;
 
-/// Places above which the memory of a queue that comes back is freed.
+/// Slots above which the memory of a queue that comes back is freed.
 const RETAINED_SLOTS: usize = 64;
 
 /// The queues of all ports of a network.
 ///
-/// The first message lies in its port; only the others need a queue. The queue that came back last is lent next,
+/// The first message lies in its port; only the others need a queue. The queue that came back last is handed out next,
 /// so that a wave of messages that runs through a large network works in the memory of a few queues.
 #[derive(Debug, Default)]
 pub struct Backlog {
@@ -19,11 +19,11 @@ pub struct Backlog {
     free: Vec<u32>,
 }
 
-/// What a port holds of the queue that it was lent.
+/// The handle of the queue that a port has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct QueueHandle(u32);
 
-/// Messages in places that are used again and again, going round.
+/// Messages in slots that are used again and again: a ring.
 #[derive(Debug, Default)]
 struct Ring {
     /// As many as a power of two, or none.
@@ -43,12 +43,12 @@ impl Backlog {
         Backlog { queues: Vec::new(), free: Vec::new() }
     }
 
-    /// How many queues are lent.
+    /// How many queues are in use.
     pub const fn capacity_in_use(&self) -> usize {
         self.queues.len() - self.free.len()
     }
 
-    /// Moves a message to the end, and lends a queue if there is none yet.
+    /// Moves a message to the end, and hands out a queue if the port has none yet.
     ///
     /// - Returns false if the queue is full, or there is no number for one more queue; the message stays.
     #[inline(always)]
@@ -65,7 +65,7 @@ impl Backlog {
         true
     }
 
-    /// Moves the message that came first to a place. A queue that is empty comes back.
+    /// Moves the message that came first to a slot. A queue that is empty comes back.
     ///
     /// - Returns false if there is no message.
     #[inline(always)]
@@ -82,7 +82,7 @@ impl Backlog {
         }
     }
 
-    /// Moves the message that came last to a place, if there is one; the others go with the queue.
+    /// Moves the message that came last to a slot, if there is one; the others go with the queue.
     pub(super) fn pop_last(&mut self, lent: &mut QueueHandle, to: &mut Value) {
         if let Some(last) = self.queues.get_mut(lent.0 as usize).and_then(Ring::last) {
             moves::shift(last, to);
@@ -133,7 +133,7 @@ impl Ring {
         self.length += 1;
     }
 
-    /// Moves the first message, which must be there, to a place.
+    /// Moves the first message, which must be there, to a slot.
     #[inline(always)]
     fn pop(&mut self, to: &mut Value) {
         moves::shift(&mut self.slots[self.first], to);
@@ -150,7 +150,7 @@ impl Ring {
         (0..self.length).map(|index| &self.slots[(self.first + index) & (self.slots.len() - 1)])
     }
 
-    /// Doubles the places of a ring that is full.
+    /// Doubles the slots of a ring that is full.
     #[cold]
     fn grow(&mut self) {
         self.slots.rotate_left(self.first);

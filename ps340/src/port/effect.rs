@@ -25,7 +25,7 @@ pub enum Effect {
     },
     /// A message to the host.
     Host {
-        /// The instance that sends it: it says to which lines.
+        /// The instance that sends it: it determines to which lines.
         object: ObjectId,
         /// Its bytes, without an end of line.
         bytes: Box<[u8]>,
@@ -70,7 +70,7 @@ pub enum Effect {
     },
     /// Characters to the host line, without any frame.
     HostCharacters {
-        /// The instance that sends them: it says to which lines.
+        /// The instance that sends them: it determines to which lines.
         object: ObjectId,
         /// The characters.
         bytes: Box<[u8]>,
@@ -116,7 +116,7 @@ pub enum Effect {
         function: ObjectId,
         /// The position that came with the request, -1..=1.
         at: DVec2,
-        /// Whether the place on the vector is wanted too.
+        /// Whether the point on the vector is requested too.
         coordinates: bool,
         /// Refresh frames to wait for a hit, at least 1.
         frames: u32,
@@ -168,8 +168,8 @@ pub enum Effect {
         /// Whether the bytes go to the end of the file; otherwise they replace what is there.
         append: bool,
     },
-    /// Bytes for an interpreter of the function's own, which remembers what is unfinished. When they are read, the number
-    /// of commands that they completed leaves output 1 of the function.
+    /// Bytes for an interpreter of the function's own, which remembers what is unfinished. When they are read, the
+    /// number of commands that they completed leaves output 1 of the function.
     Interpret {
         /// The function, to which the interpreter belongs.
         function: ObjectId,
@@ -234,8 +234,8 @@ pub enum StreamKind {
 /// Longest name of a file of the disk, in bytes. Ours.
 pub const MAX_FILE_NAME: usize = 64;
 
-/// The name of a file of the disk: 1 to [`MAX_FILE_NAME`] letters, digits, `_`, `$`, `-` and `.`, the first no `.`; always
-/// upper case. So it is a plain name in a folder of any computer too.
+/// The name of a file of the disk: 1 to [`MAX_FILE_NAME`] letters, digits, `_`, `$`, `-` and `.`, the first no `.`;
+/// always upper case. So it is a plain name in a folder of any computer too.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct FileName(Box<str>);
 

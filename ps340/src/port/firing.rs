@@ -191,7 +191,7 @@ impl<'a> Firing<'a> {
         self.emit_from(output, &mut value)
     }
 
-    /// Sends a result from an output. It is moved out of its place.
+    /// Sends a result from an output. It is moved out of its slot.
     ///
     /// # Errors
     /// [`Problem::Overflow`] if a component is not finite.
@@ -250,7 +250,7 @@ impl<'a> Firing<'a> {
     }
 }
 
-/// Puts a result into the outbox, unless a component is not finite. It is moved out of its place.
+/// Puts a result into the outbox, unless a component is not finite. It is moved out of its slot.
 #[inline(always)]
 fn send(outbox: &mut Outbox, output: u16, value: &mut Value) -> Result<(), Problem> {
     if let Value::Real(number) = value {

@@ -1,4 +1,4 @@
-//! Moves of messages between the places where they lie.
+//! Moves of messages between the slots where they lie.
 //!
 //! A [`Value`] is large, and most are reals. A real that goes where a real lay before is one store of 8 bytes. To move
 //! a whole value would make the processor wait, since it would load as one what was stored in pieces: the kind and
@@ -8,10 +8,10 @@
 use glam::DMat4;
 use protocol::Value;
 
-/// What lies where a message was taken out.
+/// The placeholder that lies where a message was taken out.
 pub(super) const PLACEHOLDER: Value = Value::Boolean(false);
 
-/// Moves a message from one place to another. What stays behind is of no use.
+/// Moves a message from one slot to another. What stays behind is of no use.
 #[inline(always)]
 pub(super) fn shift(from: &mut Value, to: &mut Value) {
     match (from, to) {
@@ -23,7 +23,7 @@ pub(super) fn shift(from: &mut Value, to: &mut Value) {
     }
 }
 
-/// Puts a real into a place.
+/// Puts a real into a slot.
 #[inline(always)]
 pub(super) fn put_real(number: f64, to: &mut Value) {
     match to {
@@ -32,7 +32,7 @@ pub(super) fn put_real(number: f64, to: &mut Value) {
     }
 }
 
-/// Moves a matrix to a place where none lay before. New memory stays behind, for the next one.
+/// Moves a matrix to a slot where none lay before. New memory stays behind, for the next one.
 #[cold]
 fn shift_matrix(from: &mut Box<DMat4>, to: &mut Value) {
     *to = Value::Matrix4(std::mem::take(from));

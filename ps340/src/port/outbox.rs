@@ -5,7 +5,7 @@ use protocol::Value;
 
 /// The results of one firing, as pairs of output and message, in their order.
 ///
-/// Most firings have one result: it has a place of its own, so that it passes without touching the heap.
+/// Most firings have one result: it has a slot of its own, so that it passes without touching the heap.
 #[derive(Debug)]
 pub struct Outbox {
     first: (u16, Value),
@@ -48,7 +48,7 @@ impl Outbox {
         self.more.push((output, Value::Real(number)));
     }
 
-    /// The place of the first result, if it is still free.
+    /// The slot of the first result, if it is still free.
     #[inline(always)]
     fn next(&mut self, output: u16) -> Option<&mut Value> {
         if self.filled {

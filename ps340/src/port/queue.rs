@@ -9,7 +9,7 @@ use protocol::{Kind, Value};
 
 /// The messages that wait at one input: a queue, or one constant.
 ///
-/// The first message lies in the port itself, those behind it in a [`Backlog`], so that a network that keeps up
+/// The first message lies in the port itself, those after it in a [`Backlog`], so that a network that keeps up
 /// never touches the heap.
 #[derive(Debug)]
 pub struct Port {
@@ -33,7 +33,7 @@ const REQUIRED: u32 = 1 << 19;
 pub enum Arrival {
     /// It is the first that the function was waiting for at this input.
     Awaited,
-    /// It waits behind others, or replaced a constant.
+    /// It is queued after others, or replaced a constant.
     Queued,
     /// The queue was full: it is lost.
     Lost,
@@ -104,7 +104,7 @@ impl Port {
         if self.is_active() { self.first().map_or(0, string_bytes) } else { 0 }
     }
 
-    /// Takes in a message, which the caller has checked with [`accepts`](Self::accepts). It is moved out of its place.
+    /// Takes in a message, which the caller has checked with [`accepts`](Self::accepts). It is moved out of its slot.
     #[inline(always)]
     pub fn arrive(&mut self, message: &mut Value, backlog: &mut Backlog) -> Arrival {
         let state = self.state;
@@ -147,13 +147,13 @@ impl Port {
         backlog.take_back(&mut self.tail);
     }
 
-    /// The first message or the constant; a husk if there is none.
+    /// The first message or the constant; a placeholder if there is none.
     #[inline]
     pub(super) const fn peek(&self) -> &Value {
         if self.is_empty() { &PLACEHOLDER } else { &self.value }
     }
 
-    /// Takes the content of the first message of a queue, which stays as a husk until it is consumed; copies a
+    /// Takes the content of the first message of a queue, which stays as a placeholder until it is consumed; copies a
     /// constant.
     #[inline]
     pub fn take(&mut self) -> Value {

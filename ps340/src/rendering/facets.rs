@@ -2,9 +2,9 @@
 //!
 //! # Model
 //! Polygons meet where their corners are equal in eye coordinates, to the bit. A COPLANAR polygon is a further contour
-//! of the face before it. The front of a face is the side from which it runs clockwise, whatever mirrors stand above it.
-//! Corners at the point of the corner before them do not count, as at the poles of a sphere of quadrangles; faces with
-//! fewer than three others, and those with coordinates that are not finite, are left out.
+//! of the face before it. The front of a face is the side from which it runs clockwise, whatever mirrors stand above
+//! it. Corners at the point of the corner before them do not count, as at the poles of a sphere of quadrangles; faces
+//! with fewer than three others, and those with coordinates that are not finite, are left out.
 //!
 //! # Cost
 //! Time and memory grow with the number of corners: about 300 bytes each, and as much again while a rendering is made.
@@ -73,7 +73,7 @@ pub struct Face {
     pub center: DVec3,
     /// Whether its front is seen.
     pub toward: bool,
-    /// What the front and the reverse look like: places in the list of surfaces.
+    /// The surfaces of the front and the reverse, as numbers in the list of surfaces.
     pub surfaces: [u32; 2],
     /// Which of the views shows it.
     pub view: u32,
@@ -103,7 +103,7 @@ pub struct Edge {
     pub corners: [[u32; 2]; 2],
     /// How many contours run along it from the first end to the second, and back.
     pub uses: [u32; 2],
-    /// Whether all polygons at it say that it is soft.
+    /// Whether it is soft in all polygons at it.
     pub soft: bool,
     /// Hue and saturation of the first polygon at it.
     pub color: [f64; 2],
@@ -141,7 +141,7 @@ pub struct Facets {
     pub triangles: Vec<Triangle>,
     /// Edges, in the order in which polygons bring them.
     pub edges: Vec<Edge>,
-    /// What surfaces look like.
+    /// The surfaces.
     pub surfaces: Vec<Surface>,
     /// Whether corners have colours of their own.
     pub is_colored: bool,
@@ -318,7 +318,7 @@ impl Builder {
         self.facets.views.len() as u32 - 1
     }
 
-    /// The point at a place; none if that is not finite.
+    /// The point at a position; none if that is not finite.
     fn point(&mut self, frame: &Frame, view: u32, place: [f64; 3]) -> Option<u32> {
         let place = DVec3::from(place);
         // Adding 0 makes -0 the same point as 0.
@@ -408,8 +408,8 @@ impl Builder {
 
 /// Towards the front of a triangle, any length.
 ///
-/// Where it is so thin that coordinates of single precision do not tell, its normals do, if it has some: what is in the
-/// plane of its neighbours is seen as they are.
+/// Where it is so thin that coordinates of single precision do not decide, its normals do, if it has some: what is in
+/// the plane of its neighbours is seen as they are.
 fn front(place: &[DVec3; 3], given: [Option<DVec3>; 3], mirror: f64) -> DVec3 {
     let area = newell(place) * mirror;
     let reach = place.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
@@ -443,7 +443,7 @@ impl Frame {
 /// Where the eye of a view is: the point, or the direction, that every line of sight goes through.
 fn eye_point(view: &DMat4) -> DVec4 {
     let [x, y, z, w] = [0, 1, 2, 3].map(|row| view.row(row));
-    // Perpendicular, in four dimensions, to the rows that give the place on the screen.
+    // Perpendicular, in four dimensions, to the rows that give the position on the screen.
     let minor = |skip: [usize; 3]| {
         DMat3::from_cols(
             DVec3::from(skip.map(|k| x[k])),

@@ -1,8 +1,8 @@
 //! Hidden-line removal: which parts of each edge no polygon hides.
 //!
 //! # Model
-//! Points are rounded to a grid of 2^24 by 2^24 places on the screen, as fine as the strokes of the beam. On it every
-//! sign and every quotient that places an edge against the sides of a triangle is exact or correctly rounded, so that
+//! Points are rounded to a grid of 2^24 by 2^24 points on the screen, as fine as the strokes of the beam. On it every
+//! sign and every quotient that locates an edge against the sides of a triangle is exact or correctly rounded, so that
 //! neighbouring triangles hide up to the very same point and nothing shows through between them. A triangle is closed:
 //! what lies exactly behind its side is hidden.
 //!
@@ -32,7 +32,7 @@ use std::collections::{HashMap, HashSet};
 
 /// Steps of the grid from the middle of the screen to its side.
 const STEPS: f64 = (1 << 23) as f64;
-/// Nearness is right to this part of the largest that is mixed.
+/// The depth key is right to this part of the largest that is mixed.
 const ROUNDING: f64 = 1e-13;
 /// Rests of an edge shorter than this many steps are not drawn: a thousandth of a pixel.
 const SHORTEST: f64 = 16.0;
@@ -43,7 +43,7 @@ const BATCH: usize = 512;
 /// What an edge costs besides its tests, in tests.
 const EDGE_UNITS: u64 = 10;
 
-/// Hidden-line removal that is under way.
+/// Hidden-line removal in progress.
 #[derive(Debug)]
 pub struct HiddenLine {
     grid: Grid,
@@ -72,7 +72,7 @@ struct ScreenEdge {
     color: [f64; 2],
 }
 
-/// A triangle on the screen, counter-clockwise.
+/// An occluder: a triangle on the screen, counter-clockwise.
 #[derive(Clone, Copy, Debug)]
 struct Occluder {
     spots: [GridPoint; 3],
@@ -82,11 +82,11 @@ struct Occluder {
     area: f64,
     /// The nearest of its corners.
     nearest: f64,
-    /// How much the nearness changes in a step of the grid, with roundings.
+    /// How much the depth key changes in a step of the grid, with roundings.
     slack: f64,
 }
 
-/// Triangles by the cells of the screen that they may touch.
+/// Occluders by the cells of the screen that they may touch.
 #[derive(Debug)]
 struct Grid {
     occluders: Vec<Occluder>,
@@ -229,7 +229,7 @@ impl Occluder {
         (area > 0.0).then_some(Occluder { spots, names, face, area, nearest, slack })
     }
 
-    /// The part of an edge that it hides, as parameters along the edge.
+    /// The part of an edge that the occluder hides, as parameters along the edge.
     fn hidden(&self, edge: &ScreenEdge) -> Option<[f64; 2]> {
         let [a, b] = &edge.ends;
         let [p, q, r] = &self.spots;

@@ -4,7 +4,7 @@
 //! neighbours stay neighbours.
 //!
 //! # Model
-//! *Nearness* grows towards the eye and changes evenly along straight lines on the screen: 1/w in perspective, and
+//! The *depth key* grows towards the eye and changes evenly along straight lines on the screen: 1/w in perspective, and
 //! without, minus the depth. It does not use front and back boundary: those of a client may be 1e-15 and 1e15.
 
 use super::{
@@ -26,11 +26,11 @@ const OPENING: u8 = 0b10_0001;
 pub struct ScreenPoint {
     /// x and y; the screen is -1..=1.
     pub position: DVec2,
-    /// How near.
+    /// The depth key.
     pub depth_key: f64,
 }
 
-/// A piece of a triangle, on the screen.
+/// A triangle piece, on the screen.
 #[derive(Clone, Copy, Debug)]
 pub struct TrianglePiece {
     /// Its corners.
@@ -39,7 +39,7 @@ pub struct TrianglePiece {
     pub triangle: u32,
 }
 
-/// What is left of an edge.
+/// What is left of a projected edge.
 #[derive(Clone, Copy, Debug)]
 pub struct ProjectedEdge {
     /// Its ends.
@@ -219,7 +219,7 @@ impl Cutter {
     }
 }
 
-/// A point on the screen; some place for one that is not shown.
+/// A point on the screen; some position for one that is not shown.
 fn screen_point(raw: &Raw, view: &BlockView) -> ScreenPoint {
     if raw.clip.w <= 0.0 {
         return ScreenPoint { position: DVec2::ZERO, depth_key: 0.0 };

@@ -41,7 +41,7 @@ pub struct Scan {
 #[derive(Clone, Copy, Debug)]
 struct Triangle {
     corners: [[i64; 2]; 3],
-    /// Nearness at the origin, and how it changes in a unit to the right and upward.
+    /// The depth key at the origin, and how it changes in a unit to the right and upward.
     nearness: [f64; 3],
     /// Least and most of its corners.
     range: [f64; 2],
@@ -50,7 +50,7 @@ struct Triangle {
     name: u32,
 }
 
-/// What a shader is asked for: a triangle by the number of its facet, and a place on the vector screen, -1..=1.
+/// What a shader is asked for: a triangle by the number of its facet, and a position on the vector screen, -1..=1.
 pub type Shader<'s> = &'s (dyn Fn(u32, [f64; 2]) -> [f32; 3] + Sync);
 
 impl Scan {
@@ -219,7 +219,8 @@ impl Samples {
 
     /// The light of a pixel and how much of it is covered.
     ///
-    /// - `seen`: room for the triangles that it shows, with the number of their samples and the sums of their places.
+    /// - `visible`: scratch for the triangles that it shows, with the number of their samples and the sums of their
+    ///   positions.
     fn pixel(
         &self,
         column: usize,

@@ -1,9 +1,9 @@
 //! Cuts at the sectioning plane: the cross-section, and what lies behind it.
 //!
 //! # Decided here
-//! A point exactly in the plane counts as before it: the plane acts as if it stood a hair farther back. So every cut of a
-//! solid is closed, whether the plane goes through corners or along faces: a face in the plane with the solid behind it
-//! is the cross-section, one with the solid before it leaves none.
+//! A point exactly in the plane counts as before it: the plane acts as if it stood a hair farther back. So every cut of
+//! a solid is closed, whether the plane goes through corners or along faces: a face in the plane with the solid behind
+//! it is the cross-section, one with the solid before it leaves none.
 
 use super::{Facets, Segment};
 use crate::traversal::Plane;

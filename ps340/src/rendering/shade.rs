@@ -6,8 +6,8 @@
 //! in space, made of length 1, and the light of each. Depth cueing takes the light by 1 - cue d, d from 0 at the front
 //! boundary to 1 at the back; then comes the exposure, and what is above 1 is 1.
 //!
-//! Colours that are given with the corners stand for that of the surface: wash and Phong take them evenly in space between
-//! the corners, flat their mean, Gouraud lights each corner in its own.
+//! Colours that are given with the corners stand for that of the surface: wash and Phong take them evenly in space
+//! between the corners, flat their mean, Gouraud lights each corner in its own.
 //!
 //! A side that shows its reverse is lit there. Places that no polygon covers have the colour of the background, and so
 //! has the uncovered part of a pixel at an edge.
@@ -23,7 +23,7 @@ use super::{
 use crate::{functions::devices::shading::ShadingEnvironment, port::Rendering};
 use glam::{DMat3, DVec3, DVec4};
 
-/// A shaded rendering that is under way.
+/// A shaded rendering in progress.
 #[derive(Debug)]
 pub struct Shading {
     scan: Scan,
@@ -130,7 +130,7 @@ impl Lit {
         self.light(face, face.normal, face.center, color)
     }
 
-    /// The light of a place on a face.
+    /// The light of a position on a face.
     ///
     /// - `normal`: towards the front.
     /// - `color`: of the surface there.
@@ -141,7 +141,7 @@ impl Lit {
         light(&surface, &self.facets.lights, normal, eye, self.ambient, self.highlights)
     }
 
-    /// Red, green and blue of a triangle at a place on the vector screen.
+    /// Red, green and blue of a triangle at a position on the vector screen.
     fn color(&self, triangle: u32, place: [f64; 2]) -> [f32; 3] {
         let facets = &self.facets;
         let triangle = &facets.triangles[triangle as usize];
@@ -178,7 +178,7 @@ fn corners(facets: &Facets) -> impl Iterator<Item = (usize, &Face)> {
     facets.faces.iter().flat_map(|face| face.corners.clone().map(move |corner| (corner, face)))
 }
 
-/// How much each corner of a triangle counts, in space, at a place on the vector screen; together 1.
+/// How much each corner of a triangle counts, in space, at a position on the vector screen; together 1.
 ///
 /// - `clip`: the corners in clip space; they may lie behind the eye.
 /// - `viewport`: left and right, bottom and top.
@@ -190,7 +190,7 @@ fn shares(clip: [DVec4; 3], viewport: [[f64; 2]; 2], place: [f64; 2]) -> [f64; 3
     let ray = DVec3::new(inside(viewport[0], place[0]), inside(viewport[1], place[1]), 1.0);
     let [a, b, c] = clip.map(|p| DVec3::new(p.x, p.y, p.w));
     let [u, v, w] = [b.cross(c).dot(ray), c.cross(a).dot(ray), a.cross(b).dot(ray)];
-    // The sign of the determinant makes the shares of a place inside positive.
+    // The sign of the determinant makes the shares of a position inside positive.
     let sign = DMat3::from_cols(a, b, c).determinant().signum();
     let positive = [u, v, w].map(|share| (share * sign).max(0.0));
     let sum: f64 = positive.iter().sum();

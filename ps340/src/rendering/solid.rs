@@ -2,10 +2,10 @@
 
 use super::{Facets, RenderingFault};
 
-/// Checks that every edge is run along once in each direction.
+/// Checks that every edge is traversed once in each direction.
 ///
 /// # Errors
-/// [`RenderingFault::NotSolid`] tells the edges that are not.
+/// [`RenderingFault::NotSolid`] names the edges that are not.
 pub fn check(facets: &Facets) -> Result<(), RenderingFault> {
     let mut wrong = facets.edges.iter().filter(|edge| edge.uses != [1, 1]);
     let Some(first) = wrong.next() else { return Ok(()) };

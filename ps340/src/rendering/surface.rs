@@ -15,7 +15,7 @@ use crate::hue;
 use glam::{DMat3, DVec3};
 use protocol::command::{Illumination, SurfaceColor};
 
-/// What one side of a surface looks like.
+/// The surface of one side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
     /// Red, green, blue, 0..=1.
@@ -43,7 +43,7 @@ impl Surface {
         Surface { color: rgb(side.color), diffuse: side.diffuse.clamp(0.0, 1.0), specular: side.specular.min(10) }
     }
 
-    /// What ATTRIBUTES says if it says nothing, in a hue and saturation.
+    /// The defaults of ATTRIBUTES, in a hue and saturation.
     pub fn plain([hue, saturation]: [f64; 2]) -> SurfaceColor {
         SurfaceColor { color: [hue, saturation, 1.0], ..SurfaceColor::default() }
     }
@@ -59,7 +59,8 @@ impl Default for DirectionalLight {
 impl DirectionalLight {
     /// A light whose direction goes through a matrix; none if nothing is left of the direction.
     ///
-    /// ILLUMINATION says where the light goes: a client of the time, whose eye looks along +z, lights what it sees with 0,0,1.
+    /// ILLUMINATION gives where the light goes: a client of the time, whose eye looks along +z, lights what it sees
+    /// with 0,0,1.
     pub fn new(light: &Illumination, matrix: &DMat3) -> Option<DirectionalLight> {
         let direction = -(*matrix * light.direction).try_normalize()?;
         Some(DirectionalLight { direction, color: rgb(light.color), ambient: light.ambient.clamp(0.0, 1.0) })

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{functions::devices::shading::ShadingEnvironment, port::Rendering};
 
-/// A rendering that is under way.
+/// A rendering in progress.
 #[derive(Debug)]
 pub struct Task(Stage);
 

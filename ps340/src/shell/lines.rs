@@ -19,7 +19,7 @@ const END_TIME: Duration = Duration::from_millis(500);
 /// Exit code of a process that a signal ended.
 pub const INTERRUPTED: i32 = 130;
 
-/// A window on the machine: it sees by a mirror, and gives orders as an operator does.
+/// A window on the machine: it sees by a mirror, and gives operator commands as an operator does.
 pub struct Window {
     /// What it shows.
     pub mirror: Arc<Mirror>,
@@ -37,9 +37,9 @@ struct Opened {
 
 /// Runs the machine until its end.
 ///
-/// A `window` sees and gives orders, if there is one. `ready` is told each address in use, as a line of text, when signals
-/// are taken and before the first event is. Without an operator the machine ends when all its lines are files or standard
-/// input, and these have ended.
+/// A `window` sees and gives operator commands, if there is one. `ready` receives each address in use, as a line of
+/// text, when signals are taken and before the first event is. Without an operator the machine ends when all its lines
+/// are files or standard input, and these have ended.
 ///
 /// # Errors
 /// If it cannot listen, or cannot write the capture: the address or the file, and the reason.

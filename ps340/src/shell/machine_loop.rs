@@ -27,9 +27,9 @@ const MAX_LAG: Micros = 250_000;
 pub(super) struct MachineLoop {
     machine: Machine,
     mirror: Option<Arc<Mirror>>,
-    /// The folder below which orders write.
+    /// The folder below which operator commands write.
     files: Sandbox,
-    /// Whether captures may give orders that reach out.
+    /// Whether captures may give operator commands that reach out.
     replays_operator: bool,
     /// Takes what the operator does, if it is wanted.
     capture: Option<Capture>,
@@ -44,12 +44,12 @@ pub(super) struct MachineLoop {
     leaving: Vec<(LineId, u64)>,
     /// Messages lost since the latest frame, by line.
     lost: HashMap<LineId, u64>,
-    /// Places from which hosts can still come, or an operator.
+    /// Endpoints at which hosts can still attach, or an operator.
     sources: usize,
 }
 
 impl MachineLoop {
-    /// A machine with its lines; `inbox` is told what happens on them.
+    /// A machine with its lines; `inbox` receives what happens on them.
     ///
     /// # Errors
     /// Those of the system.
@@ -103,7 +103,7 @@ impl MachineLoop {
             if self.sources == 0 && self.leaving.is_empty() {
                 return ExitReason::Quit;
             }
-            // One frame a turn, so that events are seen between frames that are late.
+            // One frame a round, so that events are seen between frames that are late.
             let next = time_of_frame(self.machine.frame() + 1);
             let until = if self.frame_is_due() { next } else { 0 };
             self.step(None, until);
@@ -182,7 +182,7 @@ impl MachineLoop {
         None
     }
 
-    /// Carries out an order of an operator.
+    /// Carries out an operator command.
     fn perform_command(
         &mut self,
         OperatorLine { text, reply: answer, is_replayed }: OperatorLine,
@@ -201,7 +201,7 @@ impl MachineLoop {
         if let (true, CommandOutcome::Done(Err(error))) = (is_replayed, &outcome) {
             tracing::warn!("'{text}' of a capture is not carried out: {error}");
         }
-        // What an order made the machine say leaves before its reply.
+        // What an operator command made the machine send leaves before its reply.
         self.step(None, 0);
         if let (Ok(OperatorCommand::Dial { .. }), CommandOutcome::Done(Ok(said))) = (&parsed, &mut outcome) {
             *said = match self.clock {

@@ -16,7 +16,7 @@ pub enum TimeSource {
     Virtual,
 }
 
-/// Who gives orders.
+/// Who gives operator commands.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Operator {
     /// Nobody.
@@ -34,13 +34,13 @@ pub struct Options {
     pub listen: Vec<LineAddress>,
     /// A file that takes what passes on the host lines.
     pub capture: Option<PathBuf>,
-    /// Who gives orders.
+    /// Who gives operator commands.
     pub operator: Operator,
     /// Where time comes from.
     pub clock: TimeSource,
-    /// Whether captures that are played may give orders that write files or end the machine.
+    /// Whether captures that are played may give operator commands that write files or end the machine.
     pub replays_operator: bool,
-    /// The folder below which orders write files.
+    /// The folder below which operator commands write files.
     pub files: PathBuf,
     /// Whether it may listen where other computers reach it.
     pub public: bool,
@@ -53,7 +53,7 @@ pub struct Options {
 /// Why the process ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExitReason {
-    /// By the order `quit`, with the operator on standard input, or with the last host that could come.
+    /// By the operator command `quit`, with the operator on standard input, or with the last host that could come.
     Quit,
     /// By a signal.
     Interrupted,

@@ -3,7 +3,8 @@
 use std::io;
 use tokio::signal::unix::{Signal, SignalKind, signal};
 
-/// The signals that end the process: Ctrl-C, a request to terminate, and, unless it is to outlive its terminal, a hang-up.
+/// The signals that end the process: Ctrl-C, a request to terminate, and, unless it is to outlive its terminal, a
+/// hang-up.
 #[derive(Debug)]
 pub(super) struct Signals {
     interrupt: Signal,
@@ -12,7 +13,7 @@ pub(super) struct Signals {
 }
 
 impl Signals {
-    /// From now on these signals are only told; needs a tokio runtime.
+    /// From now on these signals are only reported; needs a tokio runtime.
     ///
     /// # Errors
     /// Those of the system.

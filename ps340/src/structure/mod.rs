@@ -39,7 +39,7 @@ const MAX_ALIASES: usize = 64;
 #[derive(Debug, Default)]
 pub struct Structures {
     nodes: Vec<Option<Node>>,
-    /// The displayed roots by the order of DISPLAY, and the place of each in that order.
+    /// The displayed roots by the order of DISPLAY, and the position of each in that order.
     displayed: BTreeMap<u64, ObjectId>,
     positions: HashMap<ObjectId, u64>,
     next_position: u64,
@@ -342,7 +342,7 @@ impl Structures {
         self.stale.retain(|id| !is_gone(*id));
     }
 
-    /// Gives back the room of nodes that have gone.
+    /// Releases the memory of nodes that have gone.
     pub fn shrink(&mut self) {
         let end = self.nodes.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
         self.nodes.truncate(end);
@@ -418,7 +418,7 @@ impl Structures {
         self.frame
     }
 
-    /// Says which frame of the display it is: the phases of SET RATE count from the frame in which they were set.
+    /// Sets which frame of the display it is: the phases of SET RATE count from the frame in which they were set.
     pub fn set_frame(&mut self, frame: u64) {
         self.frame = frame;
     }

@@ -9,8 +9,8 @@ use protocol::{
 };
 use std::collections::BTreeMap;
 
-/// What a node takes in the account of the mass memory, in bytes, and what one reference to a descendant: fixed, so that
-/// what the machine says of its memory does not change with what a compiler makes of the types here. Ours.
+/// What a node takes in the account of the mass memory, in bytes, and what one reference to a descendant: fixed, so
+/// that what the machine says of its memory does not change with what a compiler makes of the types here. Ours.
 const NODE_BYTES: usize = 144;
 pub(super) const MEMBER_BYTES: usize = NODE_BYTES;
 const _: () = assert!(size_of::<Node>().abs_diff(NODE_BYTES) <= 16 && size_of::<Member>() == size_of::<Node>());

@@ -1,9 +1,9 @@
 //! Data nodes as words of memory, for the physical reads and writes of the parallel interface.
 //!
-//! The layout is ours; the machine had its own, in its block-normalized numbers. A vector list is nine words a vector: x, y,
-//! z and intensity as IEEE singles of two words each, the high word first, then 0 for a move to the vector (P) or 1 for a
-//! line (L). The marks of a list that is not itemized follow from its class and cannot be written. A RAWBLOCK is its bytes,
-//! the first of a pair the high one; an odd byte at its end is out of reach.
+//! The layout is ours; the machine had its own, in its block-normalized numbers. A vector list is nine words a vector:
+//! x, y, z and intensity as IEEE singles of two words each, the high word first, then 0 for a move to the vector (P) or
+//! 1 for a line (L). The marks of a list that is not itemized follow from its class and cannot be written. A RAWBLOCK
+//! is its bytes, the first of a pair the high one; an odd byte at its end is out of reach.
 
 use super::{Node, Structures};
 use crate::port::ObjectId;

@@ -9,7 +9,7 @@ use super::Modes;
 /// A key of the arrows or of the numeric keypad.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SpecialKey {
-    /// Its name in orders of the operator.
+    /// Its name in operator commands.
     pub name: &'static str,
     /// The one character that SPECKEYS sends for it.
     pub code: u8,

@@ -9,7 +9,7 @@ const TINY: f64 = 1e-300;
 
 /// From clip space to the screen, with depth cueing.
 ///
-/// A coordinate c of -1..=1 has its place at `middle + c half`, a depth d of 0..=1 the light `front - d fall`.
+/// A coordinate c of -1..=1 is on the screen at `middle + c half`, a depth d of 0..=1 the light `front - d fall`.
 #[derive(Clone, Copy, Debug)]
 pub struct ScreenMap {
     /// Middle and half the size of the viewport, x and y.
@@ -144,7 +144,7 @@ impl ScreenMap {
         }
     }
 
-    /// The stroke between two points of clip space that are inside; none if they have no place on the screen.
+    /// The stroke between two points of clip space that are inside; none if they have no position on the screen.
     #[inline(always)]
     fn stroke(&self, ends: [DVec4; 2], intensity: [f64; 2], color: [f32; 3]) -> Option<Stroke> {
         let [a, b] = [self.to_screen(ends[0], intensity[0]), self.to_screen(ends[1], intensity[1])];

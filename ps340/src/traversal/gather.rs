@@ -18,9 +18,9 @@ use protocol::command::Illumination;
 pub struct PolygonBlock<'a> {
     /// The polygons.
     pub polygons: &'a Polygons,
-    /// Where they are, and their colour if they do not say.
+    /// Where they are, and their colour if they give none.
     pub state: State,
-    /// The parts of their matrix.
+    /// The factors of their matrix.
     pub factors: MatrixFactors,
 }
 

@@ -1,4 +1,4 @@
-//! The straight pieces of a data node one by one, with what picking and colour blending need to know of each.
+//! The line segments of a data node one by one, with what picking and colour blending need to know of each.
 
 use super::font::{self, Font};
 use crate::{
@@ -9,10 +9,10 @@ use glam::{DVec2, DVec3, DVec4};
 use protocol::command::{CharacterOrientation, Fourth, VectorClass, VectorList};
 use std::ops::ControlFlow;
 
-/// Degrees of hue that one piece of a blended line covers at most.
+/// Degrees of hue that one segment of a blended line covers at most.
 const BLEND_STEP: f64 = 6.0;
 
-/// A straight piece, or a dot if its ends are the same.
+/// A line segment, or a dot if its ends are the same.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LineSegment {
     /// Number of the vector, character, label or polygon in its node, from 1.
@@ -29,10 +29,10 @@ pub(super) struct LineSegment {
     pub(super) dot: bool,
 }
 
-/// What takes the pieces; it may end the matter.
+/// A receiver of line segments; it may end the walk.
 pub(super) type Sink<'s> = &'s mut dyn FnMut(LineSegment) -> ControlFlow<()>;
 
-/// Gives all pieces of a data node to `sink`, in drawing order. Other nodes have none.
+/// Gives all line segments of a data node to `sink`, in drawing order. Other nodes have none.
 pub(super) fn line_segments(node: &Node, state: &State, structures: &Structures, sink: Sink) -> ControlFlow<()> {
     match node {
         Node::Vectors(vectors) => list(vectors.drawn(), state, sink),
@@ -46,7 +46,7 @@ pub(super) fn line_segments(node: &Node, state: &State, structures: &Structures,
     }
 }
 
-/// Vectors, characters and edges of a data node: how many pieces it has at least, without making them.
+/// Vectors, characters and edges of a data node: how many line segments it has at least, without making them.
 pub(super) fn parts(node: &Node) -> usize {
     match node {
         Node::Vectors(vectors) => vectors.drawn().points.len(),
@@ -82,9 +82,9 @@ fn list(list: &VectorList, state: &State, sink: Sink) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// Cuts a piece into so many that the hue of each is nearly constant.
+/// Cuts a line segment into so many that the hue of each is nearly constant.
 fn blend(segment: LineSegment, hues: [f64; 2], saturation: f64, sink: Sink) -> ControlFlow<()> {
-    // 0 to 720, so that no more than 120 pieces come of a line whatever the host sends.
+    // 0 to 720, so that no more than 120 segments come of a line whatever the host sends.
     let [from, to] = hues.map(|h| h.clamp(0.0, 720.0));
     let parts = ((to - from).abs() / BLEND_STEP).ceil().max(1.0) as u32;
     for part in 0..parts {
@@ -146,7 +146,7 @@ impl<'a> Text<'a> {
         Text { state, font }
     }
 
-    /// Strokes of character k lie at `position + (k step + stroke) M`, M the character matrix. All pieces have the
+    /// Strokes of character k lie at `position + (k step + stroke) M`, M the character matrix. All segments have the
     /// number `index`, or that of their character.
     fn write(&self, position: DVec3, step: DVec2, text: &[u8], index: Option<u32>, sink: Sink) -> ControlFlow<()> {
         let Some(font) = self.font else { return ControlFlow::Continue(()) };
@@ -167,7 +167,7 @@ impl<'a> Text<'a> {
         ControlFlow::Continue(())
     }
 
-    /// A point of screen-oriented text in clip space: `local` beside the place of `anchor`, unrotated.
+    /// A point of screen-oriented text in clip space: `local` beside the position of `anchor`, unrotated.
     fn on_screen(&self, anchor: DVec3, local: DVec2) -> DVec4 {
         let at = self.state.ctm * anchor.extend(1.0);
         let half = |[low, high]: [f64; 2]| (high - low) / 2.0;

@@ -16,7 +16,7 @@ pub struct PickRequest {
     pub center: DVec2,
     /// Half its width and height.
     pub half_size: DVec2,
-    /// Whether the place on the vector is wanted too.
+    /// Whether pick coordinates are requested too.
     pub coordinates: bool,
 }
 
@@ -31,7 +31,7 @@ pub struct PickHit {
     pub node: Option<ObjectId>,
     /// What kind of data.
     pub kind: PickedKind,
-    /// Where it was picked, if that was wanted: the point of the vector that is nearest to the centre of the box.
+    /// Where it was picked, if that was requested: the point of the vector that is nearest to the centre of the box.
     pub coordinates: Option<PickCoordinates>,
 }
 
@@ -81,7 +81,7 @@ impl PickBox {
         let ((mx, hx), (my, hy)) = (span(state.horizontal), span(state.vertical));
         let (low, high) = (center - half_size.abs(), center + half_size.abs());
         let planes = [
-            // w > 0, as far as a closed half space can say it.
+            // w > 0, as far as a closed half space can express it.
             DVec4::W,
             DVec4::new(1.0, 0.0, 0.0, 1.0),
             DVec4::new(-1.0, 0.0, 0.0, 1.0),
@@ -99,7 +99,7 @@ impl PickBox {
         PickBox { planes, count, half: DVec2::new(hx, hy), middle: DVec2::new(mx, my), center }
     }
 
-    /// The part of a piece inside the box, as parameters 0..=1 along it; none if nothing of it is inside.
+    /// The part of a segment inside the box, as parameters 0..=1 along it; none if nothing of it is inside.
     pub(super) fn inside(&self, [a, b]: [DVec4; 2]) -> Option<[f64; 2]> {
         let (mut t0, mut t1) = (0.0_f64, 1.0_f64);
         for plane in &self.planes[..self.count] {
@@ -117,7 +117,7 @@ impl PickBox {
         (t0 <= t1 && seen).then_some([t0, t1])
     }
 
-    /// The parameter along a piece, between two, whose place on the screen is nearest to the centre of the box.
+    /// The parameter along a segment, between two, whose position on the screen is nearest to the centre of the box.
     fn nearest(&self, [a, b]: [DVec4; 2], [t0, t1]: [f64; 2]) -> f64 {
         let at = |t: f64| a + (b - a) * t;
         let screen = |p: DVec4| self.middle + self.half * p.truncate().truncate() / p.w;
@@ -130,7 +130,7 @@ impl PickBox {
         if fraction.is_finite() { t0 + (t1 - t0) * fraction } else { t0 }
     }
 
-    /// The place on a piece that was hit, and how far along it that is.
+    /// The pick coordinates on a segment that was hit, and how far along it they are.
     pub(super) fn coordinates_on(&self, piece: &LineSegment, span: [f64; 2]) -> (DVec3, f64) {
         let t = self.nearest(piece.ends, span);
         (piece.source[0].lerp(piece.source[1], t), t)

@@ -8,12 +8,12 @@ use std::{
     ops::Range,
 };
 
-/// What one update is to find out besides the picture.
+/// Requests to one update besides the picture.
 #[derive(Clone, Debug, Default)]
 pub struct Requests {
-    /// XFORM nodes whose matrix or vectors are wanted.
+    /// XFORM nodes whose matrix or vectors are requested.
     pub transforms: BTreeSet<ObjectId>,
-    /// WRITEBACK nodes whose picture is wanted.
+    /// WRITEBACK nodes whose picture is requested.
     pub write_back: BTreeSet<ObjectId>,
     /// What is to be picked.
     pub pick: Option<PickRequest>,
@@ -34,7 +34,7 @@ pub enum UpdateFault {
     /// More than [`MAX_VECTORS`] vectors.
     #[error("an update draws at most {MAX_VECTORS} vectors")]
     TooManyVectors,
-    /// More than [`MAX_STORED_VECTORS`] vectors in a picture whose strokes are kept.
+    /// More than [`MAX_STORED_VECTORS`] vectors in a picture whose strokes are stored.
     #[error("a window and lists of strokes show at most {MAX_STORED_VECTORS} vectors")]
     TooManyStored,
     /// More than [`MAX_GATHERED`] vectors below XFORM VECTOR.
@@ -51,7 +51,7 @@ pub struct Transformed {
     pub lines: Vec<bool>,
 }
 
-/// What one update made.
+/// The result of one update.
 #[derive(Clone, Debug, Default)]
 pub struct Update {
     /// What the beam draws, in the order of the structure.

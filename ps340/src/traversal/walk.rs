@@ -37,11 +37,11 @@ pub fn update(structures: &Structures, frame: u64, requests: &Requests) -> Updat
     update_into(structures, frame, requests, Vec::new(), MAX_STORED_VECTORS)
 }
 
-/// Walks everything that is displayed, with the room of the strokes of an earlier update; most of the time of a fresh one
-/// goes into its memory.
+/// Walks everything that is displayed, with the memory of the strokes of an earlier update; most of the time of a fresh
+/// one goes into its memory.
 ///
-/// - `most`: vectors that are drawn at most, up to [`MAX_STORED_VECTORS`]. A picture of more is walked to answer the requests, and
-///   its vectors are counted: [`Update::is_counted_only`].
+/// - `most`: vectors that are drawn at most, up to [`MAX_STORED_VECTORS`]. A picture of more is walked to answer the
+///   requests, and its vectors are counted: [`Update::is_counted_only`].
 pub fn update_into(
     structures: &Structures,
     frame: u64,
@@ -57,10 +57,10 @@ pub fn update_into(
     walk.update
 }
 
-/// Draws everything that a screen shows, and hands the strokes on part by part, in their order, so that a picture of any
-/// number of vectors needs no room.
+/// Draws everything that a screen shows, and hands the strokes on part by part, in their order, so that a picture of
+/// any number of vectors needs no memory of its own.
 ///
-/// - `screen`: which of the screens that SET DISPLAYS tells apart, 0..=3.
+/// - `screen`: which of the screens that SET DISPLAYS distinguishes, 0..=3.
 /// - `take`: gets the parts.
 pub fn draw_in_parts(structures: &Structures, frame: u64, screen: u8, take: &mut dyn FnMut(&[Stroke])) {
     let requests = Requests::default();
@@ -436,7 +436,7 @@ impl<'a> Walk<'a> {
             clipper = clipper.at_full_intensity();
         }
         let structures = self.structures;
-        // That a piece was one too many is told by the account.
+        // That a segment was one too many is reported by the account.
         let _ = outline::line_segments(node, state, structures, &mut |piece: LineSegment| {
             if !self.counted(1) || !self.is_drawn() {
                 return ControlFlow::Break(());
@@ -451,7 +451,7 @@ impl<'a> Walk<'a> {
         });
     }
 
-    /// The first piece of a data node that is inside the pick box.
+    /// The first line segment of a data node that is inside the pick box.
     fn pick(
         &self,
         node: &Node,

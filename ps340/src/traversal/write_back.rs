@@ -29,7 +29,7 @@ const HUE: u16 = 3;
 const SATURATION: u16 = 4;
 const END: u16 = 0xffff;
 
-/// What is told of the strokes, one after the other.
+/// The items of the strokes, one after the other.
 enum Item {
     /// Degrees and 0..=1.
     Color([f32; 2]),

@@ -20,7 +20,7 @@ const TURN: Duration = Duration::from_millis(300);
 /// Runs for so many seconds.
 ///
 /// # Panics
-/// At the end, if inputs failed, or ran so long that they were told.
+/// At the end, if inputs failed, or ran so long that they were reported.
 pub fn run(seconds: u64, seed: u64) {
     let workers = thread::available_parallelism().map_or(1, usize::from);
     let begun = Instant::now();

@@ -2,11 +2,12 @@
 //!
 //! - In an ordinary run a fixed number of inputs, the same ones each time.
 //! - `PERIS_FUZZ_SECONDS=3600 cargo test -p ps340 --test fuzz -- --nocapture` goes on for an hour on all cores, from
-//!   `PERIS_FUZZ_SEED` (1), and writes what fails to files. The profile for development is the one to use: it is optimised,
-//!   and arithmetic that overflows panics.
+//!   `PERIS_FUZZ_SEED` (1), and writes what fails to files. The profile for development is the one to use: it is
+//!   optimised, and arithmetic that overflows panics.
 //! - `PERIS_FUZZ_INPUT=FILE` tries the input of such a file again.
 //!
-//! An input that shows something new (a message, a pair of words, a frame, an order of magnitude) is kept and changed further.
+//! An input that shows something new (a message, a pair of words, a frame, an order of magnitude) is kept and changed
+//! further.
 
 mod binary;
 mod campaign;

@@ -17,7 +17,7 @@ pub static SESSION: Target = Target { name: "session", seeds: seeds::sessions, r
 pub const MARK: u8 = 0xFE;
 /// A frame passes.
 pub const FRAME: u8 = b'f';
-/// What follows up to the end of the line is an order of the operator.
+/// What follows up to the end of the line is an operator command.
 pub const ORDER: u8 = b'o';
 /// What follows comes from the host on the parallel interface.
 pub const PARALLEL: u8 = b'p';
@@ -25,7 +25,7 @@ pub const PARALLEL: u8 = b'p';
 const FIRST: u8 = b'a';
 /// What follows comes from the second host.
 const SECOND: u8 = b'b';
-/// The line that speaks closes and opens again.
+/// The current line closes and opens again.
 const AGAIN: u8 = b'd';
 /// Ten frames pass in one step.
 const LATER: u8 = b't';

@@ -5,7 +5,7 @@ use protocol::command::{Command, print, words::Word};
 use ps340::functions;
 use std::{collections::HashSet, sync::OnceLock};
 
-/// Punctuation, inputs, values, packet starts, orders.
+/// Punctuation, inputs, values, packet starts, operator commands.
 const PIECES: &[&str] = &[
     ";",
     ":=",

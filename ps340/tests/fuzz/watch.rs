@@ -9,7 +9,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// An input that runs so long is told.
+/// An input that runs so long is reported.
 const LONG: Duration = Duration::from_secs(20);
 
 /// What one worker tries now.
@@ -47,7 +47,7 @@ impl Slot {
         *lock(&self.running) = None;
     }
 
-    /// Tells an input that runs for long, once, and writes it to a file.
+    /// Reports an input that runs for long, once, and writes it to a file.
     pub fn tell_long(&self) -> bool {
         let mut running = lock(&self.running);
         let Some(running) = running.as_mut().filter(|running| running.since.elapsed() > LONG && !running.told) else {
@@ -67,7 +67,7 @@ impl Drop for Slot {
     }
 }
 
-/// Memory of the process in MiB, where the system tells.
+/// Memory of the process in MiB, where the system reports it.
 pub fn resident() -> u64 {
     let pages =
         fs::read_to_string("/proc/self/statm").ok().and_then(|text| text.split(' ').nth(1)?.parse::<u64>().ok());

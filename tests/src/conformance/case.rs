@@ -134,7 +134,7 @@ pub enum Step {
     },
     /// The next message.
     Expect(Expected),
-    /// `@ order`: something that a person does.
+    /// `@ ORDER`: an operator command, something that a person does.
     OperatorCommand(String),
     /// `@~ glob`: what the person saw.
     Reply(String),

@@ -57,7 +57,7 @@ pub struct Transport {
     pub packets: Packets,
 }
 
-/// Why a text cannot go a way.
+/// Why a transport cannot carry a text.
 #[derive(Debug, thiserror::Error)]
 pub enum TransportError {
     /// Binary records need packets.
@@ -72,7 +72,7 @@ pub enum TransportError {
 }
 
 impl Transport {
-    /// Every way that commands can go.
+    /// Every transport of commands.
     pub fn all() -> Vec<Transport> {
         let forms = <Form as clap::ValueEnum>::value_variants();
         let packets = <Packets as clap::ValueEnum>::value_variants();
@@ -169,7 +169,7 @@ mod tests {
         wire::{Frame, FrameDecoder, read_six_bit},
     };
 
-    /// The commands that a machine would hear.
+    /// The commands that a machine would decode.
     fn decoded_commands(stream: &[u8]) -> Vec<Command> {
         let (mut frames, mut text, mut binary) =
             (FrameDecoder::default(), CommandReader::default(), BinaryDecoder::default());

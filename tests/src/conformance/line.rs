@@ -31,7 +31,7 @@ const WRITE_LIMIT: Duration = Duration::from_secs(30);
 /// How soon the reader of a terminal sees that it is to end: 2 ms.
 const TERMINAL_TURN: Timespec = Timespec { tv_sec: 0, tv_nsec: 2_000_000 };
 
-/// Where a line is.
+/// The endpoint of a line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Endpoint {
     /// A socket that listens.
@@ -76,7 +76,7 @@ enum Stream {
     Terminal(File, Arc<AtomicBool>),
 }
 
-/// Reads a terminal until it is told to end, so that no reader takes what is meant for the next host.
+/// Reads a terminal until it is asked to end, so that no reader takes what is meant for the next host.
 struct TerminalReader {
     file: File,
     has_left: Arc<AtomicBool>,

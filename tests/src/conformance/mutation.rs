@@ -1,5 +1,5 @@
-//! Mutation of the suite itself: commands are left out or changed between runner and machine, and a case that still passes
-//! does not notice.
+//! Mutation of the suite itself: commands are left out or changed between runner and machine, and a case that still
+//! passes does not notice.
 
 use super::{
     case::{Case, Step, with_number},
@@ -187,7 +187,8 @@ fn meaning(text: &str) -> (&'static str, BTreeSet<String>) {
     }
 }
 
-/// Whether a case is named after a command, function or instance: its title has it in capitals, or its name begins with it.
+/// Whether a case is named after a command, function or instance: its title has it in capitals, or its name begins with
+/// it.
 fn is_named_after(case: &Case, subject: &str) -> bool {
     if subject.len() < 2 {
         return false;
@@ -279,7 +280,7 @@ pub struct Mutations {
 /// Plays the mutants of cases, each case itself before and after them.
 ///
 /// - `choose`: the mutants of a case, [`mutants`] or [`subject_mutants`].
-/// - `each`: is told each mutant, and whether it was noticed.
+/// - `each`: receives each mutant, and whether it was noticed.
 ///
 /// # Errors
 /// If the machine cannot be reached.
@@ -378,7 +379,8 @@ impl Mutations {
         out
     }
 
-    /// The table, the cases that do not notice the loss of what they are named after, and those that failed by themselves.
+    /// The table, the cases that do not notice the loss of what they are named after, and those that failed by
+    /// themselves.
     pub fn text(&self) -> String {
         let mut out = self.table();
         let Count { all, unnoticed } = self.subjects;

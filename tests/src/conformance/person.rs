@@ -15,10 +15,10 @@ const REPLY_TIMEOUT: Duration = Duration::from_secs(60);
 /// The environment variable with the token of an emulator whose operator line is TCP.
 const TOKEN_VARIABLE: &str = "PS340_TOKEN";
 
-/// Why an order was not carried out.
+/// Why an operator command was not carried out.
 #[derive(Debug, thiserror::Error)]
 pub enum OperatorFault {
-    /// The machine said no.
+    /// The machine refused.
     #[error("the order was refused: {0}")]
     Refused(String),
     /// This operator cannot do it: the case is skipped.
@@ -40,11 +40,11 @@ pub trait Operator {
     /// Whether what was seen is like a pattern.
     fn confirm(&mut self, reply: &str, glob: &str) -> bool;
 
-    /// Whether the order `frames N` makes time pass; if not, it passes by itself.
+    /// Whether the operator command `frames N` makes time pass; if not, it passes by itself.
     fn drives_time(&self) -> bool;
 }
 
-/// The operator line of an emulator: one order a line, one reply a line.
+/// The operator line of an emulator: one operator command a line, one reply a line.
 pub struct OperatorLine {
     reader: BufReader<Box<dyn Read + Send>>,
     writer: Box<dyn Write + Send>,
@@ -57,7 +57,7 @@ impl std::fmt::Debug for OperatorLine {
 }
 
 impl OperatorLine {
-    /// Connects, and tells the token of the environment variable `PS340_TOKEN`, if there is one.
+    /// Connects, and sends the token of the environment variable `PS340_TOKEN`, if there is one.
     ///
     /// # Errors
     /// Those of the system.
@@ -135,7 +135,7 @@ fn unescaped(text: &str) -> String {
     out
 }
 
-/// A person who is told on the terminal what to do, and asked what is to be seen.
+/// A person who reads on the terminal what to do, and is asked what is to be seen.
 #[derive(Debug, Default)]
 pub struct Person;
 

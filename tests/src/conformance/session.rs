@@ -23,13 +23,13 @@ const MAX_MESSAGES: usize = 20_000;
 const PIECE: usize = 64 << 10;
 /// The password that cases set. A machine without one takes any.
 const PASSWORD: &str = "SECRET";
-/// Least tolerance of strokes that WRITEBACK tells, with seven digits.
+/// Least tolerance of strokes that WRITEBACK sends, with seven digits.
 const WRITEBACK_TOLERANCE: f64 = 1e-5;
 
 /// What the cases are run against, and how.
 #[derive(Clone, Debug)]
 pub struct Target {
-    /// Where the machine is.
+    /// The endpoint of the machine.
     pub endpoint: Endpoint,
     /// How commands travel.
     pub transport: Transport,
@@ -39,7 +39,8 @@ pub struct Target {
     pub timeout: Duration,
     /// Numbers and texts of the machine's messages do not matter.
     pub any_fault: bool,
-    /// The machine is started again (REBOOT) before each case: what a case changes and INITIALIZE spares reaches no other.
+    /// The machine is started again (REBOOT) before each case: what a case changes and INITIALIZE spares reaches no
+    /// other.
     pub reboots: bool,
 }
 
@@ -165,12 +166,13 @@ impl<'s> Session<'s> {
         self.quiet().map_err(|stop| (last, stop))
     }
 
-    /// Gives the orders from a step on, whatever comes of them, so that a case that stops leaves no button pressed.
+    /// Gives the operator commands from a step on, whatever comes of them, so that a case that stops leaves no button
+    /// pressed.
     fn give_rest(&mut self, from: usize) {
         let Some(operator) = self.operator.as_mut().filter(|operator| operator.drives_time()) else { return };
         for (_, step) in &self.case.steps[from..] {
             if let Step::OperatorCommand(order) = step {
-                // The case has failed; what an order says now does not matter.
+                // The case has failed; what an operator command replies now does not matter.
                 let _ = operator.give(order);
             }
         }
@@ -222,7 +224,7 @@ impl<'s> Session<'s> {
         Ok(self.sender.write(text.as_bytes(), text_only, &mut self.waiting)?)
     }
 
-    /// Repeated commands go at once, so that a million of them need no room.
+    /// Repeated commands go at once, so that a million of them need no memory.
     fn each(&mut self, first: usize, last: usize, text: &str) -> Result<(), Stop> {
         self.note(format!("> {} (# is {first} to {last})", text.trim_end()));
         let mut piece = String::new();
@@ -415,7 +417,7 @@ impl<'s> Session<'s> {
         }
     }
 
-    /// The strokes of so many frames, as the operator line tells them.
+    /// The strokes of so many frames, as the operator line lists them.
     fn strokes_on_screen(&mut self, frames: u64) -> Result<Vec<StrokeLine>, Stop> {
         let mut found = Vec::new();
         for _ in 0..frames {
@@ -429,7 +431,7 @@ impl<'s> Session<'s> {
         Ok(found)
     }
 
-    /// The strokes of the next update, over the host line: what WRITEBACK says of all that is displayed.
+    /// The strokes of the next update, over the host line: what WRITEBACK sends of all that is displayed.
     fn strokes_written_back(&mut self) -> Result<Vec<StrokeLine>, Stop> {
         self.frames(1)?;
         self.watched += 1;

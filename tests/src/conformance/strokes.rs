@@ -8,7 +8,8 @@ pub const MARK: &str = "~S ";
 /// Most vectors that WRITEBACK can send through HOST_MESSAGE: two lines for a dot, and an input keeps 10,000 messages.
 const MAX_VECTORS: usize = 9_000;
 
-/// The strokes in the reply to `strokes`: their number, then on each line x, y, x, y, two intensities, red, green, blue.
+/// The strokes in the reply to `strokes`: their number, then on each line x, y, x, y, two intensities, red, green,
+/// blue.
 pub fn from_operator(reply: &str) -> Option<Vec<StrokeLine>> {
     let mut lines = reply.lines();
     let count: usize = lines.next()?.split(' ').next()?.parse().ok()?;

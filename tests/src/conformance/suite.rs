@@ -59,7 +59,7 @@ pub fn read_folder(folder: &Path) -> Result<Vec<Case>, SuiteError> {
 
 /// Runs cases one after the other, each on a line of its own.
 ///
-/// - `each`: is told what came of each case.
+/// - `each`: receives what came of each case.
 ///
 /// # Errors
 /// If the machine cannot be reached, or answers nothing at all.

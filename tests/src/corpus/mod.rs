@@ -1,4 +1,4 @@
-//! Boolean operations on solids that are hard on numbers: a seeded corpus, and how each of its cases is judged.
+//! Boolean operations on solids that are hard on numbers: a seeded corpus, and the score of each of its cases.
 
 mod classes;
 mod scoring;

@@ -1,4 +1,4 @@
-//! Whether points are in a result that are in the set it stands for, told by solid angles.
+//! Whether points are in a result that are in the set it stands for, tested by solid angles.
 
 use glam::DVec3;
 use host::mesh::Mesh;

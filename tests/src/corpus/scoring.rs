@@ -1,4 +1,4 @@
-//! Judges cases.
+//! Scoring of cases.
 
 use super::{Class, CorpusCase, Score, points};
 use crate::simple;
@@ -32,10 +32,10 @@ fn solid(mesh: &Mesh) -> Result<Solid, Score> {
     Solid::new(mesh.clone()).map_err(|error| Score::Refused(error.to_string()))
 }
 
-/// The mesh of what an expression over solids gives, if it is a solid and says that it is.
+/// The mesh of what an expression over solids gives, if it is a solid and is marked as one.
 ///
 /// # Errors
-/// [`Score::Refused`] with the reason, [`Score::Wrong`] if an exact judge finds a fault.
+/// [`Score::Refused`] with the reason, [`Score::Wrong`] if an exact test finds a fault.
 pub fn evaluated(operands: &[&Solid], expression: &Expression) -> Result<Mesh, Score> {
     let evaluated = Solid::evaluate(operands, expression);
     let (solid, Outcome { sources, .. }) = evaluated.map_err(|error| Score::Refused(error.to_string()))?;

@@ -1,4 +1,5 @@
-//! What the licences of other crates ask to be passed on with a program: which crates, under which terms, and their texts.
+//! What the licences of other crates ask to be passed on with a program: which crates, under which terms, and their
+//! texts.
 
 mod crates;
 mod print;

@@ -30,7 +30,8 @@ struct Described {
     texts: Vec<String>,
 }
 
-/// Makes the notices; what the crates say of themselves comes from `cargo metadata`, which fetches those that are missing.
+/// Makes the notices; what the crates say of themselves comes from `cargo metadata`, which fetches those that are
+/// missing.
 ///
 /// - `root`: the folder of the workspace.
 ///

@@ -8,8 +8,8 @@ const BEGINNINGS: [&str; 6] = ["licen", "copying", "copyright", "notice", "unlic
 /// A folder whose texts are the terms of the fonts in it.
 const FONTS: &str = "fonts";
 
-/// The texts in the folder of a crate, sorted by their names: of all its licences but the Apache License, whose text is the
-/// same for all, or where that is the only one, its notices.
+/// The texts in the folder of a crate, sorted by their names: of all its licences but the Apache License, whose text is
+/// the same for all, or where that is the only one, its notices.
 ///
 /// - `is_apache`: whether the Apache License is all that is chosen.
 ///

@@ -1,4 +1,4 @@
-//! Readers of what comes to the PS 340: commands, packets, records, captures, orders, play files.
+//! Readers of what comes to the PS 340: commands, packets, records, captures, operator commands, play files.
 
 use protocol::capture::CaptureReader;
 use protocol::command::{BinaryDecoder, Command, CommandReader, encode, parse, print};
@@ -137,7 +137,7 @@ pub fn play(bytes: &[u8]) {
     }
 }
 
-/// A program is looked through; what is found has a place in it.
+/// A program is looked through; what is found has a location in it.
 pub fn lint(bytes: &[u8]) {
     for finding in ps340::lint::lint(&[("a.ps300".into(), bytes.to_vec())]) {
         assert_eq!(finding.file, "a.ps300");

@@ -1,7 +1,8 @@
-//! Whether a surface is simple, told with integers and by another way than the Boolean operations go: no code is shared.
+//! Whether a surface is simple, tested with integers and in another way than the Boolean operations do: no code is
+//! shared.
 //!
-//! A surface is simple if it is closed, if no two triangles have more in common than corners and the edges between, and if
-//! it winds once around what is behind each triangle and not at all around what is before it.
+//! A surface is simple if it is closed, if no two triangles have more in common than corners and the edges between, and
+//! if it winds once around what is behind each triangle and not at all around what is before it.
 
 mod integer;
 mod triangle_overlap;
@@ -19,7 +20,7 @@ pub enum NotSimple {
     /// Three corners are on one line.
     #[error("triangle {0} has no area")]
     Flat(usize),
-    /// An edge is run through more often one way than the other.
+    /// An edge is traversed more often in one direction than in the other.
     #[error("the edge from {} to {} is open", .0[0], .0[1])]
     Open([DVec3; 2]),
     /// Two triangles have more in common than corners and edges.
@@ -35,7 +36,7 @@ pub enum NotSimple {
     Winding {
         /// The number of the triangle.
         triangle: usize,
-        /// How often it winds there.
+        /// Its winding number there.
         winding: i32,
     },
 }
@@ -70,11 +71,11 @@ pub fn check(mesh: &Mesh) -> Result<(), NotSimple> {
     Ok(())
 }
 
-/// The places of the corners, each once, and the triangles over them.
+/// The positions of the corners, each once, and the triangles over them.
 fn by_position(mesh: &Mesh) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let (mut at, mut known) = (Vec::new(), HashMap::new());
     let mut number = |place: DVec3| {
-        // 0 and -0 are one place.
+        // 0 and -0 are one position.
         *known.entry(place.to_array().map(|x| (x + 0.0).to_bits())).or_insert_with(|| {
             at.push(place);
             at.len() as u32 - 1
@@ -85,7 +86,7 @@ fn by_position(mesh: &Mesh) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     (at, triangles)
 }
 
-/// A triangle of each part that hangs together by edges of two triangles.
+/// A triangle of each part that is connected by edges of two triangles.
 fn sheets(at: &[DVec3], triangles: &[[u32; 3]]) -> Result<Vec<usize>, NotSimple> {
     // The triangles at each edge, and in which direction they run along it.
     let mut edges: BTreeMap<[u32; 2], Vec<(usize, bool)>> = BTreeMap::new();

@@ -30,7 +30,8 @@ impl Points<'_> {
         self.at[point as usize].to_array().map(|x| Integer::of(x, self.places))
     }
 
-    /// On which side of the plane through three points a fourth is: 1 where these are counter-clockwise, -1, or 0 on it.
+    /// On which side of the plane through three points a fourth is: 1 where these are counter-clockwise, -1, or 0 on
+    /// it.
     pub fn side(&self, [a, b, c]: [u32; 3], d: u32) -> i32 {
         let at = |point: u32| self.at[point as usize];
         let rows = [a, b, c].map(|p| (at(d) - at(p)).to_array());

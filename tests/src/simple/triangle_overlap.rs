@@ -1,7 +1,7 @@
 //! Pairs of triangles that have more in common than corners and the edges between.
 //!
-//! What two triangles have in common is convex, and its corners are corners of one that lie in the other, or places where
-//! an edge of one passes through the other. If all of these are corners of both, it is at most an edge of both.
+//! What two triangles have in common is convex, and its corners are corners of one that lie in the other, or points
+//! where an edge of one passes through the other. If all of these are corners of both, it is at most an edge of both.
 
 use super::predicates::Points;
 use glam::DVec3;

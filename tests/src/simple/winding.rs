@@ -1,4 +1,4 @@
-//! How often a surface winds around a point, by a ray from it.
+//! The winding number of a surface at a point, by a ray from it.
 
 use super::integer::Integer;
 use super::predicates::{Points, cross, determinant, difference, dot};
@@ -9,7 +9,7 @@ use rand_pcg::Pcg64Mcg;
 /// Rays that are tried; one that meets no edge is found sooner.
 const RAYS: u64 = 1000;
 
-/// How often a surface winds around what is just before the centre of one of its triangles, where nothing else is.
+/// The winding number of a surface just before the centre of one of its triangles, where nothing else is.
 ///
 /// # Panics
 /// If every ray that is tried meets an edge.

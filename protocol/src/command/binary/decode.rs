@@ -17,14 +17,14 @@ use crate::{
 };
 use glam::{DMat2, DMat3, DMat4, DVec2, DVec3, DVec4};
 
-/// Room that is made when a list begins, whatever length it announces, in vectors.
+/// Capacity that is reserved when a list begins, whatever length it announces, in vectors.
 const INITIAL_CAPACITY: usize = 1 << 16;
 
-/// How many times what was received more room may be made for what was announced. Large, because moving a long list is
+/// How many times what was received may be reserved for what was announced. Large, because moving a long list is
 /// dear.
 const GROWTH: usize = 7;
 
-/// Vectors that the witness is told of in each part, one by one.
+/// Vectors of each part that are reported to the witness one by one.
 const LISTED_POINTS: usize = 4;
 
 /// Makes commands out of the bodies of binary packets.
@@ -67,8 +67,8 @@ impl BinaryDecoder {
         self.open = None;
     }
 
-    /// Reads one record of `body` from `at` on and moves `at` behind it; none if it completes no command. After an error
-    /// `at` is the end of the body, or where the next record can be read.
+    /// Reads one record of `body` from `at` on and moves `at` behind it; none if it completes no command. After an
+    /// error `at` is the end of the body, or where the next record can be read.
     ///
     /// # Errors
     /// [`BinaryError`] with the offset in `body`.

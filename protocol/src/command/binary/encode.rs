@@ -33,8 +33,8 @@ pub fn records(command: &Command, scratch: &mut Vec<u8>, emit: &mut dyn FnMut(&[
     records_in_parts(command, PART_POINTS, scratch, emit)
 }
 
-/// Gives the records of a command as [`records`] does, with at most `part_points` vectors in a part (at least 1, at most
-/// [`PART_POINTS`]), for packets that hold no more.
+/// Gives the records of a command as [`records`] does, with at most `part_points` vectors in a part (at least 1, at
+/// most [`PART_POINTS`]), for packets that hold no more.
 ///
 /// # Errors
 /// Those of [`records`].

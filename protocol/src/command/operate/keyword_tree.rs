@@ -1,26 +1,26 @@
-//! The words that commands begin with, and which command they lead to.
+//! The keyword tree: the words that commands begin with, and which command they lead to.
 
 use crate::command::{error::Fault, parse::cursor::Parser, words::Word};
 
 /// Most words of all beginnings together.
 const MAX_KEYWORDS: usize = 128;
 
-/// The node that nothing leads to, and which leads nowhere.
+/// The dead end: the node that nothing leads to, and which leads nowhere.
 const DEAD_END: u8 = MAX_KEYWORDS as u8 - 1;
 
-/// What is expected behind SET, which too many words can follow to list them.
+/// What is expected after SET, which too many words can follow to list them.
 const SETTING: (Word, &[&str]) = (Word::Set, &["a setting (such as COLOR)"]);
 
 /// A tree of words, made when the code is built: from the words that were read to those that can follow.
 pub(super) struct KeywordTree {
-    /// The words that can follow, those behind one node together.
+    /// The words that can follow, those after one node together.
     words: [Word; MAX_KEYWORDS],
     /// Each of these words as an error says it.
     names: [&'static str; MAX_KEYWORDS],
     /// The node that each of these words leads to.
     targets: [u8; MAX_KEYWORDS],
     nodes: [Node; MAX_KEYWORDS],
-    /// The node behind each first word; an empty one behind a word that begins no command.
+    /// The node after each first word; an empty one after a word that begins no command.
     firsts: [u8; Word::ALL.len()],
 }
 
@@ -31,7 +31,7 @@ struct Node {
     begin: u8,
     /// ...up to here.
     end: u8,
-    /// The beginning that the words so far are, if they are a whole one.
+    /// The beginning that the words so far are, if they are a complete one.
     complete: Option<u8>,
 }
 

@@ -50,35 +50,35 @@ pub(super) struct FieldLabel {
 
 /// What stands before a value.
 enum Prefix {
-    /// A word that must be there.
+    /// A keyword that must be there.
     Word(Word),
-    /// A word that may be left out, and is printed.
+    /// An optional keyword, which is printed.
     Optional(Word),
-    /// A word that may be left out, and is not printed.
+    /// An optional keyword, which is not printed.
     Unprinted(Word),
-    /// A `=` that may be left out, and is printed.
+    /// An optional `=`, which is printed.
     Equal,
 }
 
-/// A value behind a word or a sign.
+/// A value after a keyword or a sign.
 pub(super) struct Prefixed<N>(Prefix, N);
 
-/// A value behind a word that must be there.
+/// A value after a keyword that must be there.
 pub(super) const fn after<N>(word: Word, notation: N) -> Prefixed<N> {
     Prefixed(Prefix::Word(word), notation)
 }
 
-/// A value behind a word that may be left out, and is printed.
+/// A value after an optional keyword, which is printed.
 pub(super) const fn optional<N>(word: Word, notation: N) -> Prefixed<N> {
     Prefixed(Prefix::Optional(word), notation)
 }
 
-/// A value behind a word that may be left out, and is not printed.
+/// A value after an optional keyword, which is not printed.
 pub(super) const fn unprinted<N>(word: Word, notation: N) -> Prefixed<N> {
     Prefixed(Prefix::Unprinted(word), notation)
 }
 
-/// A value behind a `=` that may be left out, and is printed.
+/// A value after an optional `=`, which is printed.
 pub(super) const fn equal<N>(notation: N) -> Prefixed<N> {
     Prefixed(Prefix::Equal, notation)
 }
@@ -127,7 +127,7 @@ impl<N: Fields> Fields for Prefixed<N> {
     }
 }
 
-/// A value that is given if a word stands before it.
+/// An optional value after a keyword: it is given if the keyword is there.
 pub(super) struct OptionalAfter<N>(pub Word, pub N);
 
 impl<N: Notation> Notation for OptionalAfter<N> {
@@ -168,7 +168,7 @@ impl<N: Fields> Fields for OptionalAfter<N> {
     }
 }
 
-/// A value that is given if a number stands there; a comma before it may be missing and is not printed.
+/// An optional number; a comma before it may be missing and is not printed.
 pub(super) struct OptionalNumber<N>(pub N);
 
 impl<N: Notation> Notation for OptionalNumber<N> {

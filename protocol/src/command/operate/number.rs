@@ -1,4 +1,4 @@
-//! Notations of numbers: reals, whole numbers, vectors, factors, matrices, ranges.
+//! Notations of numbers: reals, integers, vectors, factors, matrices, ranges.
 
 use super::notation::{FieldLabel, Fields, Notation};
 use crate::{
@@ -82,7 +82,7 @@ impl Fields for NextReal {
     }
 }
 
-/// A whole number in a range.
+/// An integer in a range.
 pub(super) struct IntegerIn<T> {
     range: Range<i64>,
     of: PhantomData<T>,
@@ -100,10 +100,10 @@ pub(super) const LEVEL: IntegerIn<u16> = IntegerIn::of(0..32_768);
 pub(super) const BIT: IntegerIn<u8> = IntegerIn::of(0..15);
 /// A count of 32 bits.
 pub(super) const COUNT: IntegerIn<u32> = IntegerIn::of(0..NUMBERS);
-/// A whole number of 32 bits with sign.
+/// An integer of 32 bits with sign.
 pub(super) const SIGNED: IntegerIn<i32> = IntegerIn::of(i32::MIN as i64..i32::MAX as i64 + 1);
 
-/// Whole numbers of a type that holds every number of its range.
+/// Integers of a type that holds every number of its range.
 macro_rules! whole {
     ($($type:ident)*) => {
         $(impl Notation for IntegerIn<$type> {
@@ -214,7 +214,7 @@ fn character_factors(parser: &mut Parser<'_>) -> Result<[f64; 2], Fault> {
     }
 }
 
-/// Two ends with a colon between them.
+/// An interval: two ends with a colon between them.
 pub(super) struct Interval;
 
 impl Notation for Interval {

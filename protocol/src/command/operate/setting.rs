@@ -267,7 +267,7 @@ impl Notation for ScreenWidth {
     }
 }
 
-/// `ALL` or `n[,m...]`, behind SET DISPLAY, which is printed in the plural for all.
+/// `ALL` or `n[,m...]`, after SET DISPLAY, which is printed in the plural for all.
 pub(super) struct Screens;
 
 impl Notation for Screens {

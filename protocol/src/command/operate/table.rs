@@ -9,7 +9,7 @@
 //!
 //! - `what` names the only field of a variant in records; notations stand in `notation`, `number` and `setting`.
 //! - `as` is left out if the first words are printed as the name of the entry in the command table.
-//! - `[Words]`, words of the keyword table, begin the command; `, Form [Words] { field = notation, ... }` behind them
+//! - `[Words]`, words of the keyword table, begin the command; `, Form [Words] { field = notation, ... }` after them
 //!   is another form that is read.
 //! - `record` is the opcode, for a command that has a record of its own; others travel as text.
 //! - `help` is left out if a row before it has the entry of that name.
@@ -48,7 +48,7 @@ use glam::{DMat2, DMat3, DMat4, DVec2, DVec3};
 #[cfg(any(test, feature = "proptest"))]
 use proptest::{prelude::*, strategy::Union};
 
-/// What a row says in the place of something that it may leave out.
+/// The default of something that a row may leave out.
 macro_rules! or {
     ($default:expr,) => {
         $default
@@ -232,7 +232,7 @@ text_rows! { { transformation_rows viewing_rows attribute_rows condition_rows re
 
 static KEYWORD_TREE: KeywordTree = KeywordTree::new(BEGINNINGS);
 
-/// The words that operate commands have behind a first word.
+/// The words that operate commands have after a first word.
 pub(in crate::command) fn words_after(first: Word) -> &'static [Word] {
     KEYWORD_TREE.after(first)
 }

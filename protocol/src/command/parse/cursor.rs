@@ -1,4 +1,4 @@
-//! The cursor of the parser: the tokens of one statement, with one token of sight ahead, and the words tried in vain.
+//! The cursor of the parser: the tokens of one statement, with one token of lookahead, and the words tried in vain.
 
 use crate::command::{
     error::{Fault, Problem},

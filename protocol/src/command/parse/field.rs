@@ -123,8 +123,8 @@ impl Parser<'_> {
         if count < 2 { Err(self.fail(&["the y component"])) } else { Ok(point) }
     }
 
-    /// Rows of `least` to `most` numbers, as many in each row as the commas in the first say. Gives that count; the rest
-    /// of a row is 0.
+    /// Rows of `least` to `most` numbers, as many in each row as the commas in the first say. Gives that count; the
+    /// rest of a row is 0.
     pub(super) fn rows(&mut self, least: usize, most: usize) -> Result<(usize, Vec<[f64; 4]>), Fault> {
         let mut first = [self.real()?, 0.0, 0.0, 0.0];
         let mut count = 1;

@@ -108,8 +108,8 @@ impl Parser<'_> {
         Ok(Some(CornerColor { front, back }))
     }
 
-    /// `h[,s[,i]]` with its commas, since numbers without one are the next vertex; saturation and intensity are 1 if not
-    /// given.
+    /// `h[,s[,i]]` with its commas, since numbers without one are the next vertex; saturation and intensity are 1 if
+    /// not given.
     fn single_color(&mut self) -> Result<[f32; 3], Fault> {
         let mut color = [self.single()?, 1.0, 1.0];
         for part in &mut color[1..] {

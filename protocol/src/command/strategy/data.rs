@@ -66,7 +66,8 @@ fn sides() -> impl Strategy<Value = SurfaceColor> {
         .prop_map(|(color, diffuse, specular, opaque)| SurfaceColor { color, diffuse, specular, opaque })
 }
 
-/// Rows of a curve: dimension, whether rational, and the rows; `weights` are those of all rows and the last if it is not.
+/// Rows of a curve: dimension, whether rational, and the rows; `weights` are those of all rows and the last if it is
+/// not.
 fn rows(weights: [f64; 2], count: std::ops::Range<usize>) -> impl Strategy<Value = (u8, bool, Vec<[f64; 4]>)> {
     let rows = prop::collection::vec([reals(), reals(), reals(), reals()], count);
     (2_u8..=3, any::<bool>(), rows).prop_map(move |(dimension, rational, mut rows)| {

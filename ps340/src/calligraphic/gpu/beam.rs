@@ -21,7 +21,7 @@ pub struct Gpu {
     given_up: OnceLock<()>,
 }
 
-/// What is kept from picture to picture.
+/// Scratch that is reused from picture to picture.
 #[derive(Default)]
 struct GpuScratch {
     canvas: Option<Canvas>,
@@ -43,7 +43,7 @@ impl Gpu {
         Ok(Gpu { device: Device::open(software)?, canvas: Mutex::default(), given_up: OnceLock::new() })
     }
 
-    /// Its name and how it is spoken to.
+    /// Its name and interface.
     pub fn name(&self) -> &str {
         &self.device.name
     }
@@ -53,8 +53,8 @@ impl Gpu {
         self.given_up.get().is_none()
     }
 
-    /// Writes strokes in place of what was written before. Returns false if it cannot: then the light is not touched, or
-    /// partly, and the processor must write it.
+    /// Writes strokes in place of what was written before. Returns false if it cannot: then the light is not touched,
+    /// or partly, and the processor must write it.
     pub(in crate::calligraphic) fn write(&self, light: &mut ScreenLight, strokes: &[Stroke]) -> bool {
         let most = self.device.device.limits().max_texture_dimension_2d as usize;
         if !self.works() || light.optics.size.iter().any(|pixels| *pixels > most) {

@@ -32,20 +32,20 @@ pub enum GpuError {
     Refused {
         /// The name of the adapter.
         name: String,
-        /// What it says.
+        /// Its reason.
         why: String,
     },
 }
 
 /// An adapter that was opened.
 pub(super) struct Device {
-    /// What the adapter is called, and how it is spoken to.
+    /// The name of the adapter, and its interface.
     pub(super) name: String,
     pub(super) device: wgpu::Device,
     pub(super) queue: wgpu::Queue,
     /// For one gun and for three.
     pub(super) pipelines: [wgpu::RenderPipeline; 2],
-    /// What the device complained about, at any time.
+    /// The failure that the device reported, at any time.
     pub(super) failure: Arc<OnceLock<String>>,
 }
 

@@ -23,7 +23,7 @@ pub(super) struct StrokeInstance {
     /// 0 for a point, 1 where both ends may act, 2 where the nearer does.
     kind: f32,
     terms: [f32; 4],
-    /// First and last place along the stroke, from the anchor, that light can reach.
+    /// First and last position along the stroke, from the anchor, that light can reach.
     from: f32,
     to: f32,
     last_term: f32,

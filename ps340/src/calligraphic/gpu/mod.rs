@@ -3,13 +3,14 @@
 //! # Model
 //! Each stroke is an instance of a rectangle: as much of it as the picture can see, and 4.5 standard deviations more on
 //! all sides. The fragment shader (`beam.wgsl`) evaluates the formulas of `spot` and `track`; blending adds. What needs
-//! double precision is done before by the same code as for the processor's tiles: a stroke's distances are reckoned at
+//! double precision is done before by the same code as for the processor's tiles: a stroke's distances are computed at
 //! an anchor in the picture (`instance`), so that 32 bits suffice, however long the stroke is.
 //!
 //! # Why the light is read back
-//! Only the light is made here. It is read back into [`super::ScreenLight`], and phosphor, glow and exposure go on from there
-//! on their one path. That costs 16 MB over the bus for each changed picture of 1024 by 1024 (4 MB with a single gun): a
-//! copy of some milliseconds, while making all of it here would double the code that decides what a picture looks like.
+//! Only the light is made here. It is read back into [`super::ScreenLight`], and phosphor, glow and exposure go on from
+//! there on their one path. That costs 16 MB over the bus for each changed picture of 1024 by 1024 (4 MB with a single
+//! gun): a copy of some milliseconds, while making all of it here would double the code that decides what a picture
+//! looks like.
 //!
 //! # Which adapters
 //! Light adds up in 32 bits. An adapter that cannot blend such pixels is refused: in 16 bits, weak strokes upon strong

@@ -11,8 +11,8 @@ use crate::{
 use std::sync::{Arc, OnceLock};
 
 const WHITE: [f32; 3] = [1.0; 3];
-/// Light over the strongest that 32 bits may lose: half a picture of 2000 pixels from the anchor, a direction of 24 bits
-/// is 1e-4 of a spot beside its line.
+/// Light over the strongest that 32 bits may lose: half a picture of 2000 pixels from the anchor, a direction of 24
+/// bits is 1e-4 of a spot beside its line.
 const ROUNDING: f64 = 5e-5;
 
 /// The adapter of all tests.

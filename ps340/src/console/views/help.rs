@@ -1,4 +1,4 @@
-//! Help, from the tables: orders of the operator, commands and functions of the machine.
+//! Help, from the tables: operator commands, commands and functions of the machine.
 
 use super::View;
 use crate::{

@@ -12,7 +12,7 @@ use std::{collections::BTreeMap, fmt::Write, sync::Arc};
 
 /// Lines of the listing that are shown; the latest.
 const MAX_LINES: usize = 2_000;
-/// Bytes in a row: few, so that their meaning has room beside them.
+/// Bytes in a row: few, so that their meaning fits beside them.
 const ROW: usize = 8;
 
 /// A listing of what passed lately.

@@ -18,7 +18,7 @@ pub struct TabletView {
 }
 
 impl TabletView {
-    /// A tablet whose puck does what `mouse` says.
+    /// A tablet whose puck does what `mouse` prescribes.
     pub fn new(mouse: &Mouse) -> TabletView {
         TabletView { puck: Puck::that_stays(mouse) }
     }

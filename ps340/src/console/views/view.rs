@@ -8,7 +8,7 @@ use egui::Ui;
 
 /// Something to look at beside the screens.
 pub trait View {
-    /// What its tab says.
+    /// The title of its tab.
     fn title(&self) -> &'static str;
     /// What it shows, in a sentence.
     fn summary(&self) -> &'static str;

@@ -5,7 +5,7 @@ use crate::traversal::{self, Requests, UpdateFault};
 
 const DEEP: usize = 3000;
 
-/// An update of the desk's picture.
+/// An update of the interpreter's picture.
 fn update(desk: &Desk) -> traversal::Update {
     traversal::update(&desk.memory.structures, 0, &Requests::default())
 }

@@ -16,14 +16,14 @@ use crate::{
 };
 use protocol::{Value, command::CommandReader};
 
-/// An interpreter with a memory of its own, and what they said.
+/// An interpreter with a memory of its own, and the messages of both.
 struct Desk {
     interpreter: Interpreter,
     memory: MassMemory,
     messages: Vec<Message>,
 }
 
-/// A desk at which `text` was carried out, all of it without a message.
+/// An interpreter that has carried out `text`, all of it without a message.
 fn told(text: &str) -> Desk {
     let mut desk = Desk { interpreter: Interpreter::default(), memory: MassMemory::default(), messages: Vec::new() };
     let said = desk.tell(text);

@@ -6,7 +6,7 @@ use std::time::Duration;
 use tokio::io::{DuplexStream, ReadHalf, WriteHalf};
 use tokio::sync::mpsc;
 
-/// The machine's end of a line: what it is told, and the way to the host.
+/// The machine's end of a line: what it receives, and the transport to the host.
 struct Line {
     events: mpsc::Receiver<LineEvent>,
     writer: Option<Writer>,

@@ -204,7 +204,7 @@ fn reset_ends_everything_and_attach_comes_first() {
     let mut scene = Scene::new(V);
     scene.address("V");
     assert_eq!(scene.transfer(0xc000, b"S := BEGIN_STRUCTURE NIL;"), [ParallelFrame::Word(0xca00)]);
-    // In the middle of a transfer only the reset line is heard.
+    // In the middle of a transfer only the reset line is obeyed.
     assert_eq!(
         scene.say(&[ParallelFrame::Word(0xc000), ParallelFrame::Reset]),
         [ParallelFrame::Word(0xc000), ParallelFrame::Word(0x3000)]

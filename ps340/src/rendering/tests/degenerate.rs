@@ -107,8 +107,8 @@ fn polygons_without_area_hide_nothing() {
     }
 }
 
-/// A square of four triangles, soft inside, with normals towards the eye: the third corner of one beside the diagonal lies
-/// this far on the wrong side of it, so that the triangle shows its reverse.
+/// A square of four triangles, soft inside, with normals towards the eye: the third corner of one beside the diagonal
+/// lies this far on the wrong side of it, so that the triangle shows its reverse.
 fn folded(by: f32, has_normals: bool) -> Vec<Polygon> {
     let [a, b, c, d] = [[-0.5, -0.5, 0.0], [-0.5, 0.5, 0.0], [0.5, 0.5, 0.0], [0.5, -0.5, 0.0]];
     let middle = [-by, by, 0.0];

@@ -1,7 +1,7 @@
 //! What people see of the machine, copied by its thread for a window.
 //!
-//! The window says what it shows ([`MirrorRequest`]), and only that is copied; what has not changed since is shared with the copy
-//! before. Neither thread waits for the other longer than a pointer takes to move.
+//! The window requests what it shows ([`MirrorRequest`]), and only that is copied; what has not changed since is shared
+//! with the copy before. Neither thread waits for the other longer than a pointer takes to move.
 
 mod network;
 mod structure;
@@ -54,7 +54,7 @@ pub struct MirrorFrame {
     pub panel: Panel,
     /// Where typed characters go.
     pub mode: KeyboardMode,
-    /// Whether a program takes what stylus or puck of the tablet say.
+    /// Whether a program takes what stylus or puck of the tablet send.
     pub tablet_is_read: bool,
     /// What the machine has counted.
     pub counters: Counters,
@@ -78,7 +78,7 @@ pub struct Mirror {
     shown: Mutex<Arc<MirrorFrame>>,
     traffic: Mutex<Traffic>,
     screen: Arc<SharedDisplay>,
-    /// Told after each copy that differs from the one before.
+    /// Called after each copy that differs from the one before.
     wake: Box<dyn Fn() + Send + Sync>,
 }
 
@@ -101,7 +101,7 @@ impl Mirror {
         &self.screen
     }
 
-    /// Says what is wanted from now on.
+    /// Requests what is copied from now on.
     pub fn request(&self, requested: &MirrorRequest) {
         let mut now = lock(&self.requested);
         if *now != *requested {

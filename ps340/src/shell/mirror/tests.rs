@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 const LINE: LineId = LineId(1);
 
-/// A machine that was told something, and a mirror with the number of times that it woke somebody.
+/// A machine that received something, and a mirror with the number of times that it woke somebody.
 fn machine(commands: &str) -> (Machine, Mirror, Arc<AtomicUsize>) {
     let mut machine = Machine::new(Settings::default());
     machine.step([Input::Attach(LINE), Input::Bytes(LINE, commands.into())], 0);

@@ -2,8 +2,8 @@
 
 use protocol::{Name, command::Rate};
 
-/// What an operate node asks of the walk that comes to it, beside what it does to the state: the walk knows the time and
-/// what somebody waits for.
+/// What an operate node asks of the walk that comes to it, beside what it does to the state: the walk knows the time
+/// and what somebody waits for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Asked<'a> {
     /// Nothing.

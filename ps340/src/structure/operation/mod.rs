@@ -1,5 +1,5 @@
-//! What operate nodes do to the state below them and at their inputs, and which commands make them: a row for each, in the
-//! file of its family.
+//! What operate nodes do to the state below them and at their inputs, and which commands make them: a row for each, in
+//! the file of its family.
 
 mod asked;
 mod doubt;

@@ -16,12 +16,12 @@
 //! ```
 //!
 //! - `named` is the command that makes such a node; for a matrix, that of the matrix.
-//! - `from` stands once for each command that makes the operation. [`Degenerate`] refuses it; `in context` is left out if
-//!   the command says all.
+//! - `from` stands once for each command that makes the operation. [`Degenerate`] refuses it; `in context` is left out
+//!   if the command says all.
 //! - `odd` is for numbers that are taken and probably not meant, and says what becomes of them.
 //! - `at` stands once for each input, with the kinds that it takes.
-//! - `admits`, `below`, `asks` and `shows` are left out by an operation that always lets the walk through, leaves the state
-//!   as it is, asks nothing of the walk, or has no values.
+//! - `admits`, `below`, `asks` and `shows` are left out by an operation that always lets the walk through, leaves the
+//!   state as it is, asks nothing of the walk, or has no values.
 
 use super::{
     asked::Asked,
