@@ -66,7 +66,7 @@ pub enum Event {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line} of the capture: {problem}")]
 pub struct CaptureError {
-    /// Which line, from 1.
+    /// The line, from 1.
     pub line: u64,
     /// What is wrong with it.
     pub problem: CaptureProblem,

@@ -271,7 +271,7 @@ impl<W: Write> Rows<'_, W> {
         }
     }
 
-    /// Lists a text, with each command behind its bytes.
+    /// Lists a text, with each command after its bytes.
     ///
     /// - `before`: bytes of commands before it.
     fn commands(&mut self, body: &Body<'_>, before: u64, commands: &mut CommandReader) {
@@ -346,9 +346,9 @@ struct Body<'a> {
 
 /// Where the bytes of a body stand in its packet.
 enum BytePositions {
-    /// One behind the other from here on.
+    /// One after the other from here on.
     From(usize),
-    /// Each with its escape character, if it has one, at these places; the last one is the end.
+    /// Each with its escape character, if it has one, at these positions; the last one is the end.
     At(Vec<usize>),
     /// Nowhere: they were decoded.
     Decoded,
@@ -360,7 +360,7 @@ impl<'a> Body<'a> {
             PacketForm::Count | PacketForm::Long => BytePositions::From(form.overhead().0),
             PacketForm::Escape => {
                 let mut places = Vec::with_capacity(payload.len() + 2);
-                let mut at = 1; // behind the start byte: the route, then the data
+                let mut at = 1; // after the start byte: the route, then the data
                 while at < packet.len() {
                     places.push(at);
                     at += if packet[at] == ESCAPE { 2 } else { 1 };
@@ -382,7 +382,7 @@ impl<'a> Body<'a> {
         Body { payload, packet: &[], positions: BytePositions::Decoded }
     }
 
-    /// The place of byte `index` of the data in its packet; that of its end for their number.
+    /// The position of byte `index` of the data in its packet; that of its end for their number.
     fn at(&self, index: usize) -> usize {
         match &self.positions {
             BytePositions::From(start) => start + index,

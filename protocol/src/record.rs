@@ -12,13 +12,13 @@ use std::{fmt, ops::Range};
 /// Largest binary record in bytes; what fits into one packet. Ours.
 pub const MAX_RECORD: usize = 1 << 20;
 
-/// Why a binary record could not be read.
+/// The reason why a binary record could not be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("byte {offset}, {field}: {problem}")]
 pub struct BinaryError {
     /// Where the field begins, in bytes from the start of the packet body.
     pub offset: usize,
-    /// Which field.
+    /// The field.
     pub field: &'static str,
     /// What is wrong with it.
     pub problem: BinaryProblem,
@@ -45,12 +45,12 @@ pub enum BinaryProblem {
     /// More than a limit allows.
     #[error("{found} is more than the limit {limit}")]
     TooMany {
-        /// What was asked for.
+        /// The amount that was requested.
         found: usize,
         /// What is allowed.
         limit: usize,
     },
-    /// A command as text that cannot be read; its message with the place in the text.
+    /// A command as text that cannot be read; its message with the position in the text.
     #[error("{0}")]
     Text(String),
     /// A part or an end of a vector list that was never begun (or was given up).
@@ -69,11 +69,11 @@ pub enum BinaryProblem {
     },
 }
 
-/// Why a command has no binary form.
+/// The reason why a command has no binary form.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{what}: {found} is more than the limit {limit}")]
 pub struct EncodeError {
-    /// Which part of the command.
+    /// The part of the command.
     pub what: &'static str,
     /// Its size.
     pub found: usize,

@@ -1,6 +1,6 @@
 //! The dumps in `PROTOCOL.md` are what the code produces.
 //!
-//! A dump stands behind a comment that names it. To write them anew: `PROTOCOL_DOCUMENT=write cargo test -p protocol`.
+//! A dump stands after a comment that names it. To write them anew: `PROTOCOL_DOCUMENT=write cargo test -p protocol`.
 
 use protocol::{
     command::{Command, binary::Opcode, parse},

@@ -8,7 +8,7 @@ pub const MAX_DISK: usize = 8 << 20;
 /// Files on the disk. Ours.
 pub const MAX_FILES: usize = 1_000;
 
-/// Why the disk did not do something.
+/// The reason why the disk did not do something.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DiskFault {
     /// A file that is not there.

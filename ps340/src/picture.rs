@@ -21,7 +21,7 @@ pub struct Picture {
     pixels: Vec<[f32; 3]>,
 }
 
-/// Why a picture was not made or not written.
+/// The reason why a picture was not made or not written.
 #[derive(Debug, thiserror::Error)]
 pub enum PictureError {
     /// The number of pixels is not width times height, or the picture is empty.

@@ -198,7 +198,7 @@ pub fn main() -> ExitCode {
 /// How the window begins.
 ///
 /// # Errors
-/// Which file cannot be read, or which of its lines is wrong.
+/// The file that cannot be read, or the line of it that is wrong.
 #[cfg(feature = "window")]
 fn appearance(mapping: Option<&std::path::Path>, scale: Option<f32>) -> Result<console::Appearance, String> {
     let mut appearance = console::Appearance { scale, ..Default::default() };

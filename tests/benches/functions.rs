@@ -22,7 +22,7 @@ const REPEATS: usize = 15;
 const FIRINGS: u64 = 2_000_000;
 /// Lengths of the chains.
 const LENGTHS: [u32; 5] = [10, 100, 1_000, 10_000, 100_000];
-/// Messages that are under way at the same time.
+/// Messages that are on their way at the same time.
 const UNDER_WAY: u64 = 64;
 /// The object at the end of each network: none, so that its messages come out as effects.
 const END: ObjectId = ObjectId(0);

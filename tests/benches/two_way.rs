@@ -2,7 +2,7 @@
 //!
 //! First proves that the flux that was sent out is found again, that a second view is the same as if it were the first,
 //! and that the error falls with more samples. The error is the relative mean squared error off the ball, against a
-//! picture of other random numbers with very many samples; its own error is told. On one thread, so that seconds are
+//! picture of other random numbers with very many samples; its own error is printed. On one thread, so that seconds are
 //! those of a processor. `cargo bench -p tests --bench two_way`
 
 use host::color::srgb::LUMINANCE;

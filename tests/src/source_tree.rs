@@ -143,7 +143,7 @@ fn quoted(rest: &str, quote: char) -> usize {
     rest.len()
 }
 
-/// The members of a group in braces, from behind its `{`, as they are written.
+/// The members of a group in braces, from after its `{`, as they are written.
 pub fn members(group: &str) -> Vec<&str> {
     let mut members = Vec::new();
     let (mut depth, mut begin) = (0_usize, 0);

@@ -1,6 +1,6 @@
-//! The conformance suite on our own machine, in a seeded selection of the ways in which commands travel.
+//! The conformance suite on our own machine, in a seeded selection of the transports of commands.
 //!
-//! With `PERIS_LONG=1` every way is walked.
+//! With `PERIS_LONG=1` every transport is used.
 
 use protocol::command::{
     Command, CommandReader, Object,
@@ -112,7 +112,7 @@ fn cases_pass_in_every_way_and_cut_at_random_places() {
     let ways: Vec<(Transport, Option<u64>)> =
         Transport::all().into_iter().flat_map(|way| [(way, None), (way, Some(340))]).collect();
     let machines = ways.iter().enumerate().map(|(seed, (way, cut))| {
-        // Each way has its own share of the cases; together they have all of them.
+        // Each transport has its own share of the cases; together they have all of them.
         let share = cases.iter().enumerate().filter(|(n, _)| long || n % ways.len() == seed).map(|(_, case)| case);
         (play(machine(), *way, *cut, share), *way, *cut)
     });

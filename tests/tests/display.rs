@@ -1,4 +1,4 @@
-//! How pictures are shown: exposure, tone, what files tell, and reconstruction filters, as a user meets them.
+//! How pictures are shown: exposure, tone, what files record, and reconstruction filters, as a user meets them.
 
 use host::picture::Picture;
 use host::picture::display::DisplayTransform;

@@ -65,7 +65,7 @@ fn marked(folder: &Path) -> Vec<String> {
     processes.filter(|name| name.parse::<u32>().is_ok()).filter(is_marked).collect()
 }
 
-/// What is in a folder and in those inside it, but for files that a program was told to make.
+/// What is in a folder and in those inside it, but for files that a program was asked to make.
 fn left(folder: &Path, made: &[&str]) -> Vec<String> {
     let mut names = Vec::new();
     for entry in fs::read_dir(folder).expect("it is there").map(|entry| entry.expect("it can be read")) {
@@ -132,7 +132,7 @@ fn a_signal_after_the_machine_is_ready_ends_it_as_asked() {
     // As nohup does it.
     let script = "trap '' HUP; exec \"$0\" \"$@\"";
     for outlives in [false, true] {
-        // Whoever started the tests may have told them to ignore a hang-up.
+        // Whoever started the tests may have made them ignore a hang-up.
         let (program, first) = if outlives { ("sh", ["-c", script]) } else { ("env", ["--default-signal=HUP", "--"]) };
         let mut command = Command::new(program);
         command
@@ -165,7 +165,7 @@ fn a_machine_that_stands_still_ends_with_a_host_that_is_killed() {
     let end = Instant::now() + TIMEOUT;
     let machine = loop {
         let others = marked(folder.path()).into_iter().find(|process| *process != own);
-        // Its name tells that it is the machine already, and not yet the host that makes it.
+        // Its name shows that it is the machine already, and not yet the host that makes it.
         let name =
             others.as_ref().map(|process| fs::read_to_string(format!("/proc/{process}/comm")).unwrap_or_default());
         match (others, name) {

@@ -295,7 +295,7 @@ fn keys_of_the_workstation_make_the_host_render_tell_the_view_and_end() {
     let ended = shown.join().unwrap();
     assert_eq!(ended.code, Some(0), "{}", ended.errors);
     assert!(machine.runs(), "the workstation outlives its host");
-    // The view that was rendered was told first, then, in the end, the one that was set after it.
+    // The view that was rendered was reported first, then, in the end, the one that was set after it.
     let told: Vec<&str> = ended.out.lines().filter(|line| line.starts_with("camera(")).collect();
     assert!(told.len() == 2 && told[0] != told[1], "{}{}", ended.out, ended.errors);
     assert_eq!(fs::read_to_string(folder.path().join("camera.txt")).unwrap().trim_end(), told[1]);

@@ -1,4 +1,4 @@
-//! Materials as somebody writes them in a script: names, numbers that patterns tell, and what is said of mistakes.
+//! Materials as somebody writes them in a script: names, numbers that patterns give, and the errors for mistakes.
 
 use host::color::shipped;
 use host::illumination::material::{Finish, MaterialKind, RefractiveIndex, Transparent};

@@ -52,7 +52,7 @@ impl Program {
 
 /// Asks, reads the answers, and makes a mistake with every tenth question; each answer and each error is its own.
 ///
-/// The network hands the number of the question back, behind the name of the program.
+/// The network hands the number of the question back, after the name of the program.
 fn ask(line: &str, name: &str) {
     let mut program = Program::attach(line);
     let network = format!(

@@ -30,7 +30,7 @@ fn spheres(seed: u64) -> [Mesh; 3] {
     })
 }
 
-/// The places of the triangles of a mesh, sorted.
+/// The positions of the triangles of a mesh, sorted.
 fn places(mesh: &Mesh) -> Vec<[[u64; 3]; 3]> {
     let bits = |corner: DVec3| corner.to_array().map(f64::to_bits);
     let mut places: Vec<_> = (0..mesh.triangles.len()).map(|t| mesh.corners(t).map(bits)).collect();

@@ -224,7 +224,7 @@ fn check_folder(folder: &Path) -> Result<(), Problem> {
     }
 }
 
-/// Writes a file that has not found its place into another folder, and adds to the problem where it is.
+/// Writes a file that could not be written to its destination into another folder, and adds to the problem where it is.
 fn saved_elsewhere(name: &OsStr, problem: Problem, content: &dyn Fn(&mut Writer<'_>) -> io::Result<()>) -> Problem {
     let keep = |folder: &Path| {
         let draft = Draft::new(folder).ok()?;

@@ -1,4 +1,4 @@
-//! Why a file is not written.
+//! The reason why a file is not written.
 
 use std::io;
 use std::path::PathBuf;
@@ -52,7 +52,7 @@ pub enum Problem {
     Elsewhere {
         /// Where it is.
         saved_as: PathBuf,
-        /// Why it is not in its place.
+        /// The reason why it is not at its destination.
         why: Box<Problem>,
     },
 }

@@ -7,7 +7,7 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// A file that grows: its name has `.part` behind it until it is finished.
+/// A file that grows: its name has `.part` after it until it is finished.
 ///
 /// When the process is killed, what was written until then is left under that name, and an older file under the whole
 /// name is as it was.

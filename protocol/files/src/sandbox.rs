@@ -8,7 +8,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A folder that is open. Files get their places below it, and nowhere else: the system itself resolves their names
+/// A folder that is open. Files are created below it, and nowhere else: the system itself resolves their names
 /// inside the folder, so that neither `..` nor a link, even one that changes meanwhile, leads out of it.
 ///
 /// Where the system cannot do so, names are resolved step by step, and no link is followed. Where it cannot even name a
@@ -41,7 +41,7 @@ impl Sandbox {
         &self.path
     }
 
-    /// Tests the place of a file below the folder. A link that has its name is refused.
+    /// Tests the destination of a file below the folder. A link that has its name is refused.
     ///
     /// - `name`: seen from the folder, or from the root of the file system.
     ///

@@ -13,9 +13,9 @@ const DEFAULT_BAUD: u32 = 9600;
 /// A line of the workstation: where hosts attach, and how it behaves.
 ///
 /// ```
-/// use protocol::address::{LineAddress, Place};
+/// use protocol::address::{Endpoint, LineAddress};
 /// let line: LineAddress = "pty:,speed=9600,flow=xonxoff".parse().unwrap();
-/// assert_eq!((line.place, line.conditions.speed), (Place::Pty(None), Some(9600)));
+/// assert_eq!((line.endpoint, line.conditions.speed), (Endpoint::Pty(None), Some(9600)));
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LineAddress {
@@ -40,7 +40,7 @@ pub enum Endpoint {
     Stdio,
     /// `file:PATH`: plays a file, captured or plain, as a host would send it.
     File {
-        /// Which file.
+        /// The file.
         path: PathBuf,
         /// `pace=captured`: at the times of the capture, instead of as fast as it goes.
         timed: bool,
@@ -50,13 +50,13 @@ pub enum Endpoint {
 /// A serial device and its settings.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Serial {
-    /// Which device.
+    /// The device.
     pub device: PathBuf,
     /// Bits a second.
     pub baud: u32,
     /// 7 or 8.
     pub data_bits: u8,
-    /// The bit behind the data.
+    /// The bit after the data.
     pub parity: Parity,
     /// 1 or 2.
     pub stop_bits: u8,
@@ -91,7 +91,7 @@ pub struct Conditions {
 /// A text that is no address of a line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LineAddressError {
-    /// No known kind, or nothing behind it.
+    /// No known kind, or nothing after it.
     #[error(
         "'{0}' is no line; give tcp:HOST:PORT, unix:PATH, pty:, serial:DEVICE[,BAUD[,8N1]], stdio:, file:PATH or \
          parallel:HOST:PORT"

@@ -49,7 +49,7 @@ pub enum Problem {
     /// A text that is too long; the rest of it is left out.
     #[error("the text is longer than {MAX_TEXT} characters and is cut")]
     LongString,
-    /// Attributes or an outline behind the last polygon of a command; they are left out.
+    /// Attributes or an outline after the last polygon of a command; they are left out.
     #[error("no polygon follows, so this has no effect")]
     NoPolygon,
     /// A name that is none.
@@ -90,7 +90,7 @@ pub enum Problem {
     LongStatement,
 }
 
-/// A fault before its place and text are looked up; small, so that it travels cheaply through the parser.
+/// A fault before its position and text are looked up; small, so that it travels cheaply through the parser.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Fault {
     pub(super) span: Range<usize>,
@@ -119,7 +119,7 @@ pub struct CommandError {
 }
 
 impl CommandError {
-    /// Looks up the place of a fault in the statement `text`.
+    /// Looks up the position of a fault in the statement `text`.
     pub(super) fn new(text: &[u8], fault: Fault) -> CommandError {
         let start = fault.span.start.min(text.len());
         let end = fault.span.end.clamp(start, text.len());
@@ -146,7 +146,7 @@ impl CommandError {
         self
     }
 
-    /// The message without the place.
+    /// The message without the position.
     pub fn message(&self) -> String {
         let mut message = String::new();
         let hint = match self.problem {

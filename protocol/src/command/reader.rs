@@ -34,7 +34,7 @@ enum LexicalState {
     Comment,
     /// A comment before the first token of a statement; it is dropped.
     FirstComment,
-    /// Behind a statement that was too long; all up to the next `;` is dropped.
+    /// After a statement that was too long; all up to the next `;` is dropped.
     Dropped,
 }
 
@@ -42,7 +42,7 @@ enum LexicalState {
 ///
 /// [`push`](Self::push) takes the bytes as they come, and the iterator gives the commands of all statements that are
 /// complete; it gives none when the next `;` is still to come, and goes on after more was pushed. After an error it
-/// resumes behind the next `;`; lines and columns of errors count from the beginning of the stream. `!RESET`, at the
+/// resumes after the next `;`; lines and columns of errors count from the beginning of the stream. `!RESET`, at the
 /// beginning of a line also inside a text or a comment, drops what is unfinished before it.
 ///
 /// ```
@@ -75,7 +75,7 @@ pub struct CommandReader {
     packet_end: u64,
     /// Where in the stream the text or the comment begins that `lexical_state` is in.
     opened: u64,
-    /// How far lines were counted, as an offset into the buffer: line ends before, and bytes behind the last of them.
+    /// How far lines were counted, as an offset into the buffer: line ends before, and bytes after the last of them.
     counted: usize,
     lines: usize,
     columns: usize,
@@ -237,7 +237,7 @@ impl CommandReader {
         }
     }
 
-    /// Whether the `!` at an offset is a `!RESET` that counts; none if more of the stream must come to tell.
+    /// Whether the `!` at an offset is a `!RESET` that counts; none if more of the stream must come to decide.
     fn reset_at(&self, at: usize) -> Option<bool> {
         let counts = self.lexical_state == LexicalState::Code || matches!(self.byte_before(at), b'\n' | b'\r');
         let text = &self.buffer[at..self.buffer.len().min(at + RESET.len())];

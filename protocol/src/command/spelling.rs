@@ -1,4 +1,4 @@
-//! Which word was meant: the distance between spellings.
+//! The word that was meant: the distance between spellings.
 
 /// Longest word that is compared, in bytes; words of the language are shorter.
 const LONGEST: usize = 40;

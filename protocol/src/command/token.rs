@@ -49,7 +49,7 @@ pub enum TokenKind {
     Bad(Problem),
 }
 
-/// A token and its place.
+/// A token and its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Token {
     /// What it is.

@@ -25,7 +25,7 @@ pub enum Side {
 pub struct ParallelListing {
     host: ParallelFrameReader,
     machine: ParallelFrameReader,
-    /// The command under way.
+    /// The command in progress.
     command: Option<Code>,
     /// What the next words of the host are, last one first.
     from_host: Vec<&'static str>,

@@ -95,7 +95,7 @@ impl Code {
 pub struct CommandWord {
     /// What.
     pub code: Code,
-    /// Which workstation at the host, 0 to 15; the machine answers with the same.
+    /// The workstation at the host, 0 to 15; the machine answers with the same.
     pub unit: u8,
 }
 

@@ -109,7 +109,7 @@ pub fn decode(body: &[u8]) -> impl Iterator<Item = Result<RasterCommand, BinaryE
     std::iter::from_fn(move || (at < body.len()).then(|| record(body, &mut at, &mut ())))
 }
 
-/// Reads one record of `body` from `at` on and moves `at` behind it, or to the end after an error.
+/// Reads one record of `body` from `at` on and moves `at` past it, or to the end after an error.
 ///
 /// # Errors
 /// [`BinaryError`] with the offset in `body`.

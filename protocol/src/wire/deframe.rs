@@ -49,7 +49,7 @@ impl Frame<'_> {
     }
 }
 
-/// Why bytes are dropped.
+/// The reason why bytes are dropped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoiseReason {
     /// A count start byte without two count characters.
@@ -61,7 +61,7 @@ pub enum NoiseReason {
     /// A long packet whose payload does not agree with its check; all of it is dropped.
     #[error("the payload of a long packet does not agree with its check")]
     BadPayload,
-    /// An escape start byte with the start byte of another packet behind it.
+    /// An escape start byte with the start byte of another packet after it.
     #[error("no route follows the start byte of an escape packet")]
     NoRoute,
     /// An escape packet that does not end.
@@ -117,7 +117,7 @@ pub struct FrameDecoder {
 #[derive(Clone, Copy, Debug, Default)]
 struct Scan {
     bytes: usize,
-    /// The next byte stands behind an escape character.
+    /// The next byte stands after an escape character.
     escaped: bool,
 }
 
@@ -337,7 +337,7 @@ fn scan_escaped(bytes: &[u8], scan: &mut Scan) -> Step {
     while at < limit {
         match bytes[at..limit].iter().position(|byte| is_escaped(*byte)) {
             Some(clear) if bytes[at + clear] != ESCAPE => return Step::Escaped(at + clear),
-            // What stands behind the escape character is data.
+            // What stands after the escape character is data.
             Some(clear) => at += clear + 2,
             None => at = limit,
         }

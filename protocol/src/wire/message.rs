@@ -54,7 +54,7 @@ impl MessageForm {
     }
 }
 
-/// Why a message did not arrive.
+/// The reason why a message did not arrive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MessageError {
     /// A line of text that is longer than [`MAX_MESSAGE`]; it is dropped up to its end.
@@ -113,7 +113,7 @@ impl MessageWriter {
 
 /// The host's side: messages out of the stream from the machine, however it arrives.
 ///
-/// It takes every byte for text until [`expect`](Self::expect) says that packets were asked for. From then on it takes
+/// It takes every byte for text until [`expect`](Self::expect) notes that packets were requested. From then on it takes
 /// both, since messages that were on their way still come as text.
 ///
 /// It gives the messages as an iterator. Reports about the host's own commands are apart from them, in
@@ -143,7 +143,7 @@ impl Default for MessageReader {
 }
 
 impl MessageReader {
-    /// Says which form was asked for; to be called when the request is sent.
+    /// Notes which form was requested; to be called when the request is sent.
     pub fn expect(&mut self, form: MessageForm) {
         self.form = form;
     }

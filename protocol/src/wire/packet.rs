@@ -16,7 +16,7 @@ pub const ESCAPE_START: u8 = 22;
 /// Escape character of escape packets: DLE, control-P. The byte after it is data, whatever it is. \[U\]
 pub const ESCAPE: u8 = 16;
 /// Most bytes of an escape packet in the stream: its start byte, then route and [`MAX_PAYLOAD`] bytes of data, each
-/// behind an escape character. Ours.
+/// after an escape character. Ours.
 pub const MAX_ESCAPE_STREAM: usize = 3 + 2 * MAX_PAYLOAD;
 
 /// Start byte of a long packet: GS. Ours.
@@ -28,7 +28,7 @@ pub const LONG_TRAILER: usize = 4;
 /// Most payload bytes in a long packet. Ours.
 pub const MAX_PAYLOAD: usize = MAX_RECORD;
 
-/// Which kind of packet.
+/// The kind of packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PacketForm {
     /// The historical one: start byte, two count characters, route, data.
@@ -209,7 +209,7 @@ pub fn write_escape_packet(route: Route, data: &[u8], out: &mut Vec<u8>) -> Resu
     Ok(())
 }
 
-/// Whether a byte stands in an escape packet behind the escape character only.
+/// Whether a byte stands in an escape packet after the escape character only.
 pub const fn is_escaped(byte: u8) -> bool {
     matches!(byte, ESCAPE_START | ESCAPE | COUNT_START | LONG_START)
 }

@@ -15,7 +15,7 @@ pub const PREFERRED_PAYLOAD: usize = 136 << 10;
 const _: () = assert!(PREFERRED_PAYLOAD <= MAX_PAYLOAD);
 const _: () = assert!(binary::PART_POINTS * 16 + binary::PART_POINTS / 8 + 3 <= PREFERRED_PAYLOAD);
 
-/// Why commands were not sent.
+/// The reason why commands were not sent.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SendError<E> {
     /// A command has no binary form.

@@ -11,18 +11,18 @@
 /// The character that stands for 0.
 pub const SIX_BIT_ZERO: u8 = b'0';
 
-/// Why characters are no 6-bit form.
+/// The reason why characters are no 6-bit form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SixBitError {
     /// A character that stands for nothing.
     #[error("character {at}: byte {byte} is no 6-bit character")]
     NoCharacter {
-        /// Its place, from 0.
+        /// Its position, from 0.
         at: usize,
         /// What it is.
         byte: u8,
     },
-    /// One character too many, or bits behind the last byte that are not 0.
+    /// One character too many, or bits after the last byte that are not 0.
     #[error("the characters do not make whole bytes")]
     Incomplete,
 }

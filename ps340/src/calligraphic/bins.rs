@@ -1,4 +1,4 @@
-//! Which strokes touch which tile, in their order.
+//! The strokes that touch each tile, in their order.
 
 use super::optics::Optics;
 use super::tile::{TILE_HEIGHT, TILE_WIDTH};

@@ -21,7 +21,7 @@ pub struct Controls {
     ///
     /// On at the start, as light that flickers 3 to 30 times a second can harm people.
     pub steady: bool,
-    /// Which of the screens that SET DISPLAYS distinguishes is looked at, 0..=3.
+    /// The screen that is looked at, of those that SET DISPLAYS distinguishes, 0..=3.
     pub screen: u8,
 }
 

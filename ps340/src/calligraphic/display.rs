@@ -307,7 +307,7 @@ struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// Linear red, green and blue of some pixels, by the place of the first in a plane.
+    /// Linear red, green and blue of some pixels, by the index of the first in a plane.
     #[inline(always)]
     fn colors(&self, place: usize) -> [[f32; LANES]; 3] {
         let mut colors = [[0.0; LANES]; 3];

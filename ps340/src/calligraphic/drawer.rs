@@ -55,7 +55,7 @@ impl Choice {
     ///   be the same everywhere.
     ///
     /// # Errors
-    /// Why a graphics processor that must be is not there.
+    /// The reason why a graphics processor that is required is not there.
     pub fn drawer(self, has_window: bool) -> Result<Drawer, GpuError> {
         let opened = match (self, has_window) {
             (Choice::Gpu, _) => Gpu::open(true)?,

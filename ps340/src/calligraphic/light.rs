@@ -97,7 +97,7 @@ impl ScreenLight {
         self.add(bins, strokes);
     }
 
-    /// Writes more strokes behind those that were written before.
+    /// Writes more strokes after those that were written before.
     pub(super) fn add(&mut self, bins: &mut Bins, strokes: &[Stroke]) {
         let (optics, guns, extent) = (self.optics, self.guns, tiles(self.optics.size));
         let mut rest = strokes;

@@ -17,7 +17,7 @@
 //! time, and [`SharedDisplay`] is the one display that window and files show.
 //!
 //! # Energy
-//! A stroke deposits length times mean intensity times colour, whatever its angle, place and the size of
+//! A stroke deposits length times mean intensity times colour, whatever its angle, position and the size of
 //! the picture ([`ScreenLight::total`]), and whatever the focus. Pixels take the light at their centres. By Poisson's
 //! summation formula the error of such a sum is at most 4 exp(-2 pi^2 s^2) for a spot of standard deviation s in
 //! pixels, and so the spot never gets smaller than [`SPOT_FLOOR`] = 0.75 pixels: 6e-5. In a picture too small

@@ -34,7 +34,7 @@ fn numbers(mut seed: u64) -> impl FnMut() -> f32 {
     }
 }
 
-/// Strokes of every length, direction and place, in colours.
+/// Strokes of every length, direction and position, in colours.
 pub(super) fn jumble(count: usize) -> Vec<Stroke> {
     let mut next = numbers(5);
     let place = |next: &mut dyn FnMut() -> f32| [next() * 2.4 - 1.2, next() * 2.4 - 1.2];

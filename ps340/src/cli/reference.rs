@@ -5,7 +5,7 @@ use crate::functions::page;
 use protocol::command::reference;
 use std::process::ExitCode;
 
-/// Tells about the functions: all in a table, or one in full.
+/// Prints the reference of the functions: all in a table, or one in full.
 pub(super) fn functions(name: Option<&str>) -> Result<ExitCode, ToolError> {
     let text = match name {
         None => page::table(),
@@ -14,7 +14,7 @@ pub(super) fn functions(name: Option<&str>) -> Result<ExitCode, ToolError> {
     print(&text).map(|()| ExitCode::SUCCESS)
 }
 
-/// Tells about the commands: all in a table, or one in full.
+/// Prints the reference of the commands: all in a table, or one in full.
 pub(super) fn commands(words: &[String]) -> Result<ExitCode, ToolError> {
     let text = if words.is_empty() {
         reference::list()

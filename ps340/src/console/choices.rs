@@ -58,7 +58,7 @@ pub struct Choices {
     pub raster: RasterPlacement,
     /// Whether dials, keys and buttons are there.
     pub devices: bool,
-    /// The view beside the screens, by its place in the list.
+    /// The view beside the screens, by its index in the list.
     pub view: Option<usize>,
     /// What the mouse is; none for what the program that runs needs.
     pub role: Option<MouseRole>,

@@ -2,7 +2,7 @@
 
 use std::io;
 
-/// Why there is no window, or no machine.
+/// The reason why there is no window, or no machine.
 #[derive(Debug, thiserror::Error)]
 pub enum ConsoleError {
     /// The machine cannot run.

@@ -8,7 +8,7 @@ use super::{
 use crate::{machine::Panel, port::Label};
 use egui::{Align2, Color32, FontId, Rect, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
 
-/// Which row of the function keys a click presses, if no key is held.
+/// The row of the function keys that a click presses, if no key is held.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Row {
     /// 1 to 12.

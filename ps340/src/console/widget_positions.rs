@@ -1,7 +1,7 @@
 //! Where the devices are in the window, for scripts that work it by the events of the window system.
 //!
-//! With `PS340_LOG=debug` each device is logged when it comes to another place: `dial 1 at 52 741`, in pixels from the
-//! window's upper left corner.
+//! With `PS340_LOG=debug` each device is logged when it comes to another position: `dial 1 at 52 741`, in pixels from
+//! the window's upper left corner.
 
 use egui::{Id, Pos2, Ui};
 

@@ -18,7 +18,7 @@ use std::{
 /// `ready` receives each address in use, as a line of text.
 ///
 /// # Errors
-/// Why there is no window; then the machine is not run either.
+/// The reason why there is no window; then the machine is not run either.
 pub fn open(
     options: &Options,
     appearance: Appearance,

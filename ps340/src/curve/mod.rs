@@ -32,7 +32,7 @@ pub struct Expanded {
     pub parameters: [f64; 2],
 }
 
-/// Why a curve has no points.
+/// The reason why a curve has no points.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum CurveFault {
     /// An order outside of 1..=[`MAX_ORDER`].

@@ -14,7 +14,7 @@ pub type Behaviour = fn(&mut Firing) -> Result<(), Problem>;
 /// Returns false, and changes nothing, if the values are others or the result is not finite.
 pub type InPlace = fn(message: &mut Value, constant: &Value, position: QueuePosition) -> bool;
 
-/// Which of two inputs is the queue.
+/// The one of two inputs that is the queue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum QueuePosition {
     /// Input 1; input 2 is a constant.
@@ -125,7 +125,7 @@ pub struct Shape {
     pub size: u16,
 }
 
-/// Why F:NAME or F:NAME(n) cannot be instanced.
+/// The reason why F:NAME or F:NAME(n) cannot be instanced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SizeError {
     /// The family needs an n.

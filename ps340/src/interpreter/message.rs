@@ -11,7 +11,7 @@ use crate::{
 };
 use protocol::{Name, command::CommandError, record::BinaryError};
 
-/// Which of the three instances ERROR, WARNING and INFORMATION passes a message on.
+/// The one of the three instances ERROR, WARNING and INFORMATION that passes a message on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
     /// Something was not done.
@@ -36,18 +36,18 @@ pub enum Message {
     Binary(BinaryError),
     /// W 3: a name got a new definition.
     Redefined(Name),
-    /// E 4: structure commands in the wrong place.
+    /// E 4: structure commands out of place.
     Structure(String),
     /// E 5 and on: a message that a function cannot take, or a result that it cannot give.
     Function {
-        /// Which function.
+        /// The function.
         name: String,
         /// What is wrong.
         fault: Fault,
     },
     /// E 5 and on, W 9: a message that a node does not take.
     Node {
-        /// Which node.
+        /// The node.
         name: String,
         /// What is wrong.
         fault: NodeFault,
@@ -84,7 +84,7 @@ pub enum Message {
     Rendering {
         /// Of which node.
         name: String,
-        /// Why not.
+        /// The reason.
         fault: RenderingFault,
     },
     /// W 30 to 33, E 550 to 558: a raster operation.
@@ -186,7 +186,7 @@ impl std::fmt::Display for Message {
     }
 }
 
-/// Which inputs a node has, for somebody who asked for another.
+/// The inputs that a node has, for somebody who named another.
 pub(super) fn inputs_of(node: &Node, name: &str) -> String {
     match node {
         Node::Group(_) => format!("a structure has no inputs, nodes that are named inside it do, such as {name}.NODE"),

@@ -25,7 +25,7 @@ struct Tape {
 }
 
 impl Capture {
-    /// Begins a capture, which grows under its name with `.part` behind it until it is finished.
+    /// Begins a capture, which grows under its name with `.part` after it until it is finished.
     ///
     /// # Errors
     /// Those of the file.

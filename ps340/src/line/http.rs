@@ -45,7 +45,7 @@ pub(super) struct RequestDetector {
 
 impl RequestDetector {
     /// Takes the next bytes, and leaves those that may pass. Returns whether a request line ends in them; then the
-    /// bytes of that line and all behind it do not pass.
+    /// bytes of that line and all after it do not pass.
     pub(super) fn finds_request(&mut self, bytes: &mut Vec<u8>) -> bool {
         if !self.held.is_empty() {
             self.line.truncate(self.line.len() - self.held.len());

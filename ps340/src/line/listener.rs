@@ -43,7 +43,7 @@ pub enum Listener {
 #[derive(Debug)]
 pub struct SocketFile {
     path: PathBuf,
-    /// Which file it is: device and number; none if the system does not tell.
+    /// The file: device and number; none if the system does not report them.
     identity: Option<(u64, u64)>,
 }
 

@@ -68,7 +68,7 @@ pub enum LineEvent {
     Closed {
         /// The line that closed.
         line: LineId,
-        /// Why, if not by a plain end.
+        /// The reason, if it is not a plain end.
         error: Option<io::Error>,
     },
     /// An endpoint from which all hosts have gone and to which no other will attach: standard input, or a file.
@@ -89,7 +89,7 @@ pub type Events = mpsc::Sender<LineEvent>;
 pub struct LineContext {
     /// The channel into the machine's thread.
     pub events: Events,
-    /// Takes what passes, if it is wanted.
+    /// Takes what passes, if a capture is requested.
     pub capture: Option<Capture>,
 }
 

@@ -83,7 +83,7 @@ impl PseudoTerminal {
         grantpt(&master)?;
         unlockpt(&master)?;
         let path = PathBuf::from(OsStr::from_bytes(ptsname(&master, Vec::new())?.as_bytes()));
-        // The settings stay when nobody has the other side open. From this closing on the system tells whether it is.
+        // The settings stay when nobody has the other side open. From this closing on the system reports whether it is.
         let slave = open(&path, OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC, Mode::empty())?;
         let mut settings = tcgetattr(&slave)?;
         settings.make_raw();

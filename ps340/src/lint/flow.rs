@@ -1,4 +1,4 @@
-//! Which kinds of message reach which input, and what follows: functions that never fire, arcs that always fault.
+//! The kinds of message that reach each input, and what follows: functions that never fire, arcs that always fault.
 //!
 //! From what is sent, from the devices and from the clocks, kinds spread along the arcs until nothing new comes: the
 //! least set of what can happen. What is not in it cannot.
@@ -318,7 +318,7 @@ impl<'p> Flow<'p> {
         })
     }
 
-    /// Why a function never fires; none if that was reported at another location.
+    /// The reason why a function never fires; none if that is reported at another location.
     fn why_silent(&self, name: &Name, instance: &Instance<'_>) -> Option<String> {
         let function = instance.function;
         let (mut unfed, mut waits) = (Vec::new(), Vec::new());

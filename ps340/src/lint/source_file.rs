@@ -8,7 +8,7 @@ use std::ops::Range;
 /// A location in the files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) struct Location {
-    /// Which file.
+    /// The file.
     pub(super) file: usize,
     /// Offset in it, in bytes.
     pub(super) at: usize,

@@ -1,4 +1,4 @@
-//! What comes into the machine, and what is settled before.
+//! The inputs of the machine, and the settings that are chosen before.
 
 use super::{Event, KeyboardMode, PlainText};
 use crate::line::LineId;

@@ -23,7 +23,7 @@ pub(super) struct Keyboard {
     pub(super) line: Vec<u8>,
     /// The latest command lines, oldest first.
     pub(super) remembered: VecDeque<Vec<u8>>,
-    /// Which of them was brought back: so many before the next.
+    /// The one of them that was brought back: so many before the next.
     pub(super) back: usize,
     /// Whether a prompt stands at the cursor and waits.
     pub(super) prompted: bool,

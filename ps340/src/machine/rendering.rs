@@ -1,10 +1,10 @@
-//! What rendering nodes are asked for: one after the other, each in slices of a frame.
+//! Requests to rendering nodes: one after the other, each in slices of a frame.
 //!
 //! # Decided here
 //! - All messages to input `<1>` of rendering nodes wait in one queue, so that FIX(0) after FIX(4) toggles that
 //!   rendering. While the picture is held between BEGIN and END they wait.
-//! - In a frame one rendering is begun, at once if none is running, so that it is of the moment in which it was asked
-//!   for; others wait for a frame of their own.
+//! - In a frame one rendering is begun, at once if none is running, so that it is of the moment of its
+//!   request; others wait for a frame of their own.
 //! - Every message ends with TRUE or FALSE from output `<1>`.
 //! - What changes while a rendering is made does not matter to it.
 //! - While a shaded rendering is made the vector screen is dark, and it stays dark until TURNONDISPLAY.
@@ -26,7 +26,7 @@ const RENDERING_PER_FRAME: u64 = 1_000_000;
 /// Messages of rendering nodes that wait; more are refused. Ours.
 const MAX_WAITING: usize = 1_000;
 
-/// Why a request came to nothing.
+/// The reason why a request came to nothing.
 enum Failure {
     Rendering(RenderingFault),
     Refused(Refusal),
@@ -48,7 +48,7 @@ impl Machine {
         }
     }
 
-    /// Does a frame's share of what rendering nodes were asked for.
+    /// Does a frame's share of the requests to rendering nodes.
     pub(super) fn advance_renderings(&mut self) {
         self.renderings.begun = false;
         self.begin_renderings();

@@ -41,7 +41,7 @@ impl Machine {
     /// Obeys the body of a packet on the route of messages from a host.
     ///
     /// # Errors
-    /// Why it is not obeyed.
+    /// The reason why it is not obeyed.
     pub(super) fn request_form(&mut self, line: LineId, body: &[u8]) -> Result<(), Message> {
         // A line without a writer has only one form.
         if !self.lines.writers.contains_key(&line) {

@@ -1,9 +1,9 @@
-//! Why an operation on the mass memory was refused.
+//! The reason why an operation on the mass memory was refused.
 
 use crate::structure::CopyFault;
 use protocol::Name;
 
-/// Why an operation on the mass memory was refused.
+/// The reason why an operation on the mass memory was refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Refusal {
     /// The mass memory is full.

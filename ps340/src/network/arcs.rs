@@ -9,9 +9,9 @@ pub const MAX_ARCS: usize = 4_096;
 /// Where an arc ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Destination {
-    /// Which object.
+    /// The object.
     pub object: ObjectId,
-    /// Which of its inputs.
+    /// The input.
     pub input: Input,
 }
 

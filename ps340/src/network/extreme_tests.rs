@@ -139,7 +139,7 @@ fn redefinition_and_deletion_in_the_middle_of_a_run() {
     network.define(ObjectId(50), find("NOP").unwrap(), None).unwrap();
     assert!(network.run(50, &mut effects).idle);
     assert_eq!(effects, []);
-    // Made anew while it is ready, it keeps its place in the list, without a second one.
+    // Made anew while it is ready, it keeps its position in the list, without a second one.
     network.connect(ObjectId(50), 1, ObjectId(51), Input::Number(1)).unwrap();
     for _ in 0..3 {
         network.send(ObjectId(50), Input::Number(1), Value::Integer(5), &mut effects);

@@ -24,13 +24,13 @@ pub struct Network {
     /// By the numbers of the objects, also of those that are no functions.
     pub(super) instances: Vec<Instance>,
     pub(super) ports: Pool<Port>,
-    /// Messages behind the first at each port.
+    /// Messages after the first at each port.
     pub(super) backlog: Backlog,
     pub(super) outputs: Pool<OutputArcs>,
     /// Arcs that leave objects that are no functions (yet), by object and output.
     pub(super) outside: BTreeMap<(ObjectId, u16), OutputArcs>,
     /// Those that can fire, in the order in which they became ready. An instance stands here once at most; if it
-    /// is made anew, it keeps its place.
+    /// is made anew, it keeps its position.
     pub(super) ready: Ready,
     /// The clocks, in the order of their instancing.
     pub(super) clocks: Vec<ObjectId>,
@@ -248,7 +248,7 @@ impl Network {
         self.instances.get(id.index()).filter(|instance| instance.row.is_some())
     }
 
-    /// Makes a place in the table of instances for an object, if there is none.
+    /// Makes an entry in the table of instances for an object, if there is none.
     pub(super) fn make_room(&mut self, id: ObjectId) {
         if id.index() >= self.instances.len() {
             self.instances.resize_with(id.index() + 1, || Instance::VACANT);

@@ -6,7 +6,7 @@ use crate::{
     port::{Arrival, Effect, ObjectId},
 };
 
-/// Why the short way ends before its budget.
+/// The reason why the short way ends before its budget.
 enum End {
     /// What comes next goes the long way, or nothing is ready.
     LongWay,

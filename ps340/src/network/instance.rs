@@ -66,7 +66,7 @@ impl Instance {
         self.missing <= self.slack
     }
 
-    /// The place among the ports of an input.
+    /// The index among the ports of an input.
     #[inline]
     pub(super) fn input(&self, input: Input) -> Option<usize> {
         match input {

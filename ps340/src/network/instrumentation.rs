@@ -34,7 +34,7 @@ impl Network {
         self.put_away();
     }
 
-    /// Which messages are traced.
+    /// The messages that are traced.
     pub fn traced(&self) -> &Traced {
         self.instruments.as_ref().map_or(&Traced::Nothing, |instruments| &instruments.traced)
     }

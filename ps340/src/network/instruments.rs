@@ -48,7 +48,7 @@ pub struct Trace {
     pub outcome: Delivery,
 }
 
-/// Which messages are traced.
+/// The messages that are traced.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub enum Traced {
     /// None.

@@ -4,7 +4,7 @@
 //! arrive at their destinations, in the order of the outputs and of the connections. A firing takes nothing but
 //! messages that are there, so loops are no recursion and need no stack; a budget bounds each run.
 //!
-//! An object is its own place: instances lie in a table by the numbers of the objects, so an arc leads to its end
+//! An object is its own index: instances lie in a table by the numbers of the objects, so an arc leads to its end
 //! without a search, and connections to a name outlive what the name stands for, until the name is deleted.
 //!
 //! A person may observe it, see [`Network::snapshot`]: counters, a trace of messages, breaks, single

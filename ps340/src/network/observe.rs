@@ -7,9 +7,9 @@ use protocol::Value;
 /// Where an arc begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ArcSource {
-    /// Which object.
+    /// The object.
     pub object: ObjectId,
-    /// Which of its outputs.
+    /// The output.
     pub output: u16,
 }
 
@@ -46,7 +46,7 @@ pub(super) trait Observer {
     /// A function has a fault.
     fn fails(&mut self, object: ObjectId);
 
-    /// A copy of a message that is going to be delivered, if it is wanted.
+    /// A copy of a message that is going to be delivered, if the observer needs it.
     fn copy(&self, from: Option<ArcSource>, to: Destination, message: &Value) -> Option<Value>;
 
     /// A message was delivered.

@@ -53,7 +53,7 @@ impl Network {
 }
 
 impl<'a> FunctionView<'a> {
-    /// Which object it is.
+    /// The object.
     pub const fn object(&self) -> ObjectId {
         self.object
     }

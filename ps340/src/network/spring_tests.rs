@@ -58,7 +58,7 @@ fn spring(method: Method, k: f64, c: f64, h: f64) -> Bench {
     bench
 }
 
-/// The places after each step, and the faults.
+/// The positions after each step, and the faults.
 fn steps(bench: &mut Bench, steps: u64) -> (Vec<f64>, Vec<Fault>) {
     let (mut places, mut faults) = (Vec::new(), Vec::new());
     for frame in 1..=steps {
@@ -75,7 +75,7 @@ fn steps(bench: &mut Bench, steps: u64) -> (Vec<f64>, Vec<Fault>) {
     (places, faults)
 }
 
-/// The place at time t of a spring at x = 1, at rest at first.
+/// The position at time t of a spring at x = 1, at rest at first.
 fn closed_form(k: f64, c: f64, t: f64) -> f64 {
     let (decay, square) = (c / 2.0, k - c * c / 4.0);
     if square > 0.0 {

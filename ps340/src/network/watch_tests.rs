@@ -7,7 +7,7 @@ use protocol::Value;
 use protocol::command::Input;
 use std::collections::BTreeSet;
 
-/// A chain A, B, C of F:ADDC with 1, and X behind it, which is no function.
+/// A chain A, B, C of F:ADDC with 1, and X after it, which is no function.
 fn chain() -> Bench {
     let mut bench = Bench::default();
     bench.define("A:=F:ADDC B:=F:ADDC C:=F:ADDC").connect("A<1>:<1>B B<1>:<1>C C<1>:<1>X");

@@ -25,7 +25,7 @@ impl PartialEq for OperatorCommandRow {
     }
 }
 
-/// Which of the two screens.
+/// One of the two screens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Screen {
     /// The calligraphic display.

@@ -141,7 +141,7 @@ fn size(word: &str) -> Option<[u32; 2]> {
 /// Carries out one of these commands.
 ///
 /// # Errors
-/// Why a file was not written.
+/// The reason why a file was not written.
 pub(super) fn perform(
     order: &DisplayCommand,
     machine: &mut Machine,

@@ -1,6 +1,6 @@
-//! Why an operator command is not read, or not carried out.
+//! The reason why an operator command is not read, or not carried out.
 
-/// Why a line is no operator command.
+/// The reason why a line is no operator command.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum OperatorCommandError {
     /// The first word is unknown.

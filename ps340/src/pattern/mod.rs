@@ -18,7 +18,7 @@ const TOLERANCE: f64 = 1e-9;
 /// which is 0.80000001 in 32 bits, is two repetitions of 0.4 long.
 const UNTOLD: f64 = 1e-3;
 
-/// Why a pattern cannot be applied.
+/// The reason why a pattern cannot be applied.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum PatternFault {
     /// No entries, or more than [`MAX_SEGMENTS`].
@@ -118,7 +118,7 @@ struct Run {
     length: f64,
 }
 
-/// The lines of a list; around corners, those that hang together as one run.
+/// The lines of a list; around corners, those that are connected as one run.
 fn runs(list: &VectorList, around_corners: bool) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     for to in (1..list.points.len()).filter(|to| list.is_line(*to)) {
@@ -191,7 +191,7 @@ struct Pen {
 }
 
 impl Pen {
-    /// Draws the dashes of a line whose start lies `phase` behind the beginning of a repetition.
+    /// Draws the dashes of a line whose start lies `phase` after the beginning of a repetition.
     fn line(&mut self, line: &Line, bounds: &[f64], period: f64, phase: f64) -> Result<(), PatternFault> {
         if line.length == 0.0 {
             let part = phase / period + TOLERANCE;

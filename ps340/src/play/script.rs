@@ -61,7 +61,7 @@ pub enum Expected {
     None,
 }
 
-/// A directive that cannot be read, with its place.
+/// A directive that cannot be read, with its line.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{file}:{line}: {problem}")]
 pub struct ScriptError {

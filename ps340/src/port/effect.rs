@@ -1,4 +1,4 @@
-//! What the function network wants of the rest of the machine.
+//! Effects: what the function network requests of the rest of the machine.
 
 use super::{Fault, ObjectId, RenderingRequest};
 use glam::DVec2;
@@ -11,7 +11,7 @@ pub enum Effect {
     Deliver {
         /// The object.
         object: ObjectId,
-        /// Which input of it.
+        /// The input of it.
         input: Input,
         /// The message.
         value: Value,
@@ -65,7 +65,7 @@ pub enum Effect {
     RequestRendering {
         /// The node.
         node: ObjectId,
-        /// What is wanted.
+        /// The request.
         request: RenderingRequest,
     },
     /// Characters to the host line, without any frame.
@@ -95,8 +95,8 @@ pub enum Effect {
     TerminalCsm(bool),
     /// Somebody is there: the screen is not blanked.
     Activity,
-    /// The accumulated matrix of an XFORM MATRIX node, or the vectors of an XFORM VECTOR node, are wanted at the next
-    /// update. The answer is a message [`Value::Transform`] or [`Value::Vectors`] from output 1 of the function.
+    /// The accumulated matrix of an XFORM MATRIX node, or the vectors of an XFORM VECTOR node, are requested at the
+    /// next update. The answer is a message [`Value::Transform`] or [`Value::Vectors`] from output 1 of the function.
     RequestTransform {
         /// The function that asks.
         function: ObjectId,
@@ -109,7 +109,7 @@ pub enum Effect {
         /// Of vectors: how many.
         count: u32,
     },
-    /// A pick is wanted: the first thing that an update draws inside the pick box. The answer is a message
+    /// A request for a pick: the first thing that an update draws inside the pick box. The answer is a message
     /// [`Value::Pick`] from output 1 of the function, or, if nothing is met in time, FALSE from output 2.
     RequestPick {
         /// The function that asks. A new request of it replaces the one before.
@@ -121,12 +121,12 @@ pub enum Effect {
         /// Refresh frames to wait for a hit, at least 1.
         frames: u32,
     },
-    /// The picture is wanted after the next update, from the outputs of the instance WRITEBACK.
+    /// A request for the picture after the next update, from the outputs of the instance WRITEBACK.
     RequestWriteBack {
         /// The WRITEBACK node below which; none for all that is displayed.
         node: Option<ObjectId>,
     },
-    /// The value of a VARIABLE is wanted, from output 1 of the function.
+    /// A request for the value of a VARIABLE, from output 1 of the function.
     Fetch {
         /// The function that asks.
         function: ObjectId,
@@ -137,13 +137,13 @@ pub enum Effect {
     SendTo {
         /// The object.
         name: Name,
-        /// Which input of it.
+        /// The input of it.
         input: Input,
         /// The message.
         value: Value,
     },
-    /// A label of a LABELS node is wanted: its text from output 1 of the function, its position from 2, whether it is
-    /// shown from 3.
+    /// A request for a label of a LABELS node: its text from output 1 of the function, its position from 2, whether it
+    /// is shown from 3.
     ExtractLabel {
         /// The function that asks.
         function: ObjectId,
@@ -152,7 +152,7 @@ pub enum Effect {
         /// Number of the label, from 1.
         index: u32,
     },
-    /// A file of the disk is wanted, from output 1 of the function; a long one in several messages.
+    /// A request for a file of the disk, from output 1 of the function; a long one in several messages.
     ReadDisk {
         /// The function that asks.
         function: ObjectId,
@@ -184,7 +184,7 @@ pub enum Effect {
     ForgetRequests,
     /// The machine starts again: REBOOT.
     Restart,
-    /// A line about the use of memory is wanted, as a string from output 1 of the function.
+    /// A request for a line about the use of memory, as a string from output 1 of the function.
     ReportMemory {
         /// The function that asks.
         function: ObjectId,
@@ -254,7 +254,7 @@ impl FileName {
     }
 }
 
-/// A place for text on the control devices.
+/// A label: a field for text on the control devices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Label {
     /// Over dial 1..=8.
@@ -266,7 +266,7 @@ pub enum Label {
 }
 
 impl Label {
-    /// Width of the place in characters; longer text is cut.
+    /// Width of the label in characters; longer text is cut.
     pub const fn width(self) -> usize {
         match self {
             Label::Dial(_) | Label::Key(_) => 8,

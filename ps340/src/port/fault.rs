@@ -2,7 +2,7 @@
 
 use protocol::{Kind, command::Input};
 
-/// Why a function could not fire: what a behaviour returns.
+/// The reason why a function could not fire: what a behaviour returns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Problem {
     /// The message at this input has an unacceptable kind.

@@ -59,7 +59,7 @@ impl KindSet {
         KindSet(self.0 | other.0)
     }
 
-    /// One bit for each kind, by its place in [`Kind::ALL`]; 16 at most.
+    /// One bit for each kind, by its index in [`Kind::ALL`]; 16 at most.
     pub(super) const fn bits(self) -> u32 {
         self.0 as u32
     }

@@ -31,12 +31,12 @@ impl ObjectId {
     /// No object: what referred to one that was deleted refers to this.
     pub const NOTHING: ObjectId = ObjectId(u32::MAX);
 
-    /// The object in place `index` of the tables.
+    /// The object at `index` of the tables.
     pub const fn new(index: usize) -> ObjectId {
         ObjectId(index as u32)
     }
 
-    /// Its place in the tables.
+    /// Its index in the tables.
     pub const fn index(self) -> usize {
         self.0 as usize
     }

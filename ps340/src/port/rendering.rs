@@ -1,4 +1,4 @@
-//! What a rendering node can be asked for.
+//! The requests to a rendering node.
 
 use protocol::Name;
 

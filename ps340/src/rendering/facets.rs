@@ -43,7 +43,7 @@ pub struct MeshPoint {
     pub local: DVec4,
     /// In clip space.
     pub clip: DVec4,
-    /// Which of the views shows it.
+    /// The number of the view that shows it.
     pub view: u32,
 }
 
@@ -75,7 +75,7 @@ pub struct Face {
     pub toward: bool,
     /// The surfaces of the front and the reverse, as numbers in the list of surfaces.
     pub surfaces: [u32; 2],
-    /// Which of the views shows it.
+    /// The number of the view that shows it.
     pub view: u32,
     /// Hue and saturation in which its first contour is drawn.
     pub color: [f64; 2],
@@ -145,7 +145,7 @@ pub struct Facets {
     pub surfaces: Vec<Surface>,
     /// Whether corners have colours of their own.
     pub is_colored: bool,
-    /// Ways in which they are seen.
+    /// The views in which they are seen.
     pub views: Vec<BlockView>,
     /// Lights, at least one.
     pub lights: Vec<DirectionalLight>,

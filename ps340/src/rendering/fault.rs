@@ -1,8 +1,8 @@
-//! Why a rendering was not made.
+//! The reason why a rendering was not made.
 
 use glam::DVec3;
 
-/// Why a rendering was not made; the node is then as before.
+/// The reason why a rendering was not made; the node is then as before.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RenderingFault {
     /// The picture does not meet the node.

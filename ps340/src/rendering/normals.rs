@@ -41,7 +41,7 @@ pub fn corner_normals(facets: &Facets) -> Vec<DVec3> {
     normals.collect()
 }
 
-/// Which corners share a normal: a forest in which each tree is a group.
+/// The corners that share a normal: a forest in which each tree is a group.
 struct Groups(Vec<u32>);
 
 impl Groups {

@@ -46,7 +46,7 @@ pub struct ProjectedEdge {
     pub spots: [u32; 2],
     /// Both ends in the coordinates of the rendering node, homogeneous, and their w in clip space.
     pub ends: [(DVec4, f64); 2],
-    /// Which of the edges.
+    /// The number of the edge.
     pub edge: usize,
 }
 

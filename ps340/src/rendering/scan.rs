@@ -50,7 +50,7 @@ struct Triangle {
     name: u32,
 }
 
-/// What a shader is asked for: a triangle by the number of its facet, and a position on the vector screen, -1..=1.
+/// The arguments of a shader: a triangle by the number of its facet, and a position on the vector screen, -1..=1.
 pub type Shader<'s> = &'s (dyn Fn(u32, [f64; 2]) -> [f32; 3] + Sync);
 
 impl Scan {

@@ -111,7 +111,7 @@ fn encloses(contour: &[DVec2], point: DVec2) -> bool {
     inside
 }
 
-/// The place and x of the corner farthest to the right.
+/// The index and x of the corner farthest to the right.
 fn rightmost(flat: &[DVec2], ring: &[u32]) -> (usize, f64) {
     let x = |place: usize| flat[ring[place] as usize].x;
     let place = (0..ring.len()).max_by(|a, b| x(*a).total_cmp(&x(*b))).unwrap_or(0);
@@ -129,7 +129,7 @@ fn join(flat: &[DVec2], outline: &mut Vec<u32>, hole: &[u32]) {
     outline.splice(place + 1..place + 1, inserted);
 }
 
-/// The place of a corner of a loop that is seen from a point inside, looking right.
+/// The index of a corner of a loop that is seen from a point inside, looking right.
 fn visible_corner(flat: &[DVec2], outline: &[u32], from: DVec2) -> usize {
     let at = |place: usize| flat[outline[place % outline.len()] as usize];
     // The edge that a ray to the right meets first runs upward, as the loop is counter-clockwise.

@@ -132,7 +132,7 @@ async fn open(options: &Options) -> io::Result<Opened> {
     };
     let files = Sandbox::open(&options.files)
         .map_err(|e| io::Error::new(e.kind(), format!("--files {}: {e}", options.files.display())))?;
-    // Last, without a wait behind it: an interruption leaves no part of it.
+    // Last, without a wait after it: an interruption leaves no part of it.
     let capture = options.capture.as_deref().map(|path| {
         let is_read = |line: &LineAddress| matches!(&line.endpoint, Endpoint::File { path: read, .. } if read == path);
         let created = match options.listen.iter().any(is_read) {

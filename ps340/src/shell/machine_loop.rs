@@ -31,7 +31,7 @@ pub(super) struct MachineLoop {
     files: Sandbox,
     /// Whether captures may give operator commands that reach out.
     replays_operator: bool,
-    /// Takes what the operator does, if it is wanted.
+    /// Takes what the operator does, if a capture is requested.
     capture: Option<Capture>,
     inbox: mpsc::Receiver<LineEvent>,
     timer: tokio::runtime::Runtime,

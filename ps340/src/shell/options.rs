@@ -50,7 +50,7 @@ pub struct Options {
     pub drawer: Drawer,
 }
 
-/// Why the process ended.
+/// The reason why the process ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExitReason {
     /// By the operator command `quit`, with the operator on standard input, or with the last host that could come.

@@ -3,7 +3,7 @@
 use super::{Labels, Node};
 use protocol::command::{Characters, VectorClass, VectorList};
 
-/// Why nothing was copied.
+/// The reason why nothing was copied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CopyFault {
     /// Only vectors, characters and labels have elements that can be copied.

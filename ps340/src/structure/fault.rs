@@ -1,4 +1,4 @@
-//! Why a node does not take a message, or cannot be edited.
+//! The reason why a node does not take a message, or cannot be edited.
 
 use protocol::{Kind, command::Input};
 
@@ -8,7 +8,7 @@ pub enum NodeFault {
     /// The input takes other kinds.
     #[error("Bad message type at {input}")]
     Kind {
-        /// Which input.
+        /// The input.
         input: Input,
         /// What came.
         kind: Kind,
@@ -16,37 +16,37 @@ pub enum NodeFault {
     /// Vectors came to a node that is no vector list.
     #[error("Bad message type at {input}: vectors")]
     Vectors {
-        /// Which input.
+        /// The input.
         input: Input,
     },
     /// Lines or positions in a list of dots.
     #[error("Bad message type at {input}: dots are neither lines nor positions")]
     Dots {
-        /// Which input.
+        /// The input.
         input: Input,
     },
     /// The message is for a name without a definition.
     #[error("Name not found at {input}")]
     Undefined {
-        /// Which input.
+        /// The input.
         input: Input,
     },
     /// The node has no such input.
     #[error("No such input {input}")]
     NoSuchInput {
-        /// Which input.
+        /// The input.
         input: Input,
     },
     /// The mass memory is full.
     #[error("Insufficient memory at {input}")]
     Full {
-        /// Which input.
+        /// The input.
         input: Input,
     },
     /// An index past the end, a number that is not finite or too large, a string that is too long.
     #[error("Value out of range at {input}")]
     Range {
-        /// Which input.
+        /// The input.
         input: Input,
     },
 }

@@ -1,8 +1,8 @@
-//! The pick identifiers on the way to a place of the structure.
+//! The pick identifiers on the way to a point of the structure.
 
 use protocol::Name;
 
-/// The pick identifiers at a place of the structure: the nearest one of a chain.
+/// The pick identifiers at a point of the structure: the nearest one of a chain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Identifiers(u32);
 

@@ -118,7 +118,7 @@ impl Structures {
     pub fn accept(&mut self, id: ObjectId, input: Input, value: Value) -> Result<(), NodeFault> {
         let frame = self.frame;
         let node = self.node_mut(id).ok_or(NodeFault::Undefined { input })?;
-        // Neither a variable nor the place of the pick box is part of the picture.
+        // Neither a variable nor the position of the pick box is part of the picture.
         let pick_box = node.operation().is_some_and(|operation| operation.pick_box_size().is_some());
         let shown = !pick_box && !matches!(node, Node::Variable(_));
         let grown = inputs::accept(node, input, value, frame)?;
@@ -130,7 +130,7 @@ impl Structures {
     /// SEND VL: the vectors of `source` take the places from `input` of a list on.
     ///
     /// # Errors
-    /// A node that is no vector list, a place behind the one after the last, an input that names no place.
+    /// A node that is no vector list, a position past the one after the last, an input that names no position.
     pub fn overwrite(&mut self, id: ObjectId, input: Input, source: &VectorList) -> Result<(), NodeFault> {
         let Some(Node::Vectors(vectors)) = self.node_mut(id) else { return Err(NodeFault::Vectors { input }) };
         let grown = inputs::overwrite(&mut vectors.list, input, source)?;
@@ -241,8 +241,8 @@ impl Structures {
         true
     }
 
-    /// Puts `member` into a structure as its own, behind the member `anchor` or, without one, behind the first.
-    /// Returns false if there is no such place.
+    /// Puts `member` into a structure as its own, after the member `anchor` or, without one, after the first.
+    /// Returns false if there is no such position.
     pub fn insert_behind(&mut self, group: ObjectId, anchor: Option<ObjectId>, member: ObjectId) -> bool {
         let Some(Node::Group(members)) = self.node_mut(group) else { return false };
         let place = match anchor {

@@ -12,7 +12,7 @@ use protocol::command::{VectorClass, VectorList};
 /// Words of a vector.
 pub const VECTOR_WORDS: usize = 9;
 
-/// Why memory was not read or written; nothing has changed then.
+/// The reason why memory was not read or written; nothing has changed then.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PhysicalFault {
     /// The object has no such words.

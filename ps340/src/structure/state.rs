@@ -14,7 +14,7 @@ pub const CONDITIONAL_BITS: u8 = 15;
 /// Frames of a blinking phase where SET BLINK RATE gives none; ours: half a second.
 const DEFAULT_BLINK_RATE: u32 = 30;
 
-/// The state at one place of the display structure.
+/// The state at one point of the display structure.
 ///
 /// A matrix of the machine acts on row vectors, and a node's matrix comes before what is above it:
 /// `CTM := node CTM`. In the transposed glam form that is `ctm = ctm * node`.

@@ -1,4 +1,4 @@
-//! What the kinds of node have in common as message sinks: their inputs, and values as numbers, switches, places.
+//! What the kinds of node have in common as message sinks: their inputs, and values as numbers, switches, positions.
 
 use super::NodeFault;
 use crate::port::KindSet;
@@ -14,7 +14,7 @@ pub(super) const THIRD: Input = Input::Number(3);
 /// The fourth input.
 pub(super) const FOURTH: Input = Input::Number(4);
 
-/// The kinds of a place in two or three dimensions.
+/// The kinds of a position in two or three dimensions.
 pub(super) const POSITION: KindSet = KindSet::VECTOR2.or(KindSet::VECTOR3);
 
 /// The fault of a message of the wrong kind.
@@ -42,7 +42,7 @@ pub(super) fn count(value: &Value, input: Input) -> Result<u32, NodeFault> {
     u32::try_from(integer(value, input)?).map_err(|_| NodeFault::Range { input })
 }
 
-/// A place in two or three dimensions; z is 0 in two.
+/// A position in two or three dimensions; z is 0 in two.
 pub(super) fn position(value: &Value, input: Input) -> Result<DVec3, NodeFault> {
     match value {
         Value::Vector2(v) => Ok(v.extend(0.0)),

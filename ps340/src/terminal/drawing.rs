@@ -1,6 +1,6 @@
 //! The terminal's text as strokes over the picture.
 //!
-//! Rows run from the top of the screen; the message line stands below the last one. Sizes and places are ours.
+//! Rows run from the top of the screen; the message line stands below the last one. Sizes and positions are ours.
 
 use super::{
     Attributes, COLUMNS, ROWS, Terminal,
@@ -154,7 +154,7 @@ impl Pen {
         }
     }
 
-    /// A frame around cells; ends are one behind the last.
+    /// A frame around cells; ends are one past the last.
     fn frame(&mut self, top: usize, bottom: usize, left: usize, right: usize) {
         let [x0, y1] = [corner(0, left)[0], corner(top, 0)[1] + HEIGHT];
         let [x1, y0] = [corner(0, right)[0], corner(bottom, 0)[1] + HEIGHT];

@@ -38,7 +38,7 @@ pub struct Terminal {
     screen: TerminalScreen,
     modes: Modes,
     sets: [CharacterSet; 2],
-    /// Which of `sets` is in use: 1 after SO.
+    /// The index of the one of `sets` that is in use: 1 after SO.
     shift: usize,
     replies: Vec<u8>,
     ink: Ink,

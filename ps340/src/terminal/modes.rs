@@ -3,7 +3,7 @@
 /// The modes that are on or off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Modes {
-    /// IRM: characters push those behind them to the right.
+    /// IRM: characters push those after them to the right.
     pub insert: bool,
     /// LNM: a line feed also returns the cursor to column 1, and RETURN sends CR LF.
     pub new_line: bool,
@@ -15,7 +15,7 @@ pub struct Modes {
     pub application_keypad: bool,
     /// DECOM: rows count from the top of the scroll region.
     pub origin: bool,
-    /// DECAWM: a character behind the last column begins a new row. On at the start; ours.
+    /// DECAWM: a character past the last column begins a new row. On at the start; ours.
     pub wrap: bool,
     /// DECSCNM: the screen is reversed; drawn as a frame.
     pub reverse_screen: bool,

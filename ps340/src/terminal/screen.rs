@@ -21,7 +21,7 @@ pub struct Attributes {
     pub reverse: bool,
 }
 
-/// One place of the screen.
+/// One cell of the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cell {
     /// The character; a blank if nothing is there.
@@ -131,7 +131,7 @@ impl TerminalScreen {
         }
     }
 
-    /// Moves the cursor to a place on the screen, or as near as there is one.
+    /// Moves the cursor to a position on the screen, or as near as there is one.
     pub(super) fn move_to(&mut self, row: usize, column: usize) {
         self.cursor.row = row.min(ROWS - 1);
         self.cursor.column = column.min(COLUMNS - 1);
@@ -276,7 +276,7 @@ impl TerminalScreen {
         valid
     }
 
-    /// Remembers place and attributes of the cursor.
+    /// Remembers position and attributes of the cursor.
     pub(super) fn save_cursor(&mut self) {
         self.saved = self.cursor;
     }

@@ -45,7 +45,7 @@ pub(super) struct Sequence {
 }
 
 impl Sequence {
-    /// A parameter by its place from 0; `default` if it is missing or 0.
+    /// A parameter by its index from 0; `default` if it is missing or 0.
     pub(super) fn or(&self, place: usize, default: u16) -> usize {
         let given = self.parameters.get(place).copied().filter(|p| *p != 0);
         usize::from(given.unwrap_or(default))

@@ -1,4 +1,4 @@
-//! What an update is asked for, and what it gives.
+//! The requests to an update, and its results.
 
 use super::{MAX_DEPTH, MAX_GATHERED, MAX_STORED_VECTORS, MAX_VECTORS, MAX_VISITS, PickHit, PickRequest, Stroke};
 use crate::{port::ObjectId, structure::ALL_SCOPES};
@@ -19,7 +19,7 @@ pub struct Requests {
     pub pick: Option<PickRequest>,
 }
 
-/// Why an update is incomplete.
+/// An update fault: the reason why an update is incomplete.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum UpdateFault {
     /// An object contains itself; it is drawn once.

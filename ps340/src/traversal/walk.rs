@@ -141,7 +141,7 @@ struct Visit<'a> {
 }
 
 impl<'a> Level<'a> {
-    /// The next item; none behind the last. An item whose object is undefined is skipped.
+    /// The next item; none after the last. An item whose object is undefined is skipped.
     fn advance(&mut self, structures: &'a Structures) -> Option<Visit<'a>> {
         loop {
             let place = self.next;

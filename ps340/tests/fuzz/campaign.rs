@@ -42,7 +42,7 @@ pub struct Campaign {
     pub target: &'static Target,
     pool: Mutex<InputPool>,
     executions: AtomicU64,
-    /// By the place in the source that panicked.
+    /// By the location in the source that panicked.
     failures: Mutex<BTreeMap<String, FuzzFailure>>,
 }
 
@@ -153,7 +153,7 @@ thread_local! {
     static LATEST: RefCell<Option<(String, String)>> = const { RefCell::new(None) };
 }
 
-/// Runs a target; place and message if it panics.
+/// Runs a target; location and message if it panics.
 fn attempt(target: &Target, input: &[u8]) -> Result<Features, (String, String)> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {

@@ -160,7 +160,7 @@ fn insert(input: &mut Vec<u8>, at: usize, bytes: &[u8]) {
     input.splice(at..at, bytes.iter().copied());
 }
 
-/// The word or number that stands at a place, or the nothing there.
+/// The word or number that stands at an offset, or the nothing there.
 fn word_at(input: &[u8], at: usize) -> std::ops::Range<usize> {
     let part = |byte: &u8| byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'.' | b'$');
     let start = input[..at].iter().rposition(|byte| !part(byte)).map_or(0, |before| before + 1);

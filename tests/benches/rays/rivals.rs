@@ -26,7 +26,7 @@ enum Tree {
 pub struct Hierarchy {
     tree: Tree,
     triangles: Vec<RtTriangle>,
-    /// Which triangle of the mesh each of `triangles` is.
+    /// The triangle of the mesh that each of `triangles` is.
     indices: Vec<u32>,
     /// How long it took to build.
     pub build: Duration,

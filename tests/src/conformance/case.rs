@@ -170,7 +170,7 @@ pub enum Expected {
         class: char,
         /// Its number, if it matters.
         number: Option<u16>,
-        /// A pattern of its text, behind the number.
+        /// A pattern of its text, after the number.
         text: Option<String>,
     },
     /// `<& N` and so many expectations: these messages in any order.

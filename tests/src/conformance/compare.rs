@@ -135,7 +135,7 @@ pub fn glob_matches(glob: &str, text: &str) -> bool {
     glob[g..].iter().all(|c| *c == '*')
 }
 
-/// Why strokes are not as expected; none if they are.
+/// The reason why strokes are not as expected; none if they are.
 pub fn strokes_differ(
     count: Option<usize>,
     expected: &[StrokeLine],

@@ -1,4 +1,4 @@
-//! The ways in which commands travel: as text or binary, in packets or not, whole or cut.
+//! Transports of commands: as text or binary, in packets or not, whole or cut.
 
 use protocol::{
     command::{CommandError, CommandReader},
@@ -57,7 +57,7 @@ pub struct Transport {
     pub packets: Packets,
 }
 
-/// Why a transport cannot carry a text.
+/// The reason why a transport cannot carry a text.
 #[derive(Debug, thiserror::Error)]
 pub enum TransportError {
     /// Binary records need packets.
@@ -95,7 +95,7 @@ impl std::fmt::Display for Transport {
     }
 }
 
-/// Brings command text on its way: into bytes of the line.
+/// Encodes command text for its transport: into bytes of the line.
 #[derive(Debug)]
 pub struct Sender {
     transport: Transport,
@@ -111,10 +111,10 @@ impl Sender {
         Sender { transport: way, cut: cut.map(Pcg64Mcg::seed_from_u64), reader: CommandReader::default() }
     }
 
-    /// Appends command text in the sender's way. A statement may come in pieces.
+    /// Appends command text in the sender's transport. A statement may come in pieces.
     ///
     /// # Errors
-    /// [`TransportError`] if the text cannot go this way.
+    /// [`TransportError`] if the transport cannot carry the text.
     pub fn write(&mut self, text: &[u8], text_only: bool, out: &mut Vec<u8>) -> Result<(), TransportError> {
         if self.transport.form == Form::Text || text_only {
             self.write_text(text, out);

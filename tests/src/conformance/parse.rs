@@ -6,7 +6,7 @@ use std::fmt;
 /// Largest number of an `each` step.
 const MAX_EACH: usize = 1_000_000;
 
-/// Why a file of cases cannot be read, with its place.
+/// The reason why a file of cases cannot be read, with its location.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}:{line}: {problem}")]
 pub struct CaseError {

@@ -15,7 +15,7 @@ const REPLY_TIMEOUT: Duration = Duration::from_secs(60);
 /// The environment variable with the token of an emulator whose operator line is TCP.
 const TOKEN_VARIABLE: &str = "PS340_TOKEN";
 
-/// Why an operator command was not carried out.
+/// The reason why an operator command was not carried out.
 #[derive(Debug, thiserror::Error)]
 pub enum OperatorFault {
     /// The machine refused.

@@ -83,7 +83,7 @@ impl Report {
         })
     }
 
-    /// Why cases were skipped, and how many for each reason.
+    /// The reasons why cases were skipped, and how many for each.
     fn reasons(&self) -> BTreeMap<&str, usize> {
         let mut reasons = BTreeMap::new();
         for outcome in &self.outcomes {

@@ -44,7 +44,7 @@ pub struct Target {
     pub reboots: bool,
 }
 
-/// Why a case failed.
+/// The reason why a case failed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Failure {
     /// The line of the step in the file.
@@ -57,7 +57,7 @@ pub struct Failure {
     pub transcript: Vec<String>,
 }
 
-/// Why a case came to no end by itself.
+/// The reason why a case came to no end by itself.
 #[derive(Debug)]
 pub enum Stop {
     /// Not as expected.

@@ -16,7 +16,7 @@ use std::{
 /// The extension of files of cases.
 const EXTENSION: &str = "cases";
 
-/// Why the cases cannot be read.
+/// The reason why the cases cannot be read.
 #[derive(Debug, thiserror::Error)]
 pub enum SuiteError {
     /// A file or folder cannot be read.
@@ -35,7 +35,7 @@ pub enum SuiteError {
 /// Reads all `.cases` files of a folder, in the order of their names.
 ///
 /// # Errors
-/// [`SuiteError`], with the place.
+/// [`SuiteError`], with the location.
 pub fn read_folder(folder: &Path) -> Result<Vec<Case>, SuiteError> {
     let read = |path: &Path, error| SuiteError::Read { path: path.into(), error };
     let entries = fs::read_dir(folder).map_err(|e| read(folder, e))?;

@@ -37,7 +37,7 @@ pub enum CorpusCase {
     NotSimple {
         /// The surface.
         mesh: Mesh,
-        /// The volume of all that it winds around.
+        /// The volume of all points with a winding number other than 0.
         volume: f64,
     },
 }

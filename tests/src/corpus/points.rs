@@ -45,7 +45,7 @@ pub fn compare(solids: &[Mesh], expression: &Expression, result: &Mesh) -> Resul
     Ok(())
 }
 
-/// Whether a closed surface winds around a point; `None` too near to it.
+/// Whether the winding number of a closed surface at a point is not 0; `None` too near to it.
 fn is_inside(mesh: &Mesh, point: DVec3) -> Option<bool> {
     let angle = |triangle: usize| solid_angle(mesh.corners(triangle).map(|corner| corner - point));
     let winding = (0..mesh.triangles.len()).map(angle).sum::<f64>() / (4.0 * PI);

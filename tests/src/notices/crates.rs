@@ -1,4 +1,4 @@
-//! Which crates of others a program is made of, by `Cargo.lock` alone, so that no network is needed.
+//! The crates of others that a program is made of, by `Cargo.lock` alone, so that no network is needed.
 
 use super::{NoticesError, read_toml};
 use std::collections::{BTreeMap, BTreeSet};
@@ -28,7 +28,7 @@ struct Package {
 }
 
 /// The crates of others that `peris` and `ps340` are built from on any system: those in them, and the macros and build
-/// scripts that helped, which cannot be told apart here.
+/// scripts that helped, which cannot be distinguished here.
 ///
 /// - `root`: the folder of the workspace.
 ///

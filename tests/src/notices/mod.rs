@@ -12,7 +12,7 @@ pub use print::print;
 /// Where the notices are, from the root of the workspace.
 pub const PATH: &str = ".cargo/licences/CRATES.md";
 
-/// Why the notices cannot be made.
+/// The reason why the notices cannot be made.
 #[derive(Debug, thiserror::Error)]
 pub enum NoticesError {
     /// A file cannot be read.

@@ -1,4 +1,4 @@
-//! Checksums made right, so that a change of bytes reaches what lies behind them.
+//! Checksums made right, so that a change of bytes reaches what follows them.
 
 use host::database::RecordKind;
 
@@ -30,7 +30,7 @@ pub fn record(kind: RecordKind, name: &str, bytes: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// The bytes of the state of a rendering with a beginning that is right, and with their checksum behind them.
+/// The bytes of the state of a rendering with a beginning that is right, and with their checksum after them.
 ///
 /// - `beginning`: takes the place of as many bytes.
 pub fn state(beginning: &[u8], bytes: &[u8]) -> Vec<u8> {

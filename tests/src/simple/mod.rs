@@ -2,7 +2,7 @@
 //! shared.
 //!
 //! A surface is simple if it is closed, if no two triangles have more in common than corners and the edges between, and
-//! if it winds once around what is behind each triangle and not at all around what is before it.
+//! if its winding number is 1 behind each triangle and 0 before it.
 
 mod integer;
 mod triangle_overlap;
@@ -14,7 +14,7 @@ use host::mesh::Mesh;
 use predicates::Points;
 use std::collections::{BTreeMap, HashMap};
 
-/// Why a surface is not simple.
+/// The reason why a surface is not simple.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NotSimple {
     /// Three corners are on one line.
@@ -31,7 +31,7 @@ pub enum NotSimple {
         /// How many.
         count: usize,
     },
-    /// It winds otherwise than not at all around what is just before a triangle.
+    /// Its winding number just before a triangle is not 0.
     #[error("before triangle {triangle} it winds {winding} times")]
     Winding {
         /// The number of the triangle.

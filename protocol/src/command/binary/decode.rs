@@ -67,7 +67,7 @@ impl BinaryDecoder {
         self.open = None;
     }
 
-    /// Reads one record of `body` from `at` on and moves `at` behind it; none if it completes no command. After an
+    /// Reads one record of `body` from `at` on and moves `at` past it; none if it completes no command. After an
     /// error `at` is the end of the body, or where the next record can be read.
     ///
     /// # Errors
@@ -158,7 +158,7 @@ impl BinaryDecoder {
             return Ok(None);
         }
         parse(&text).map(Some).map_err(|error| {
-            // The place in this packet, if it is in the last part.
+            // The position in this packet, if it is in the last part.
             let offset = *at - part.len() + error.span.start.saturating_sub(before);
             BinaryError { offset, field: "text", problem: BinaryProblem::Text(error.to_string()) }
         })

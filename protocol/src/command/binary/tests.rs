@@ -162,7 +162,7 @@ fn an_error_in_a_text_has_its_place_and_ends_no_packet() {
     encode(&Command::EndStructure, &mut body).unwrap();
     let items = decode(&body);
     let error = items[0].as_ref().unwrap_err();
-    // Behind opcode, flag and length, and `SET `.
+    // After opcode, flag and length, and `SET `.
     assert_eq!((error.offset, error.field), (4 + 4, "text"));
     assert!(error.to_string().contains("1:5: expected a setting") && error.to_string().contains("COLOR?"));
     assert_eq!(items[1], Ok(Command::EndStructure));

@@ -102,7 +102,7 @@ ATTRIBUTES {
 
     /// `SET DISPLAYS ALL ON|OFF`, `SET DISPLAY n, m... ON|OFF`.
     SetDisplays {
-        /// Which screens.
+        /// The screens.
         scopes: Scopes = Screens,
         /// ON or OFF.
         on: bool = SWITCH,
@@ -304,7 +304,7 @@ ATTRIBUTES {
     SetLineTexture {
         /// Whether the texture goes on from one vector to the next.
         around_corners: bool = Flag(Word::AroundCorners),
-        /// Which texture.
+        /// The texture.
         texture: u32 = COUNT,
     } "SET LINE_TEXTURE" [Set LineTexture] help {
         section: "B.7",

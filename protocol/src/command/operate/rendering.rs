@@ -52,7 +52,7 @@ RENDERING {
 }
 
 READING_BACK {
-    /// `XFORM MATRIX`: marks a place whose accumulated matrix can be read.
+    /// `XFORM MATRIX`: marks a point of the structure whose accumulated matrix can be read.
     XformMatrix "XFORM MATRIX" [Xform Matrix] record 0x2e help {
         section: "B.9",
         confidence: Confirmed,

@@ -98,7 +98,7 @@ macro_rules! operates {
             $($($(#[$doc])* $variant $(($one_type))? $({ $($(#[$field_doc])* $field: $type,)* })?,)*)*
         }
 
-        /// Which operate command, without its values.
+        /// The kind of an operate command, without its values.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum OperateKind {
             $($($(#[$doc])* $variant,)*)*
@@ -180,7 +180,7 @@ macro_rules! operates {
         }
 
         impl Operate {
-            /// Which command it is.
+            /// The kind of the command.
             pub const fn kind(&self) -> OperateKind {
                 match self {
                     $($(Operate::$variant { .. } => OperateKind::$variant,)*)*

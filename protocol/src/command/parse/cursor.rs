@@ -127,7 +127,7 @@ impl<'t> Parser<'t> {
         self.find(word.alone()).is_some()
     }
 
-    /// Which of some words the current token is.
+    /// The one of some words that the current token is.
     pub(in crate::command) fn find(&mut self, words: &'static [Word]) -> Option<Word> {
         if self.token.kind != TokenKind::Name {
             return None;
@@ -158,7 +158,7 @@ impl<'t> Parser<'t> {
         if self.accept_word(word) { Ok(()) } else { Err(self.fail(expected)) }
     }
 
-    /// Takes the current token if it is one of some words, or says what was expected.
+    /// Takes the current token if it is one of some words, or fails with what was expected.
     pub(in crate::command) fn expect_one_of(
         &mut self,
         words: &'static [Word],

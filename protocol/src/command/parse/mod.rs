@@ -25,7 +25,7 @@ pub(super) use system::is_plain_value;
 /// [`CommandReader`](super::CommandReader) would warn of is left out.
 ///
 /// # Errors
-/// [`CommandError`] with the place in `text`.
+/// [`CommandError`] with the position in `text`.
 pub fn parse(text: &[u8]) -> Result<Command, CommandError> {
     whole(text).map_err(|fault| CommandError::new(text, fault))
 }

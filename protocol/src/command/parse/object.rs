@@ -14,7 +14,7 @@ use crate::command::{
 use glam::{DVec2, DVec3};
 
 impl Parser<'_> {
-    /// What stands behind `name :=`.
+    /// What stands after `name :=`.
     pub(super) fn definition(&mut self) -> Result<Object, Fault> {
         // A lone name is another name for its object, unless the word is a whole object.
         if self.token.kind == TokenKind::Name {

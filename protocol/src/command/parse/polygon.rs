@@ -14,7 +14,7 @@ use glam::DVec3;
 
 impl Parser<'_> {
     /// `[WITH [ATTRIBUTES] name] [[WITH] OUTLINE hue] POLYGON [COPLANAR] vertex...`, once or more; the first word was
-    /// taken. Attributes and an outline behind the last polygon are left out.
+    /// taken. Attributes and an outline after the last polygon are left out.
     pub(super) fn polygons(&mut self, first: Word) -> Result<Vec<Polygon>, Fault> {
         let mut polygons = Vec::new();
         let mut next = Some(first);

@@ -10,7 +10,7 @@ use crate::command::{
     words::{self, Word},
 };
 
-/// Fewest bytes of text that a vector takes; how much room a text can need at most.
+/// Fewest bytes of text that a vector takes; the most memory that a text can need.
 const SHORTEST_VECTOR: usize = 4;
 
 /// Constant or growing y and z: `Y = y DY = dy Z = z DZ = dz`.

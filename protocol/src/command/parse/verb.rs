@@ -159,14 +159,14 @@ impl Parser<'_> {
         }
     }
 
-    /// `name WITH pattern`, behind PATTERN.
+    /// `name WITH pattern`, after PATTERN.
     fn pattern_with(&mut self) -> Result<Command, Fault> {
         let name = self.name()?;
         self.expect_word(Word::With, &["WITH"])?;
         Ok(Command::PatternWith { name, pattern: self.name()? })
     }
 
-    /// Names, or prefixes with a `*` directly behind them.
+    /// Names, or prefixes with a `*` directly after them.
     fn patterns(&mut self) -> Result<Vec<NamePattern>, Fault> {
         let mut patterns = Vec::new();
         loop {

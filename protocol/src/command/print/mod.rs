@@ -14,7 +14,7 @@ use printer::{List, Number, Printer};
 use std::fmt;
 
 /// Appends a command as text, with its `;`. BEGIN_STRUCTURE and BEGIN_FONT have none; a line end follows them, so that
-/// commands can be printed one behind the other.
+/// commands can be printed one after the other.
 ///
 /// What the parser would refuse (reals that are not finite, a text longer than [`MAX_TEXT`](super::MAX_TEXT), an alias
 /// without a name) is printed as it is, and the text cannot be parsed. The text is printable except for the bytes of

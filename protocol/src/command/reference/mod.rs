@@ -44,7 +44,7 @@ pub fn rows() -> impl Iterator<Item = &'static CommandRow> {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no command {requested}{}", .nearest.map(|name| format!("; did you mean {name}?")).unwrap_or_default())]
 pub struct UnknownCommand {
-    /// What was asked for.
+    /// The name that was requested.
     pub requested: String,
     /// The nearest name of a row.
     pub nearest: Option<&'static str>,

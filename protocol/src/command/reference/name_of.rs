@@ -1,4 +1,4 @@
-//! Which row of the table a command belongs to.
+//! The row of the table that a command belongs to.
 
 use crate::command::syntax::{Command, Object, Operate};
 

@@ -29,9 +29,9 @@ impl Confidence {
 pub struct OptionRow {
     /// As it stands in the syntax.
     pub form: &'static str,
-    /// What it says.
+    /// Its text.
     pub meaning: &'static str,
-    /// Which values; empty if any number, name or text.
+    /// The values; empty if any number, name or text.
     pub range: &'static str,
     /// What holds without it; empty if it must be given.
     pub default: &'static str,

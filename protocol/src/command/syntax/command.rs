@@ -146,7 +146,7 @@ pub enum Command {
     SetupCness {
         /// TRUE: constant; FALSE: active.
         constant: bool,
-        /// Which input.
+        /// The input.
         destination: Destination,
     },
     /// `COMMAND STATUS;`

@@ -124,7 +124,7 @@ pub struct Labels {
 /// `C[code]: N = n P x,y L x,y...;` inside BEGIN_FONT: how a character is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FontCharacter {
-    /// Which character, 0..=127.
+    /// The character, 0..=127.
     pub code: u8,
     /// `N = n`: the client's estimate of the count.
     pub estimate: Option<u32>,

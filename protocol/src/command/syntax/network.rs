@@ -16,13 +16,13 @@ pub struct Arc {
 /// An input of a named object: `<i>name`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Destination {
-    /// Which input.
+    /// The input.
     pub input: Input,
     /// Of what.
     pub name: Name,
 }
 
-/// Which input of a function or a node.
+/// An input of a function or a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Input {
     /// `<1>`, `<2>`, ... For the data nodes, the index of an element.

@@ -1,4 +1,4 @@
-//! What operate commands say beside numbers: axes, boundaries, screens, phases, comparisons.
+//! The settings of operate commands besides numbers: axes, boundaries, screens, phases, comparisons.
 
 /// An axis of rotation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,7 +20,7 @@ pub struct Boundaries {
     pub back: f64,
 }
 
-/// Which screens SET DISPLAYS means.
+/// The screens that SET DISPLAYS means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scopes {
     /// All.

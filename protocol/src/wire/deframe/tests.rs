@@ -159,7 +159,7 @@ fn an_escape_start_byte_without_a_route_is_noise() {
 
 #[test]
 fn a_blank_between_empty_packets_brings_any_stream_back_to_text() {
-    // Whatever came before: inside a packet, behind a start byte or an escape character, or in text.
+    // Whatever came before: inside a packet, after a start byte or an escape character, or in text.
     for before in [&b""[..], b"x", b"\x16", b"\x160", b"\x160x\x10", b"\x16\x10", b"\x16\x16", b"\x160\x16"] {
         let (all, decoder) = frames(&[before, b"\x16\x16 \x16\x16", b"\x160good\x16\x16"]);
         assert!(!decoder.is_unfinished());
@@ -293,7 +293,7 @@ proptest! {
     fn damage_costs_only_what_it_touches(
         payloads in payloads(), damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..4)
     ) {
-        // The damaged packets come first; behind them a run of text longer than any count packet, then a good one.
+        // The damaged packets come first; after them a run of text longer than any count packet, then a good one.
         let mut stream = Vec::new();
         payloads.iter().for_each(|payload| stream.extend(packet(payload)));
         for (place, byte) in damage {

@@ -38,7 +38,7 @@ impl Gpu {
     /// Opens the best adapter there is; `software` allows one that is the processor itself.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The reason why there is none.
     pub fn open(software: bool) -> Result<Gpu, GpuError> {
         Ok(Gpu { device: Device::open(software)?, canvas: Mutex::default(), given_up: OnceLock::new() })
     }

@@ -15,7 +15,7 @@ const KINDS: [DeviceType; 5] =
 /// Kinds that are no software: they draw faster than the processor.
 const REAL: usize = 3;
 
-/// Why no graphics processor draws.
+/// The reason why no graphics processor draws.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GpuError {
     /// There is none, or no driver for it.
@@ -53,7 +53,7 @@ impl Device {
     /// Opens the best adapter there is; `software` allows one that is the processor itself.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The reason why there is none.
     pub(super) fn open(software: bool) -> Result<Device, GpuError> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
             backends: wgpu::Backends::PRIMARY,

@@ -27,7 +27,7 @@ pub struct InitialInstance {
     pub name: String,
     /// What it is.
     pub function: &'static FunctionRow,
-    /// Which of several equal devices: 1..=8 for a dial label; none for a single one.
+    /// The number among several equal devices: 1..=8 for a dial label; none for a single one.
     pub device: Option<u16>,
 }
 

@@ -66,7 +66,7 @@ impl Desk {
         }
     }
 
-    /// Which vectors of a list are lines.
+    /// The vectors of a list that are lines.
     fn lines(&self, name: &str) -> Vec<bool> {
         match self.node(name) {
             Node::Vectors(v) => (0..v.list.points.len()).map(|i| v.list.is_line(i)).collect(),

@@ -53,7 +53,7 @@ impl Scene {
         self.frames(said)
     }
 
-    /// A whole command with a block from the host; the answers behind its echo.
+    /// A whole command with a block from the host; the answers after its echo.
     fn transfer(&mut self, word: u16, block: &[u8]) -> Vec<ParallelFrame> {
         let count = ParallelFrame::Word(block.len() as u16);
         let mut said =

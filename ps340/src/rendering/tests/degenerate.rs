@@ -131,7 +131,7 @@ fn a_triangle_that_is_thin_but_for_single_precision_faces_as_its_normals_do() {
 
 #[test]
 fn corners_in_the_plane_of_the_eye_take_no_depth_from_the_rest() {
-    // Two squares so close that only a fine depth tells them apart, and a floor through the plane of the eye.
+    // Two squares so close that only a fine depth distinguishes them, and a floor through the plane of the eye.
     let square = |s: f32, z: f32| polygon(&[[-s, -s, z], [-s, s, z], [s, s, z], [s, -s, z]]);
     let squares = vec![square(0.5, 2.0), square(0.3, 2.0 + 1e-6)];
     let floors = [

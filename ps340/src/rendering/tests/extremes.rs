@@ -109,7 +109,7 @@ fn coplanar_polygons_show_the_first() {
     let place = |p: [f64; 2]| (turn * DVec3::new(p[0], p[1], 0.0)).as_vec3().to_array();
     let mut first = polygon(&[[-0.6, -0.6], [-0.5, 0.6], [0.7, -0.1]].map(place));
     let second = polygon(&[[-0.9, -0.9], [-0.9, 0.9], [0.9, 0.9], [0.9, -0.9]].map(place));
-    // Told apart by the light of normals that are given.
+    // Distinguished by the light of normals that are given.
     for vertex in &mut first.vertices {
         vertex.normal = Some(turn.z_axis.as_vec3().to_array().map(|c| -c + 0.3));
     }

@@ -3,7 +3,7 @@
 use super::*;
 use protocol::command::Illumination;
 
-/// The pixel at a place of the vector screen.
+/// The pixel at a position of the vector screen.
 pub(super) fn at(image: &Image, x: f64, y: f64) -> [u8; 3] {
     let place = |c: f64, pixels: u32| ((c + 1.0) / 2.0 * f64::from(pixels)) as usize;
     image.pixels[place(y, image.height) * image.width as usize + place(x, image.width)]

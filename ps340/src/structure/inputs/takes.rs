@@ -1,5 +1,5 @@
-//! Which inputs a node has, and which kinds of message it takes there: what arcs are checked against, and what messages
-//! say. Tests hold it to what the nodes do.
+//! The inputs that a node has, and the kinds of message that it takes there: what arcs are checked against, and what
+//! messages say. Tests hold it to what the nodes do.
 
 use crate::{
     port::KindSet,

@@ -55,11 +55,11 @@ pub fn mark(list: &mut VectorList, input: Input, count: u32, lines: bool) -> Res
     Ok(bytes(list) - before)
 }
 
-/// SEND VL: the vectors of `source` take the places from `input` on, or come behind the last for `<append>`; the
+/// SEND VL: the vectors of `source` take the positions from `input` on, or come after the last for `<append>`; the
 /// list grows if need be. Returns by how many bytes it grew.
 ///
 /// # Errors
-/// A place behind the one after the last, an input that names no place.
+/// A position past the one after the last, an input that names no position.
 pub fn overwrite(list: &mut VectorList, input: Input, source: &VectorList) -> Result<isize, NodeFault> {
     let before = bytes(list);
     let len = list.points.len();
@@ -110,7 +110,7 @@ fn mark_range(list: &mut VectorList, range: std::ops::Range<usize>, line: bool, 
     Ok(())
 }
 
-/// Makes the list say of each vector whether it is a line.
+/// Makes the list mark of each vector whether it is a line.
 fn itemize(list: &mut VectorList) {
     if list.class != VectorClass::Itemized {
         list.lines = (0..list.points.len()).map(|i| list.is_line(i)).collect();

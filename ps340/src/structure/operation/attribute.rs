@@ -244,7 +244,7 @@ macro_rules! attribute_rows {
     LineTexture {
         /// Whether it goes on around corners.
         around_corners: bool,
-        /// Which texture.
+        /// The texture.
         texture: u32,
     } = {
         named "SET LINE_TEXTURE";

@@ -91,7 +91,7 @@ impl Given<'_> {
         Ok(self.integer()?.clamp(0, MAX_LEVEL.into()) as u16)
     }
 
-    /// A place in two or three dimensions; z is 0 in two.
+    /// A position in two or three dimensions; z is 0 in two.
     pub(super) fn position(&self) -> Result<DVec3, NodeFault> {
         position(self.value, self.input)
     }
