@@ -16,7 +16,7 @@ const LOCATOR: &str = "DEL := F:DELTA; SEND FIX(1) TO <2>DEL; ADD := F:ADDC; SEN
 const ASK: &str = "CONNECT TABLETIN<3>:<1>DEL; CONNECT TABLETIN<6>:<1>PRT6;";
 const LEAVE: &str = "DISCONNECT TABLETIN<3>:<1>DEL; DISCONNECT TABLETIN<6>:<1>PRT6;";
 
-/// Waits until the machine has done what was sent. Nothing else must have been sent.
+/// Waits until the machine has done what was sent. Nothing else must have come back.
 fn meet(host: &mut Host) {
     host.send("SEND 'DONE' TO <1>HOST_MESSAGE;");
     assert_eq!(host.message(), "DONE");

@@ -1,5 +1,5 @@
-//! What keys of the window, the mouse and a game controller do: a table from a file, each entry an
-//! operator command.
+//! What keys of the window, the mouse and a game controller do: a table from a file, each entry an operator
+//! command.
 
 use crate::operator::{self, OperatorCommand, OperatorCommandError};
 use egui::{Key, Modifiers, PointerButton};

@@ -64,7 +64,7 @@ impl Puck {
         self.pressed
     }
 
-    /// The operator commands that events of the mouse mean, in their sequence, so that none is lost however slowly
+    /// The operator commands that events of the mouse mean, in their order, so that none is lost however slowly
     /// pictures come.
     ///
     /// A press counts where it began: on the screen. Until it ends, the puck stays on the tablet.

@@ -55,7 +55,7 @@ pub(super) struct ConnectionSlots {
     rejections: Arc<Semaphore>,
     /// The text that a rejected peer reads.
     full: Arc<str>,
-    /// The peers in the sequence of their arrival; some have gone.
+    /// The peers in the order of their arrival; some have gone.
     peers: VecDeque<Weak<Presence>>,
 }
 

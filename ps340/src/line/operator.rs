@@ -20,7 +20,7 @@ use tokio::{
 /// Operators that may be attached at once.
 const MAX_OPERATORS: usize = 16;
 
-/// The reply to an operator command that is longer.
+/// The reply to an operator command of more than [`MAX_OPERATOR_COMMAND`] bytes.
 const TOO_LONG: &str = "error an order has at most 65536 bytes\n";
 
 /// How long an operator may take to send the token.

@@ -1,7 +1,7 @@
 //! What is wrong in command files, found without a user at the machine: names, ports, kinds, functions that never fire.
 //!
 //! The files are read one after the other, as if one host sent them. Every command is also given to a machine of its
-//! own, which reports what it reports to anybody; INITIALIZE ends a program and begins another. What a function sends
+//! own, which reports faults as to any host; INITIALIZE ends a program and begins another. What a function sends
 //! for which kinds of message is not listed in a table, it is tried out (`trial`).
 //!
 //! Found for certain: an error. Likely not meant, but the host could still make it right: a warning.

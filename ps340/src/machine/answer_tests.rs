@@ -14,7 +14,7 @@ use protocol::{
 
 const LINE: LineId = LineId(1);
 
-/// A machine with one host, and all that it received carried out.
+/// A machine with one host, which has carried out all that it received.
 fn told(text: &str) -> Machine {
     let mut machine = Machine::new(Settings::default());
     machine.step([Input::Attach(LINE)], 0);

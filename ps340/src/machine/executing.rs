@@ -59,7 +59,7 @@ impl Machine {
         self.settle_after(rested);
     }
 
-    /// Lets the network work. What functions report while they work is reported to the line whose commands are carried
+    /// Lets the network work. What functions report while they work goes to the line whose commands are carried
     /// out only if the network had come to rest before: otherwise nobody knows whose doing it is.
     fn settle_after(&mut self, rested: bool) {
         let speaking = self.lines.reporting_to.filter(|_| rested);

@@ -27,7 +27,7 @@ pub(super) struct Keyboard {
     pub(super) back: usize,
     /// Whether a prompt stands at the cursor and waits.
     pub(super) prompted: bool,
-    /// The host that sent to the terminal last.
+    /// The host whose text the terminal received last.
     pub(super) host: Option<LineId>,
     /// What the terminal sent to its host, for whoever observes it.
     pub(super) typed: Vec<u8>,

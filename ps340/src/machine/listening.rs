@@ -19,7 +19,7 @@ const DIAGNOSTIC_CHARACTERS: usize = 240;
 const CHANNELS: [&str; 10] = ["", "", "", "CHANNEL3", "CHANNEL4", "CHANNEL5", "CHANNEL6", "CHANNEL7", "", ""];
 
 impl HostLine {
-    /// Takes bytes from the host and carries them out.
+    /// Takes bytes from the host, and carries out what they request.
     pub(super) fn receive(&mut self, bytes: &[u8], machine: &mut Machine) {
         let HostLine { frames, decoders } = self;
         frames.feed_quoted(bytes, |frame| {

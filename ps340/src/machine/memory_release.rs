@@ -3,7 +3,7 @@
 //! Lists of strokes, tables of nodes and the like keep their memory from frame to frame, since the next one is usually
 //! as large. When much of what was there has gone, as after INITIALIZE, that memory is released.
 
-/// Bytes by which structures and strokes must have become fewer than at most before memory is released.
+/// Bytes by which structures and strokes must have shrunk from their most before memory is released.
 const RELEASE_BYTES: usize = 8 << 20;
 
 /// How much memory there was, and whether the process should release it.

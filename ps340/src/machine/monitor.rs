@@ -17,7 +17,7 @@ pub(super) struct Monitor {
 impl Monitor {
     /// Whether an alarm fires: when the use of memory reaches its limit, once until it falls or the limit changes.
     ///
-    /// - `place`: the alarm, by its index.
+    /// - `alarm`: the alarm, by its index.
     /// - `percent`: of the memory that is in use.
     pub(super) fn alarms(&mut self, alarm: usize, percent: f64, limit: f64) -> bool {
         let alerted = &mut self.alerted[alarm];

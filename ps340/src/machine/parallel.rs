@@ -20,7 +20,7 @@ use protocol::{
 /// half a second, but there was no network between.
 const TRANSFER_FRAMES: u64 = 1800;
 impl ParallelLine {
-    /// Takes bytes from the host and carries them out; the answers are appended to `out`.
+    /// Takes bytes from the host, and carries out what they request; the answers are appended to `out`.
     pub(super) fn receive(&mut self, bytes: &[u8], machine: &mut Machine, out: &mut Vec<u8>) {
         self.frames.push(bytes);
         while let Some(frame) = self.frames.next() {

@@ -186,7 +186,7 @@ impl Machine {
         self.send_to_terminal_host(sent);
     }
 
-    /// Sends what the terminal sends to the host that sent to it last, or else to the one that came first.
+    /// Sends the output of the terminal to the host whose text it received last, or else to the one that came first.
     fn send_to_terminal_host(&mut self, bytes: Vec<u8>) {
         let host = self.lines.terminal_host(self.keyboard.host);
         if let (Some(line), false) = (host, bytes.is_empty()) {

@@ -172,7 +172,7 @@ impl Player {
         self.step([Input::Detach(LINE)], 0, watcher);
     }
 
-    /// The failures of the run in the sequence of their lines: steps that failed and, unless they are forgiven, errors
+    /// The failures of the run in the order of their lines: steps that failed and, unless they are forgiven, errors
     /// of the machine that no step expected. Those are given once.
     pub fn take_failures(&mut self) -> Vec<Failure> {
         let mut failures = std::mem::take(&mut self.failures);

@@ -11,7 +11,7 @@ pub enum Effect {
     Deliver {
         /// The object.
         object: ObjectId,
-        /// The input of it.
+        /// The input of the object.
         input: Input,
         /// The message.
         value: Value,
@@ -137,7 +137,7 @@ pub enum Effect {
     SendTo {
         /// The object.
         name: Name,
-        /// The input of it.
+        /// The input of the object.
         input: Input,
         /// The message.
         value: Value,

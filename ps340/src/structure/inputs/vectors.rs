@@ -110,7 +110,7 @@ fn mark_range(list: &mut VectorList, range: std::ops::Range<usize>, line: bool, 
     Ok(())
 }
 
-/// Makes the list mark of each vector whether it is a line.
+/// Makes the list mark for each vector whether it is a line.
 fn itemize(list: &mut VectorList) {
     if list.class != VectorClass::Itemized {
         list.lines = (0..list.points.len()).map(|i| list.is_line(i)).collect();
