@@ -146,9 +146,9 @@ impl Edit<'_> {
         added: &[TriangleReference],
         leaves: &mut Leaves,
     ) {
-        for (eighth, added) in octants(cell).zip(self.division.distribute(cell, added)) {
-            let nodes = self.old.within(eighth, nodes.clone());
-            self.cell(eighth, nodes, within(homes, eighth), added, leaves);
+        for (octant, added) in octants(cell).zip(self.division.distribute(cell, added)) {
+            let nodes = self.old.within(octant, nodes.clone());
+            self.cell(octant, nodes, within(homes, octant), added, leaves);
         }
     }
 }

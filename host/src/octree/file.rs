@@ -165,8 +165,8 @@ fn check_nodes(
     if nodes.is_empty() {
         return demand(references.is_empty(), "a triangle lies where there is no node");
     }
-    for (eighth, part) in octants(cell).zip(division.distribute(cell, references)) {
-        check_nodes(division, leaves, eighth, leaves.within(eighth, nodes.clone()), &part)?;
+    for (octant, part) in octants(cell).zip(division.distribute(cell, references)) {
+        check_nodes(division, leaves, octant, leaves.within(octant, nodes.clone()), &part)?;
     }
     Ok(())
 }

@@ -182,12 +182,12 @@ fn collect(
     }
     // Most eighths are beside what is in the cell: nothing has to be cut to know that.
     let (low, half) = place(cell);
-    let touches = |eighth: &LocationalCode| {
-        let digit = eighth.digit(eighth.level()).unwrap_or(0);
+    let touches = |octant: &LocationalCode| {
+        let digit = octant.digit(octant.level()).unwrap_or(0);
         (0..3).all(|axis| match digit >> axis & 1 {
             0 => f64::from(piece.low[axis]) <= low[axis] + half + FAT,
             _ => f64::from(piece.high[axis]) >= low[axis] + half - FAT,
         })
     };
-    octants(cell).filter(touches).for_each(|eighth| collect(division, triangle, eighth, level, pieces));
+    octants(cell).filter(touches).for_each(|octant| collect(division, triangle, octant, level, pieces));
 }

@@ -39,14 +39,14 @@ impl Octree {
             found.push(cube);
             return;
         }
-        for (digit, eighth) in octants(cube).enumerate() {
+        for (digit, octant) in octants(cube).enumerate() {
             let reaches = |axis: usize| match towards[axis] {
                 1 => digit >> axis & 1 == 0,
                 -1 => digit >> axis & 1 == 1,
                 _ => true,
             };
             if (0..3).all(reaches) {
-                self.touching(eighth, towards, nodes.clone(), found);
+                self.touching(octant, towards, nodes.clone(), found);
             }
         }
     }

@@ -125,7 +125,7 @@ fn voxels(division: &OctreeBuilder<'_>, cell: LocationalCode, references: Vec<Tr
     }
     let parts: Vec<_> = octants(cell).zip(division.distribute(cell, &references)).collect();
     drop(references);
-    let divide = |(eighth, references)| voxels(division, eighth, references);
+    let divide = |(octant, references)| voxels(division, octant, references);
     let parts: Vec<Leaves> = match cell.level() < PARALLEL_LEVELS {
         true => parts.into_par_iter().map(divide).collect(),
         false => parts.into_iter().map(divide).collect(),

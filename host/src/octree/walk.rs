@@ -185,7 +185,7 @@ impl Search<'_> {
             }
             self.count.cells += 1;
             if leaves.codes[nodes.start] != cube {
-                cubes.extend(octants(cube).map(|eighth| (eighth, leaves.within(eighth, nodes.clone()))));
+                cubes.extend(octants(cube).map(|octant| (octant, leaves.within(octant, nodes.clone()))));
             } else if self.any_of_leaf(nodes.start) {
                 return;
             }

@@ -103,7 +103,7 @@ impl ConnectionSlots {
 }
 
 /// Sends a rejected peer the reason, and closes the connection.
-async fn reject(mut stream: Box<dyn SocketStream>, text: Arc<str>, _farewell: OwnedSemaphorePermit) {
+async fn reject(mut stream: Box<dyn SocketStream>, text: Arc<str>, _rejection: OwnedSemaphorePermit) {
     let said = async {
         stream.write_all(text.as_bytes()).await?;
         stream.shutdown().await?;

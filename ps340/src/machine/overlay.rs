@@ -99,7 +99,7 @@ impl Machine {
             }
             _ => Update::default(),
         };
-        // What was said of the cursor before is not said again.
+        // A fault of the cursor that was reported before is not reported again.
         if let Some(fault) = self.tube.cursor.fault.filter(|fault| before != Some(*fault)) {
             self.report(Message::Update(fault));
         }

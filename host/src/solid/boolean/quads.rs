@@ -68,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn halves_of_a_square_are_mates() {
+    fn halves_of_a_square_are_partners() {
         let square = [[0.0, 0.0, 0.1], [1.0, 0.0, 0.1], [1.0, 1.0, 0.1], [0.0, 1.0, 0.1]];
         for triangles in [[[0, 1, 2], [0, 2, 3]], [[2, 0, 1], [3, 0, 2]], [[1, 2, 0], [2, 3, 0]]] {
             let square = mesh(&square, &triangles);

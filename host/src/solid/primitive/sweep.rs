@@ -25,7 +25,7 @@ pub fn path(control: &[DVec3], is_closed: bool) -> Result<SplineCurve, Primitive
 }
 
 /// The solid that a polygon makes along a curve. It stays square to the curve and does not turn about it, but as
-/// `widening` says. The curve goes through the origin of the polygon.
+/// `twist_and_taper` says. The curve goes through the origin of the polygon.
 ///
 /// Contours may run either way; what lies in an odd number of them is inside. That parts of the curve far from each
 /// other come too near is not checked.
