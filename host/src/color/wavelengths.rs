@@ -47,12 +47,6 @@ impl SpectralTable {
     pub fn mean(&self) -> Channels {
         self.0.iter().fold(Channels::ZERO, |sum, channels| sum + *channels) * (self.0.len() as f64).recip()
     }
-
-    /// Whether it is the same at all wavelengths.
-    pub fn is_constant(&self) -> bool {
-        let first = self.0[0].0[0];
-        self.0.iter().all(|channels| channels.0.iter().all(|value| *value == first))
-    }
 }
 
 impl WavelengthSets {

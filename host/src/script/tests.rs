@@ -173,6 +173,13 @@ fn every_example_in_the_table_runs() {
 }
 
 #[test]
+fn every_solid_has_a_function_of_its_word() {
+    for word in Primitive::WORDS {
+        assert!(functions().any(|function| function.name == *word), "{word}");
+    }
+}
+
+#[test]
 fn no_name_is_given_to_two_functions() {
     let mut names: Vec<&str> = functions().map(|function| function.name).collect();
     names.sort_unstable();
