@@ -1,13 +1,14 @@
 //! Which wavelengths rays carry, and quantities at them.
 //!
 //! Where a scene needs no spectra, a ray carries the three bands of a screen. Where it does, it carries eight
-//! wavelengths, evenly spaced over all that is seen, as a comb whose place is drawn for each sample. There are 64 combs:
-//! all together they are 512 bins less than a nanometre wide, and a quantity is tabulated once as its means over them.
+//! wavelengths, evenly spaced over all that is seen, as a wavelength set whose place is drawn for each sample. There
+//! are 64 wavelength sets: all together they are 512 bins less than a nanometre wide, and a quantity is tabulated once
+//! as its means over them.
 
 use super::{Bins, Channels, Color, LANES, Spectrum, color::WHITE, srgb};
 use glam::DVec3;
 
-/// Combs of wavelengths.
+/// Wavelength sets of wavelengths.
 const SETS: usize = 64;
 /// Wavelengths, nm, at which indices of refraction are taken for the three bands: about where each band has its middle.
 const OF_BANDS: [f64; 3] = [611.0, 549.0, 464.0];
@@ -15,24 +16,24 @@ const OF_BANDS: [f64; 3] = [611.0, 549.0, 464.0];
 /// What rays carry.
 #[derive(Clone, Debug)]
 pub struct WavelengthSets {
-    /// For each comb the wavelength of each lane, nm; 0 for unused lanes.
+    /// For each wavelength set the wavelength of each lane, nm; 0 for unused lanes.
     at: Vec<[f64; LANES]>,
-    /// For each comb and lane what light of 1 there adds to linear sRGB.
+    /// For each wavelength set and lane what light of 1 there adds to linear sRGB.
     srgb_weights: Vec<[DVec3; LANES]>,
     spectral: bool,
 }
 
-/// A quantity at the wavelengths of each comb.
+/// A quantity at the wavelengths of each wavelength set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpectralTable(Vec<Channels>);
 
 impl SpectralTable {
-    /// A quantity for each of some combs.
+    /// A quantity for each of some wavelength sets.
     pub fn each(sets: usize, of: impl FnMut(usize) -> Channels) -> SpectralTable {
         SpectralTable((0..sets.max(1)).map(of).collect())
     }
 
-    /// The quantity at the wavelengths of a comb.
+    /// The quantity at the wavelengths of a wavelength set.
     #[inline]
     pub fn of(&self, wavelength_set: usize) -> Channels {
         self.0[wavelength_set.min(self.0.len() - 1)]
@@ -43,7 +44,7 @@ impl SpectralTable {
         self.0.iter().fold(0.0, |most, channels| channels.max().max(most))
     }
 
-    /// The mean over all combs.
+    /// The mean over all wavelength sets.
     pub fn mean(&self) -> Channels {
         self.0.iter().fold(Channels::ZERO, |sum, channels| sum + *channels) * (self.0.len() as f64).recip()
     }
@@ -85,22 +86,22 @@ impl WavelengthSets {
         if self.spectral { LANES } else { 3 }
     }
 
-    /// The comb for a number that is uniform in 0..1.
+    /// The wavelength set for a number that is uniform in 0..1.
     pub fn set_at(&self, uniform: f64) -> usize {
         ((uniform * self.at.len() as f64) as usize).min(self.at.len() - 1)
     }
 
-    /// How many combs there are.
+    /// How many wavelength sets there are.
     pub fn count(&self) -> usize {
         self.at.len()
     }
 
-    /// The wavelengths of a comb, nm; 0 for unused lanes.
+    /// The wavelengths of a wavelength set, nm; 0 for unused lanes.
     pub fn at(&self, wavelength_set: usize) -> [f64; LANES] {
         self.at[wavelength_set.min(self.at.len() - 1)]
     }
 
-    /// What light looks like: linear sRGB. Its mean over all combs is exact.
+    /// What light looks like: linear sRGB. Its mean over all wavelength sets is exact.
     #[inline]
     pub fn to_srgb(&self, wavelength_set: usize, light: Channels) -> DVec3 {
         if !self.spectral {
@@ -110,7 +111,8 @@ impl WavelengthSets {
         (0..LANES).map(|lane| weights[lane] * light.0[lane]).sum()
     }
 
-    /// About how much there is of long, middle and short wavelengths: no color, but nearly the same for all combs.
+    /// About how much there is of long, middle and short wavelengths: no color, but nearly the same for all wavelength
+    /// sets.
     pub fn broad_bands(&self, light: Channels) -> DVec3 {
         let light = light.0;
         match self.spectral {
@@ -140,8 +142,8 @@ impl WavelengthSets {
         }
     }
 
-    /// The reflectances that red, green and blue of an image stand for; they add up to 1 at all wavelengths, so that every
-    /// mixture of them is a reflectance and that of equal parts is grey.
+    /// The reflectances that red, green and blue of an image stand for; they add up to 1 at all wavelengths, so that
+    /// every mixture of them is a reflectance and that of equal parts is grey.
     pub fn primaries(&self) -> [SpectralTable; 3] {
         if !self.spectral {
             return DVec3::AXES.map(|axis| SpectralTable(vec![in_bands(axis)]));
@@ -195,7 +197,8 @@ impl WavelengthSets {
         }
     }
 
-    /// A quantity that is given at every wavelength, nm, such as an index of refraction; for bands at a wavelength of each.
+    /// A quantity that is given at every wavelength, nm, such as an index of refraction; for bands at a wavelength of
+    /// each.
     ///
     /// Unused lanes have the value of the first.
     pub fn quantity(&self, function: impl Fn(f64) -> f64) -> SpectralTable {
@@ -216,7 +219,7 @@ impl WavelengthSets {
     }
 }
 
-/// The bins of all combs.
+/// The bins of all wavelength sets.
 fn bins() -> Bins {
     Bins::visible(SETS * LANES).expect("there are bins")
 }

@@ -15,7 +15,7 @@ const LEAST_SLOPE: f64 = 1e-100;
 /// For each axis, the two that follow in cyclic order.
 static OTHERS: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 
-/// A ray made ready for many triangles: its longest axis, and the shear that makes it that axis.
+/// A ray prepared for many triangles: its longest axis, and the shear that makes it that axis.
 ///
 /// A vertex p becomes q = (p - origin) scaled, with q_x - (d_x/d_z) q_z and q_y - (d_y/d_z) q_z, where z is the
 /// longest axis of the direction. One function of the vertex alone: two triangles that share an edge see the same
@@ -154,8 +154,8 @@ pub fn four(vector: DVec3) -> f64x4 {
     f64x4::new([x, y, z, 0.0])
 }
 
-/// Weights of the corners of a triangle that give a point of it, each 0..=1 and their sum 1. For a point off its plane they
-/// are those of the nearest point of the plane, held within the triangle.
+/// Weights of the corners of a triangle that give a point of it, each 0..=1 and their sum 1. For a point off its plane
+/// they are those of the nearest point of the plane, held within the triangle.
 pub fn weights([a, b, c]: [DVec3; 3], point: DVec3) -> [f64; 3] {
     let normal = (b - a).cross(c - a);
     let part =
@@ -168,7 +168,8 @@ pub fn weights([a, b, c]: [DVec3; 3], point: DVec3) -> [f64; 3] {
 /// The point of a triangle, or of a segment where it has no area, that is nearest to a point.
 ///
 /// # Source
-/// Ericson 2005, section 5.1.5: by the regions of the plane in which the nearest point is a corner, on a side, or inside.
+/// Ericson 2005, section 5.1.5: by the regions of the plane in which the nearest point is a corner, on a side, or
+/// inside.
 pub fn nearest(point: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
     let (ab, ac) = (b - a, c - a);
     let normal = ab.cross(ac);

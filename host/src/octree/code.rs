@@ -66,7 +66,8 @@ impl LocationalCode {
         self.0 & (self.0 - 1)
     }
 
-    /// Says whether the cube begins in the order before another one ends; then it lies before it, or in it, or around it.
+    /// Says whether the cube begins in the order before another one ends; then it lies before it, or in it, or around
+    /// it.
     #[inline]
     pub fn begins_before_end_of(self, other: Self) -> bool {
         self.digits() <= other.digits() | tail(other.mark())
@@ -98,13 +99,13 @@ impl LocationalCode {
         1 << (MAX_DEPTH - self.level())
     }
 
-    /// The eighth of this cube with a digit 0..=7; `None` at [`MAX_DEPTH`].
+    /// The octant of this cube with a digit 0..=7; `None` at [`MAX_DEPTH`].
     pub fn child(self, digit: u8) -> Option<Self> {
         let level = self.level() + 1;
         (level <= MAX_DEPTH).then(|| Self::cut(self.digits() | u64::from(digit & 7) << (64 - 3 * level), level))
     }
 
-    /// The cube that this one is an eighth of; `None` for the modelling cube.
+    /// The cube that this one is an octant of; `None` for the modelling cube.
     pub fn parent(self) -> Option<Self> {
         self.level().checked_sub(1).map(|level| self.ancestor(level))
     }

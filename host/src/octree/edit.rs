@@ -21,8 +21,8 @@ impl Octree {
     /// - `vertices`, `triangles`: as for [`Octree::build`]; the indices count from 0 in the object.
     /// - Returns the number of the object.
     ///
-    /// Cost: dividing the nodes that the object touches, and copying the codes of the others. The index is dropped: rays
-    /// go from cell to cell until [`Octree::with_walk`] makes another.
+    /// Cost: dividing the nodes that the object touches, and copying the codes of the others. The index is dropped:
+    /// rays go from cell to cell until [`Octree::with_walk`] makes another.
     ///
     /// # Errors
     /// Those of [`Octree::build`], and a vertex of a triangle outside the modelling cube. Then nothing is changed.
@@ -137,7 +137,7 @@ impl Edit<'_> {
         }
     }
 
-    /// Edits the eighths of a cell that was divided and stays so.
+    /// Edits the octants of a cell that was divided and stays so.
     fn octants(
         &self,
         cell: LocationalCode,

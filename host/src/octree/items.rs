@@ -1,4 +1,5 @@
-//! What the index holds, in the order of locational codes: triangles, and pieces of large ones that are thin and slanted.
+//! What the index holds, in the order of locational codes: triangles, and pieces of large ones that are thin and
+//! slanted.
 
 use super::build::{OctreeBuilder, octants, place};
 use super::bvh::{DIGITS, radix_sorted};
@@ -11,8 +12,8 @@ use wide::f32x4;
 /// Items that one thread takes at a time.
 const PARALLEL_ITEMS: usize = 4096;
 
-/// A triangle is held as pieces if each of them saves more than this share of a test of every triangle by every ray. Rays
-/// through scanned meshes are no faster with less, and building takes twice as long.
+/// A triangle is held as pieces if each of them saves more than this share of a test of every triangle by every ray.
+/// Rays through scanned meshes are no faster with less, and building takes twice as long.
 const WORTHWHILE: f32 = 16.0;
 
 /// A triangle is cut only if it fills less than this share of its box.
@@ -180,7 +181,7 @@ fn collect(
         pieces.push(piece);
         return;
     }
-    // Most eighths are beside what is in the cell: nothing has to be cut to know that.
+    // Most octants are beside what is in the cell: nothing has to be cut to know that.
     let (low, half) = place(cell);
     let touches = |octant: &LocationalCode| {
         let digit = octant.digit(octant.level()).unwrap_or(0);

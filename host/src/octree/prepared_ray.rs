@@ -10,8 +10,8 @@ use wide::f64x4;
 /// Rounding of a point on the ray and of what it is compared with in single precision, twice what it can be.
 ///
 /// A corner of a triangle and the length to it are each off by 2^-25, the slope by as much, what is taken from it by
-/// 2^-24, the difference by 2^-24 and the product by 2^-25: 2^-22 in all. A side of a box is off by 2^-25, and the length
-/// to it by two roundings and one of each product: less than 2^-22 too.
+/// 2^-24, the difference by 2^-24 and the product by 2^-25: 2^-22 in all. A side of a box is off by 2^-25, and the
+/// length to it by two roundings and one of each product: less than 2^-22 too.
 const SINGLE_TOLERANCE: f64 = 1.0 / (1_u32 << 21) as f64;
 
 /// Rounding of a point on the ray in double precision, as a share of the distance from origin to cube.
@@ -26,7 +26,7 @@ const MOST_INVERSE: f64 = 1e20;
 /// How far before its entry a ray is taken to begin, in tolerances.
 const MARGIN: f64 = 4.0;
 
-/// A ray made ready for what is in a cube.
+/// A ray prepared for what is in a cube.
 #[derive(Clone, Debug)]
 pub struct PreparedRay {
     /// What decides which triangles it meets.
@@ -145,11 +145,11 @@ pub struct SinglePrecisionRay {
     pub error_scale: f32,
     /// One over the slope, by axis.
     pub inverse: [f32; 4],
-    /// What is to be added to a coordinate times the inverse to get the length to the near side of a box, which is moved
-    /// towards the ray by the tolerance; by axis.
+    /// What is to be added to a coordinate times the inverse to get the length to the near side of a box, which is
+    /// moved towards the ray by the tolerance; by axis.
     pub near: [f32; 4],
-    /// What is to be added to a coordinate times the inverse to get the length to the far side of a box, which is moved away
-    /// by the tolerance; by axis.
+    /// What is to be added to a coordinate times the inverse to get the length to the far side of a box, which is moved
+    /// away by the tolerance; by axis.
     pub far: [f32; 4],
     /// Whether the ray goes down, by axis.
     pub down: [bool; 3],

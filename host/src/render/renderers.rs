@@ -37,15 +37,15 @@ pub struct RendererRow {
     pub word: &'static str,
     /// What it is good for.
     pub help: &'static str,
-    /// Whether it adds samples to pixels one by one: errors, seconds, a state to go on with, single pixels and denoising can
-    /// then be asked for.
+    /// Whether it adds samples to pixels one by one: errors, seconds, a state to go on with, single pixels and
+    /// denoising can then be asked for.
     pub adds_samples: bool,
     /// Whether it follows light from lamps, which can be kept.
     pub can_map_photons: bool,
     /// Whether photons are its way to caustics, in every scene.
     pub always_maps_photons: bool,
-    /// Whether it finds the light that diffuse surfaces send each other in every scene, which takes long and can be gone on
-    /// with.
+    /// Whether it finds the light that diffuse surfaces send each other in every scene, which takes long and can be
+    /// gone on with.
     pub solves_radiosity: bool,
     /// Whether studies of knobs know it.
     pub is_studied: bool,
@@ -122,7 +122,7 @@ pub const RENDERERS: [RendererRow; 4] = [
     },
 ];
 
-/// What a renderer is made ready for.
+/// What a renderer is prepared for.
 #[derive(Clone, Copy)]
 pub struct Task<'a> {
     /// The scene, with settings as [`RendererRow::require`] left them.
@@ -131,8 +131,8 @@ pub struct Task<'a> {
     pub plan: &'a Plan,
     /// Where caught light is kept beyond the renderer; nowhere without one.
     pub photon_store: Option<&'a PhotonStore>,
-    /// Who watches what is found before the first picture, and may stop it: the light that surfaces send each other is then
-    /// known coarsely.
+    /// Who watches what is found before the first picture, and may stop it: the light that surfaces send each other is
+    /// then known coarsely.
     pub watch: Watch<'a>,
 }
 

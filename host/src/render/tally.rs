@@ -13,8 +13,8 @@ pub(super) const SHARING: u32 = 8;
 
 /// Light by the ways on which it comes to the eye: each way is in one class.
 ///
-/// A turn of light is broad where it is spread about everywhere, as by Lambert's term, and narrow where it is passed on as a
-/// beam: by mirrors, glass and highlights.
+/// A turn of light is broad where it is spread about everywhere, as by Lambert's term, and narrow where it is passed on
+/// as a beam: by mirrors, glass and highlights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PathClass {
     /// Of lamps and skies, straight or by narrow turns alone.
@@ -81,13 +81,13 @@ pub struct PixelSample {
     pub covered: bool,
     /// The first element that it saw: distance, normal, object and material.
     pub first: Option<(f64, DVec3, [u32; 2])>,
-    /// The albedo that it saw, straight or by mirrors and smooth interfaces, as [`broad_bands`](crate::color::WavelengthSets::broad_bands)
-    /// bands; 0 unless a denoiser needs it.
+    /// The albedo that it saw, straight or by mirrors and smooth interfaces, as
+    /// [`broad_bands`](crate::color::WavelengthSets::broad_bands) bands; 0 unless a denoiser needs it.
     pub albedo: DVec3,
     /// The normals there, each times how much of the light comes to the eye; 0 unless a denoiser needs them.
     pub normal: DVec3,
-    /// Standard error of its luminance by what it shares with the samples before and after it: light that was caught for
-    /// all of them.
+    /// Standard error of its luminance by what it shares with the samples before and after it: light that was caught
+    /// for all of them.
     pub shared: f64,
 }
 
@@ -144,8 +144,8 @@ impl Tally {
         Pixel { radiance: self.mean().as_vec3().to_array(), coverage: self.coverage() as f32 }
     }
 
-    /// Variance of the mean luminance, as if samples and ways of light were independent: evenly spread ones are better. What
-    /// some of them share is added: light that was caught once is wrong by the same for all of these.
+    /// Variance of the mean luminance, as if samples and light paths were independent: evenly spread ones are better.
+    /// What some of them share is added: light that was caught once is wrong by the same for all of these.
     pub fn variance(&self) -> f64 {
         if self.count < 2 {
             return f64::INFINITY;
@@ -155,11 +155,11 @@ impl Tally {
         (self.squares / count - mean * mean).max(0.0) / (count - 1.0) + self.shared_variance()
     }
 
-    /// Variance of the mean luminance by the difference of its halves, the first to the last power of two and the rest; none
-    /// without two samples that came one by one.
+    /// Variance of the mean luminance by the difference of its halves, the first to the last power of two and the rest;
+    /// none without two samples that came one by one.
     ///
-    /// That samples are evenly spread is in it, and what they share as far as halves do not share it. Of a single pixel it
-    /// tells little.
+    /// That samples are evenly spread is in it, and what they share as far as halves do not share it. Of a single pixel
+    /// it tells little.
     pub(super) fn variance_of_halves(&self) -> Option<f64> {
         let early = 1u32 << self.count.checked_sub(1)?.checked_ilog2()?;
         let (early, count) = (f64::from(early), f64::from(self.count));

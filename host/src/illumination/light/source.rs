@@ -1,4 +1,4 @@
-//! Lights made ready for rendering, a row for each kind. A new light is a file, a row, and what scenes say of it.
+//! Lights prepared for rendering, a row for each kind. A new light is a file, a row, and what scenes say of it.
 
 use super::area::AreaLight;
 use super::directional::DirectionalLight;
@@ -145,8 +145,8 @@ impl LightSource {
         self.0.emitter().sample_emission(uniform, wavelength_set)
     }
 
-    /// Flux in each solid angle that leaves a place of [`LightSource::sample_emission`] in a direction, over the density of the place,
-    /// W/sr.
+    /// Flux in each solid angle that leaves a place of [`LightSource::sample_emission`] in a direction, over the
+    /// density of the place, W/sr.
     ///
     /// - `normal`: of the surface there, if it is one. `direction`: where it goes, unit length.
     pub fn intensity(&self, normal: Option<DVec3>, direction: DVec3, wavelength_set: usize) -> Channels {
@@ -173,7 +173,8 @@ impl LightSource {
         self.0.emitter().sky_radiance(ray, normal, wavelength_set)
     }
 
-    /// The density with which [`LightSource::sample_incident`] draws a direction in which emitting triangles are met, 1/sr.
+    /// The density with which [`LightSource::sample_incident`] draws a direction in which emitting triangles are met,
+    /// 1/sr.
     ///
     /// - `cosine`: between the direction and the normal of the triangle, any sign.
     pub fn pdf_on_triangle(&self, distance: f64, cosine: f64) -> f64 {

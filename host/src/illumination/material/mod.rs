@@ -1,4 +1,4 @@
-//! Of what a surface is: what a scene says of it, before it is made ready for rendering.
+//! Of what a surface is: what a scene says of it, before it is prepared for rendering.
 
 mod principled;
 

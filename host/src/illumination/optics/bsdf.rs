@@ -1,4 +1,4 @@
-//! A material made ready for rendering: a sum of lobes, and which of them carry rays on.
+//! A material prepared for rendering: a sum of lobes, and which of them carry rays on.
 
 use super::context::{BsdfSample, InterfaceIndices, ShadingContext};
 use super::lobe::{Flags, Lobe};
@@ -29,7 +29,7 @@ pub struct TextureMixture<'a> {
 }
 
 impl TextureMixture<'_> {
-    /// What the patterns give at the wavelengths of a comb.
+    /// What the patterns give at the wavelengths of a wavelength set.
     pub fn at(&self, wavelength_set: usize) -> TextureValues {
         let mut texture_values = vec![Channels::ZERO; self.count];
         for (pattern, curve, amount) in &self.parts {
@@ -44,15 +44,16 @@ impl TextureMixture<'_> {
 
 /// One of the lobes of a surface.
 ///
-/// The first two carry rays from the eye on. A way of light may be told by them: each of its turns is by a broad lobe or by a narrow one.
+/// The first two carry rays from the eye on. A light path may be told by them: each of its turns is by a broad lobe or
+/// by a narrow one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LobeClass {
     /// Those that spread light so far that it is seen from about everywhere.
     Broad,
     /// Those that pass it on as a beam: mirrors, smooth interfaces, and rough ones of narrow highlights.
     Narrow,
-    /// Those that spread light about everywhere, where a radiosity solution tells what comes from other surfaces: rays from
-    /// the eye end at them, and light that is followed from lamps goes on.
+    /// Those that spread light about everywhere, where a radiosity solution tells what comes from other surfaces: rays
+    /// from the eye end at them, and light that is followed from lamps goes on.
     Radiosity,
     /// Those that answer lights only.
     LightsOnly,
@@ -117,7 +118,7 @@ struct Member {
     lobe: AnyLobe,
 }
 
-/// A material made ready for rendering.
+/// A material prepared for rendering.
 #[derive(Clone, Debug)]
 pub struct Bsdf {
     lobes: Vec<Member>,
@@ -206,8 +207,8 @@ impl Bsdf {
         members.fold(Channels::ZERO, |sum, member| sum + member.lobe.value(context, light))
     }
 
-    /// Radiance towards the viewer for each unit of flux density that arrives from a light, 1/sr, by all lobes; nothing of
-    /// what only a mirror or a smooth interface would reach.
+    /// Radiance towards the viewer for each unit of flux density that arrives from a light, 1/sr, by all lobes; nothing
+    /// of what only a mirror or a smooth interface would reach.
     #[inline]
     pub fn total_value(&self, context: &ShadingContext, light: DVec3) -> Channels {
         self.lobes.iter().fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.value(context, light))
@@ -286,14 +287,14 @@ impl Bsdf {
         self.lobes.iter().fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.glossy_albedo(context))
     }
 
-    /// The part of light from all around that is reflected alike to everywhere: Lambert's term, and what a ground under a
-    /// coat gives in the mean.
+    /// The part of light from all around that is reflected alike to everywhere: Lambert's term, and what a ground under
+    /// a coat gives in the mean.
     pub fn diffuse_albedo(&self, context: &ShadingContext) -> Channels {
         self.lobes.iter().fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.diffuse_albedo(context))
     }
 
-    /// About the part of light from all around that is reflected to the viewer, but for what a mirror or a smooth interface
-    /// passes on.
+    /// About the part of light from all around that is reflected to the viewer, but for what a mirror or a smooth
+    /// interface passes on.
     pub fn non_delta_albedo(&self, context: &ShadingContext) -> Channels {
         let spread = self.lobes.iter().filter(|member| !member.flags.has(Flags::DELTA));
         spread.fold(Channels::ZERO, |sum, Member { lobe, .. }| {
@@ -344,7 +345,8 @@ impl Bsdf {
 
     /// The part of light that goes straight through.
     ///
-    /// - `cosine`: of the angle between light and normal, 0..=1. `place`: asked for only if a pattern has to be looked up.
+    /// - `cosine`: of the angle between light and normal, 0..=1. `place`: asked for only if a pattern has to be looked
+    ///   up.
     pub fn straight_transmittance(
         &self,
         wavelength_set: usize,
@@ -375,7 +377,8 @@ impl Bsdf {
 
     /// The part of light that a polished interface lets through, as if it were not bent.
     ///
-    /// - `cosine`: of the angle between light and normal, 0..=1. `place`: asked for only if a pattern has to be looked up.
+    /// - `cosine`: of the angle between light and normal, 0..=1. `place`: asked for only if a pattern has to be looked
+    ///   up.
     pub fn clear_transmittance(
         &self,
         wavelength_set: usize,
@@ -420,8 +423,8 @@ impl Bsdf {
         spread.fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.value(context, light))
     }
 
-    /// Radiance towards the viewer for each unit of flux density, 1/sr, of all lobes but the narrow ones, where it is one
-    /// for all light from above; none where it is not.
+    /// Radiance towards the viewer for each unit of flux density, 1/sr, of all lobes but the narrow ones, where it is
+    /// one for all light from above; none where it is not.
     pub fn constant_value(&self, context: &ShadingContext) -> Option<Channels> {
         let mut spread = self.lobes.iter().filter(|member| member.class != LobeClass::Narrow);
         spread.try_fold(Channels::ZERO, |sum, Member { flags, lobe, .. }| {

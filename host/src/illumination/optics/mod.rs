@@ -1,7 +1,7 @@
-//! Materials made ready for rendering: what they scatter, tabulated at the wavelengths that rays carry.
+//! Materials prepared for rendering: what they scatter, tabulated at the wavelengths that rays carry.
 //!
-//! Directions are unit vectors in the frame of the surface element: z is its normal on the side of the viewer. Light may
-//! come from above, or from below where a surface lets it through.
+//! Directions are unit vectors in the frame of the surface element: z is its normal on the side of the viewer. Light
+//! may come from above, or from below where a surface lets it through.
 //!
 //! An [`Bsdf`] is a sum of lobes. Some end a ray's way: they answer lights and ambient light only, as Lambert's and
 //! Phong's terms do where diffuse interreflection is left out. The others carry it on.

@@ -1,4 +1,4 @@
-//! Paints and numbers made ready for rendering: paints are tabulated at the wavelengths that rays carry.
+//! Paints and numbers prepared for rendering: paints are tabulated at the wavelengths that rays carry.
 
 use super::context::ShadingContext;
 use crate::color::{Channels, SpectralTable, WavelengthSets};

@@ -42,12 +42,12 @@ impl FacetDistribution {
 pub(super) struct RoughConductor {
     facets: FacetDistribution,
     conductors: Arc<Vec<[Conductor; LANES]>>,
-    /// K of further reflections, for each comb.
+    /// K of further reflections, for each wavelength set.
     further: Vec<Channels>,
 }
 
 impl RoughConductor {
-    /// - `conductors`: for each comb, lane by lane.
+    /// - `conductors`: for each wavelength set, lane by lane.
     pub(super) fn new(shape: FacetDistribution, conductors: Arc<Vec<[Conductor; LANES]>>) -> RoughConductor {
         let further = match &shape {
             FacetDistribution::SingleScattering(_) => Vec::new(),

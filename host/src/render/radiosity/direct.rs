@@ -8,14 +8,15 @@ use crate::numeric::sequence::SobolSequence;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// Exitance from elsewhere at a point of a side of a triangle, W/m², in lanes that are means over all combs: light that
-/// surfaces send beside what they reflect of lights and of each other, as what two-way ray tracing caught, times their
-/// reflectance.
+/// Exitance from elsewhere at a point of a side of a triangle, W/m², in lanes that are means over all wavelength sets:
+/// light that surfaces send beside what they reflect of lights and of each other, as what two-way ray tracing caught,
+/// times their reflectance.
 ///
-/// Told the triangle, whether it is its outer side, and the point. It is asked at points next to the corners of elements
-/// and to the middles of their edges, from many threads, and elements are divided where it is not linear between them, down
-/// to the finest: what is smaller than [`RadiositySettings::finest`](crate::scene::RadiositySettings) is to be spread over that much before. Light
-/// of it that other surfaces send back is in the irradiance of the solution; it itself is not.
+/// Told the triangle, whether it is its outer side, and the point. It is asked at points next to the corners of
+/// elements and to the middles of their edges, from many threads, and elements are divided where it is not linear
+/// between them, down to the finest: what is smaller than
+/// [`RadiositySettings::finest`](crate::scene::RadiositySettings) is to be spread over that much before. Light of it
+/// that other surfaces send back is in the irradiance of the solution; it itself is not.
 pub type Exitance<'a> = &'a (dyn Fn(u32, bool, DVec3) -> Channels + Sync);
 
 /// How much shorter a ray to a triangle that emits is, so that it does not meet it.
@@ -33,7 +34,8 @@ const MORE: u32 = 4;
 /// another surface.
 const INWARDS: f64 = 1e-3;
 
-/// What comes from elsewhere than other elements to a point of an element, W/m². In spectra, lanes are means over all combs.
+/// What comes from elsewhere than other elements to a point of an element, W/m². In spectra, lanes are means over all
+/// wavelength sets.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct ExternalLight {
     /// Irradiance straight from lights.
@@ -42,8 +44,8 @@ pub(super) struct ExternalLight {
     pub(super) extra: Channels,
 }
 
-/// What comes to the three corners of an element; of one that may be divided also to the middles of the edges from each to the
-/// next. Nothing for clusters.
+/// What comes to the three corners of an element; of one that may be divided also to the middles of the edges from each
+/// to the next. Nothing for clusters.
 pub(super) type CornerLight = Box<[ExternalLight]>;
 
 /// Which of them are the corners of each quarter.
@@ -84,8 +86,8 @@ pub(super) fn bend(around: &CornerLight) -> f64 {
 }
 
 impl VisibilityTester<'_> {
-    /// What comes to an element, and its mean, which is exact for what is quadratic over an element that may be divided, and
-    /// for what is linear over a part of one. A small patch is asked in its middle only.
+    /// What comes to an element, and its mean, which is exact for what is quadratic over an element that may be
+    /// divided, and for what is linear over a part of one. A small patch is asked in its middle only.
     ///
     /// - `corners`: what is known already. `may_be_divided`: whether it is longer than the finest.
     pub(super) fn external_light(

@@ -29,11 +29,11 @@ pub(super) struct SurfaceLight {
 /// A side of a triangle, or a part of it, with the parts of which it consists.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ElementTree {
-    /// Its corners, counter-clockwise about the side; of the outer side of a triangle as the scene orders them, of the inner
-    /// one the first, the third and the second.
+    /// Its corners, counter-clockwise about the side; of the outer side of a triangle as the scene orders them, of the
+    /// inner one the first, the third and the second.
     pub corners: [DVec3; 3],
-    /// None for an element; else the four that the middles of its edges make, at the corners and in the middle, or, if it
-    /// is cut, two halves or what lines left.
+    /// None for an element; else the four that the middles of its edges make, at the corners and in the middle, or, if
+    /// it is cut, two halves or what lines left.
     pub parts: Vec<ElementTree>,
     /// Whether it is cut.
     pub is_cut: bool,
@@ -92,7 +92,7 @@ impl SurfaceLight {
         SurfaceLight { hierarchy, patch_of, corners, of_faces, values }
     }
 
-    /// Irradiance at a place of a side of a triangle, W/m², in lanes that are means over all combs.
+    /// Irradiance at a place of a side of a triangle, W/m², in lanes that are means over all wavelength sets.
     ///
     /// - `weights`: of the corners, as the scene orders them.
     pub(super) fn at(&self, triangle: u32, outside: bool, weights: [f64; 3], part: IrradiancePart) -> Channels {

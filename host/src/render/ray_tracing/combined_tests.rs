@@ -1,4 +1,4 @@
-//! Facts about two-way ray tracing and radiosity together: each way of light counts once.
+//! Facts about two-way ray tracing and radiosity together: each light path counts once.
 
 use super::tests::{diffuse, mirror, scene, trace};
 use super::two_way_tests::{ball, block, glass, lamp, two_way};

@@ -95,7 +95,7 @@ impl<'a> DirectLighting<'a> {
         let source = &self.world.appearance.sources[index].1;
         let ended = [LobeClass::Radiosity, LobeClass::LightsOnly].map(|class| bsdf.value(class, context, light));
         let mut values = [ended[0] + ended[1], Channels::ZERO];
-        // Without what a further leg brings.
+        // Without what a further path segment brings.
         let mut whole = values;
         for (class, value) in LobeClass::CONTINUING.into_iter().zip(&mut values) {
             let mut continued = bsdf.value(class, context, light);
@@ -108,7 +108,7 @@ impl<'a> DirectLighting<'a> {
             if let Some(pdf) = light_sample.pdf
                 && continued != Channels::ZERO
             {
-                // The rest is what a further leg brings that meets the light.
+                // The rest is what a further path segment brings that meets the light.
                 continued *= power_heuristic(Some(pdf), bsdf.pdf(class, context, light, *selection));
             }
             *value += continued;
@@ -124,7 +124,7 @@ impl<'a> DirectLighting<'a> {
         let (transmittance, is_cleared) =
             self.world.transmittance(&ray, t_max, (index, occluders), (context.wavelength_set, vertex.sampler.time));
         match is_cleared {
-            // A further leg would be bent, and brings nothing.
+            // A further path segment would be bent, and brings nothing.
             true => whole.map(|value| value * light_sample.irradiance * light.z.abs() * transmittance),
             false => radiance.map(|radiance| radiance * transmittance),
         }

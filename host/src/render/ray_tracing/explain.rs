@@ -9,7 +9,7 @@ use serde::Serialize;
 /// Something that happened on the way of a sample.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PathNote {
-    /// How many legs came before.
+    /// How many path segments came before.
     pub depth: u32,
     /// What happened, in words.
     pub what: String,

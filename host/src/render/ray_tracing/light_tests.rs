@@ -124,7 +124,7 @@ fn an_eye_in_water_sees_through_water_from_the_beginning() {
 
 #[test]
 fn rays_that_carry_spectra_show_the_colors_of_those_that_carry_bands() {
-    // As many samples as there are combs of wavelengths: each has its turn once, and nothing else differs within a pixel.
+    // As many samples as there are wavelength sets: each has its turn once, and nothing else differs within a pixel.
     let sun = Light::Directional { direction: DVec3::NEG_Y, irradiance: Color::Bands(RgbPower::new(3.0, 2.0, 1.0)) };
     let floor = Classic { diffuse: Paint::grey(0.6), ..Classic::default() };
     let mut scene = scene(vec![object(Shape::Ground { size: 9.0 }, DMat4::IDENTITY, floor)], vec![sun], 2);

@@ -1,8 +1,9 @@
 //! Ray tracing over the linear octree, after Whitted and Cook: light of all lights with its shadows, reflection and
 //! refraction, sharp and spread.
 //!
-//! Each pixel is the mean of its samples as a reconstruction filter weighs them: by a box, which is what scenes have without
-//! a word, the mean over its area, and coverage the covered share of it. Places in the pixel and on the lens, points of lights, directions and wavelengths are drawn from Owen's scrambled sequences.
+//! Each pixel is the mean of its samples as a reconstruction filter weighs them: by a box, which is what scenes have
+//! without a word, the mean over its area, and coverage the covered share of it. Places in the pixel and on the lens,
+//! points of lights, directions and wavelengths are drawn from Owen's scrambled sequences.
 
 mod accumulation;
 mod direct;
@@ -81,7 +82,8 @@ pub struct Explanation {
 impl<'a> RayTracer<'a> {
     /// Takes up a world, and looks where the light of lamps goes if the plan follows it.
     ///
-    /// - `plan`: of the world. Where it needs radiosity, the light of a solution is to be given by [`RayTracer::with_indirect`].
+    /// - `plan`: of the world. Where it needs radiosity, the light of a solution is to be given by
+    ///   [`RayTracer::with_indirect`].
     /// - `shelf`: where caught light is kept beyond this tracer; nowhere without one.
     pub fn new(world: World<'a>, plan: &'a Plan, photon_store: Option<&'a PhotonStore>) -> RayTracer<'a> {
         let keeps = |object| plan.includes_object(object);
@@ -99,7 +101,8 @@ impl<'a> RayTracer<'a> {
         &self.world
     }
 
-    /// The light of lamps that was followed, as the first pass caught it; none if none is followed, or if it was stopped.
+    /// The light of lamps that was followed, as the first pass caught it; none if none is followed, or if it was
+    /// stopped.
     pub(super) fn photon_estimator(&self, watch: &Watch<'_>) -> Option<PhotonEstimator<'_>> {
         self.photon_mapper.as_ref().and_then(|two_way| two_way.trace_pass(&self.world, 0, watch))
     }
@@ -140,7 +143,7 @@ impl<'a> RayTracer<'a> {
         Ok(eye.with_cones(filter / f64::from(order.footprints).sqrt()))
     }
 
-    /// One sample, its light by classes, and the comb of wavelengths that it carries.
+    /// One sample, its light by classes, and the wavelength set that it carries.
     fn sample(
         &self,
         (tracer, eye, order): (&PathTracer<'_>, &CameraRays, &RenderOrder),

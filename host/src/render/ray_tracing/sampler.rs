@@ -11,11 +11,11 @@ pub(super) enum SampleDimension {
     Pixel,
     /// Place on the lens.
     Lens,
-    /// Which comb of wavelengths, and which of them where they part.
+    /// Which wavelength set, and which of them where they part.
     Wavelengths,
     /// Which lobe carries a ray on.
     Choice,
-    /// Whether a faint leg goes on.
+    /// Whether a faint path segment goes on.
     Survival,
     /// The direction in which it goes on.
     Direction,
@@ -47,7 +47,8 @@ impl PathSampler {
         PathSampler { time: (part - 0.5) * shutter, ..self }
     }
 
-    /// Where the sample lies from the left upper corner of its pixel, and its weight by a filter; a single one in the middle.
+    /// Where the sample lies from the left upper corner of its pixel, and its weight by a filter; a single one in the
+    /// middle.
     pub(super) fn position(&self, filter: Filter) -> ([f64; 2], f64) {
         if self.of <= 1 {
             return ([0.5; 2], 1.0);
@@ -60,15 +61,16 @@ impl PathSampler {
         self.sequence.point(self.index, purpose as u64)
     }
 
-    /// A point of the unit square for a leg of the sample's way.
+    /// A point of the unit square for a path segment of the sample's way.
     ///
-    /// - `leg`: its number, above 0, unlike that of all other legs. `more`: which of several for the same purpose.
+    /// - `leg`: its number, above 0, unlike that of all other path segments. `more`: which of several for the same
+    ///   purpose.
     pub(super) fn for_segment(&self, segment: u32, purpose: SampleDimension, more: u32) -> [f64; 2] {
         self.for_one_of_several(segment, purpose, more, [0, 1])
     }
 
-    /// One of several points for the same: they are as far from each other, and from those of other samples, as those of
-    /// as many samples are.
+    /// One of several points for the same: they are as far from each other, and from those of other samples, as those
+    /// of as many samples are.
     pub(super) fn for_one_of_several(
         &self,
         segment: u32,

@@ -1,4 +1,4 @@
-//! Follows the legs of a sample's way from the eye: what each meets, and where it goes on.
+//! Follows the path segments of a sample's way from the eye: what each meets, and where it goes on.
 
 use super::direct::DirectLighting;
 use super::explain::{PathLog, PathNote};
@@ -16,17 +16,18 @@ use crate::render::{PathClass, RayCounts};
 use crate::scene::Caustics;
 use glam::DVec3;
 
-/// Legs that would pass on less than this fraction of the light are followed by chance only, and then count for more.
+/// Path segments that would pass on less than this fraction of the light are followed by chance only, and then count
+/// for more.
 pub const ENERGY_CUTOFF: f64 = 1.0 / 4096.0;
 /// Where a way parts, both parts are followed as long as each passes on so much of the light.
 const LEAST_SPLIT: f64 = 1.0 / 64.0;
-/// What a lamp reflects on an element that is seen by spread light is cut off at this value, 1/sr, unless caustics count:
-/// a diffuse surface has at most 1/π.
+/// What a lamp reflects on an element that is seen by spread light is cut off at this value, 1/sr, unless caustics
+/// count: a diffuse surface has at most 1/π.
 ///
 /// # Source
 /// Ours, in the place of the path regularisation of Kaplanyan and Dachsbacher 2013.
 const HIGHEST: f64 = 1.0;
-/// Most legs of a sample that wait to be followed.
+/// Most path segments of a sample that wait to be followed.
 const MOST_WAITING: usize = 8;
 
 /// A part of a sample's way.
@@ -39,9 +40,9 @@ struct PathSegment {
     lamp_weight: f64,
     /// How far from the beginning of its ray it begins, scene units: more than 0 behind what it went straight through.
     begin: f64,
-    /// How many legs came before it.
+    /// How many path segments came before it.
     depth: u32,
-    /// Unlike that of all other legs of the sample.
+    /// Unlike that of all other path segments of the sample.
     number: u32,
     /// The density with which its direction was drawn, 1/sr; none where there was no choice.
     pdf: Option<f64>,
@@ -99,7 +100,7 @@ impl PathHistory {
     }
 }
 
-/// What the turns of a leg were since light was spread last.
+/// What the turns of a path segment were since light was spread last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum LastScattering {
     /// None: it was spread.
@@ -117,7 +118,7 @@ pub(super) struct PathResult {
     pub(super) radiance: [Channels; PathClass::ALL.len()],
     /// Radiance of each class at other wavelengths than those of the sample, linear sRGB.
     pub(super) other_wavelengths: [DVec3; PathClass::ALL.len()],
-    /// Whether the first leg met an object or light.
+    /// Whether the first path segment met an object or light.
     pub(super) covered: bool,
     /// What it met: distance from the eye, normal, object and material.
     pub(super) first: Option<FirstHit>,
@@ -134,7 +135,7 @@ impl PathResult {
         self.radiance[class as usize] += radiance;
     }
 
-    /// A light that a leg meets.
+    /// A light that a path segment meets.
     fn record_light_albedo(&mut self, segment: &PathSegment) {
         if segment.records_features {
             self.albedo += segment.throughput;
@@ -156,7 +157,7 @@ pub(super) struct FirstHit {
 pub(super) struct PathScratch {
     /// How many rays were traced.
     pub(super) counts: RayCounts,
-    /// Legs that wait to be followed; none between samples.
+    /// Path segments that wait to be followed; none between samples.
     waiting: Vec<PathSegment>,
 }
 
@@ -171,7 +172,7 @@ struct SampleRecord<'a, 'b> {
 pub(super) struct PathTracer<'a> {
     world: &'a World<'a>,
     direct: DirectLighting<'a>,
-    /// Most legs after the first.
+    /// Most path segments after the first.
     depth: u32,
     caustics: Caustics,
     /// Light that was caught on its way from lamps.
@@ -187,7 +188,7 @@ pub(super) struct PathTracer<'a> {
 }
 
 impl<'a> PathTracer<'a> {
-    /// - `depth`: most legs after the first. `shadows`: whether anything can stand before a light.
+    /// - `depth`: most path segments after the first. `shadows`: whether anything can stand before a light.
     /// - `catches`: whether light of lamps was followed; `caught` is what was caught. `around`: what the eye is in.
     /// - `indirect`: light that diffuse surfaces send each other, if it is known already.
     /// - `guides`: whether samples tell what guides a denoiser.
@@ -302,7 +303,7 @@ impl<'a> PathTracer<'a> {
         result
     }
 
-    /// What an element sends back along a leg, and the legs that go on from there.
+    /// What an element sends back along a path segment, and the path segments that go on from there.
     fn scatter(
         &self,
         mut segment: PathSegment,
@@ -340,7 +341,8 @@ impl<'a> PathTracer<'a> {
             return;
         }
         let frame = interaction.frame();
-        // Where wavelengths part, the one that is left is drawn together with the comb, as often as it will be seen.
+        // Where wavelengths part, the one that is left is drawn together with the wavelength set, as often as it will
+        // be seen.
         let drawn = match segment.lane {
             None if interaction.disperses() => {
                 let visibility = self.world.appearance.wavelengths.visibility(wavelength_set);
@@ -458,9 +460,9 @@ impl<'a> PathTracer<'a> {
         )
     }
 
-    /// How much a light counts that a leg meets.
+    /// How much a light counts that a path segment meets.
     ///
-    /// - `density`: with which the light would have drawn the leg's direction.
+    /// - `density`: with which the light would have drawn the path segment's direction.
     fn mis_weight(&self, segment: &PathSegment, source: &LightSource, pdf: f64) -> f64 {
         let is_caustic = segment.pdf.is_none() && segment.history != PathHistory::NoBroad;
         match self.caustics {
@@ -480,7 +482,7 @@ impl<'a> PathTracer<'a> {
         }
     }
 
-    /// The greatest value with which narrow lobes may reflect a lamp where a leg arrives, 1/sr.
+    /// The greatest value with which narrow lobes may reflect a lamp where a path segment arrives, 1/sr.
     fn clamp_value(&self, segment: &PathSegment) -> f64 {
         match self.caustics {
             Caustics::PhotonMapped if segment.history != PathHistory::NoBroad => 0.0,
@@ -489,7 +491,7 @@ impl<'a> PathTracer<'a> {
         }
     }
 
-    /// The leg that goes on in a direction; none if it is not worth following.
+    /// The path segment that goes on in a direction; none if it is not worth following.
     fn next_segment(
         &self,
         segment: &PathSegment,
@@ -503,7 +505,7 @@ impl<'a> PathTracer<'a> {
         }
         let through = sample.light.z < 0.0;
         let parts_wavelengths = through && segment.lane.is_none() && interaction.disperses();
-        // Beyond the last leg, a direction that might have been drawn for a light still looks for it.
+        // Beyond the last path segment, a direction that might have been drawn for a light still looks for it.
         let is_last = segment.depth >= self.depth;
         if is_last && (sample.pdf.is_none() || !self.direct.has_area_lights()) {
             return None;
@@ -564,7 +566,8 @@ impl<'a> PathTracer<'a> {
         })
     }
 
-    /// The rest of a leg behind what it goes straight through: the same ray, so that lights are met as if nothing was there.
+    /// The rest of a path segment behind what it goes straight through: the same ray, so that lights are met as if
+    /// nothing was there.
     fn straight_segment(
         &self,
         segment: &PathSegment,
@@ -592,7 +595,7 @@ impl<'a> PathTracer<'a> {
     }
 }
 
-/// What of a leg is followed: all of it, or, of one that passes little on, by chance more or nothing.
+/// What of a path segment is followed: all of it, or, of one that passes little on, by chance more or nothing.
 fn russian_roulette(throughput: Channels, number: u32, sampler: &PathSampler) -> Option<Channels> {
     let most = throughput.max();
     if most >= ENERGY_CUTOFF {

@@ -61,7 +61,7 @@ fn a_burning_mirror_gathers_all_light_in_a_point() {
     let (rendering, balance) = followed(scene, Some(down_on(DVec3::ZERO, 0.02, 0.2)), 50_000);
     let expected = 0.9 * (PI - 0.04);
     assert!((balance.stored / expected - 1.0).abs() < 0.01, "{} {expected}", balance.stored);
-    // A disc is never wider than what holds a few hundred ways of light.
+    // A disc is never wider than what holds a few hundred light paths.
     assert!((shown(&rendering, 0.02) / expected - 1.0).abs() < 0.1, "{} {expected}", shown(&rendering, 0.02));
 }
 

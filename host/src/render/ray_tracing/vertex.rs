@@ -15,7 +15,7 @@ pub(super) struct PathVertex<'a> {
     pub(super) context: ShadingContext<'a>,
     /// The choices of the sample.
     pub(super) sampler: PathSampler,
-    /// The number of the leg that met it.
+    /// The number of the path segment that met it.
     pub(super) segment: u32,
     /// Among which lobes a direction is drawn: not among those of mirrors, if all of these are followed beside it.
     pub(super) selection: LobeSelection,
@@ -23,11 +23,12 @@ pub(super) struct PathVertex<'a> {
     pub(super) clamp_value: f64,
     /// Whether lamps that were followed count nothing.
     pub(super) is_in_photon_map: bool,
-    /// How much of the radiance along the leg comes to the eye, where wavelengths part: in the one lane that is left.
+    /// How much of the radiance along the path segment comes to the eye, where wavelengths part: in the one lane that
+    /// is left.
     pub(super) lane_throughput: Channels,
 }
 
-/// How much a light counts that a leg of a density meets: the rest is what its own samples bring.
+/// How much a light counts that a path segment of a density meets: the rest is what its own samples bring.
 ///
 /// # Source
 /// Veach and Guibas 1995, the power heuristic.

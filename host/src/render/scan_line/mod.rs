@@ -1,18 +1,19 @@
 //! Scan line: triangles to spans of samples, with Crow's shadow volumes.
 //!
-//! Each pixel has as many lines of samples as samples, one on each line and in each column of a grid (n rooks). A triangle
-//! covers spans of the lines; the nearest is seen, sample by sample, and passable ones before it are kept in their order.
-//! Light is found once for each pixel and surface, shadows for each sample.
+//! Each pixel has as many lines of samples as samples, one on each line and in each column of a grid (n rooks). A
+//! triangle covers spans of the lines; the nearest is seen, sample by sample, and passable ones before it are kept in
+//! their order. Light is found once for each pixel and surface, shadows for each sample.
 //!
-//! *Not modelled*: only light that comes straight from lights is seen. Mirrors, metals and glass show lights, and for all
-//! else around them the ambient light, the same radiance from everywhere, and a blurred sky. Light goes straight through glass, which throws the
-//! shadow of an opaque body, and through what is transparent without bending it; the shadow of that is as weak as it lets
-//! light through (where a pattern says how much, as in the middle of its first triangle). A light with a size is represented
-//! by points of it, in number the `light_samples` of the scene, and is itself no obstacle to others; a sky lights surfaces by
-//! the direction of their normals, without shadows; a lens is a pinhole.
+//! *Not modelled*: only light that comes straight from lights is seen. Mirrors, metals and glass show lights, and for
+//! all else around them the ambient light, the same radiance from everywhere, and a blurred sky. Light goes straight
+//! through glass, which throws the shadow of an opaque body, and through what is transparent without bending it; the
+//! shadow of that is as weak as it lets light through (where a pattern says how much, as in the middle of its first
+//! triangle). A light with a size is represented by points of it, in number the `light_samples` of the scene, and is
+//! itself no obstacle to others; a sky lights surfaces by the direction of their normals, without shadows; a lens is a
+//! pinhole.
 //!
-//! Memory: 25 bytes for each vertex, about 30 for each triangle and 24 for each side, 310 for each silhouette and light, and
-//! for each thread 16 bytes and 4 for each light in each sample of some rows of pixels.
+//! Memory: 25 bytes for each vertex, about 30 for each triangle and 24 for each side, 310 for each silhouette and
+//! light, and for each thread 16 bytes and 4 for each light in each sample of some rows of pixels.
 
 mod casters;
 mod enclosed;
@@ -69,7 +70,7 @@ pub struct ScanLine<'a> {
     triangles: Vec<u32>,
     /// For each triangle of the scene, whether light goes straight through; empty if there is none such.
     passable: Vec<bool>,
-    /// What each group of casters lets through, comb by comb; the first is opaque.
+    /// What each group of casters lets through, set by set; the first is opaque.
     group_transmittance: Vec<Vec<Channels>>,
     lamps: Vec<LampPoint>,
     /// None without a sky, and where a solution is shown.
@@ -109,8 +110,8 @@ impl<'a> ScanLine<'a> {
         Ok(ScanLine::with_light(Appearance::new(prepared, plan)?, plan, None))
     }
 
-    /// A renderer of the light of a solution by radiosity: no highlights and no ambient light, and no shadows but those that
-    /// are in it. It takes materials and lights over from the world that was solved.
+    /// A renderer of the light of a solution by radiosity: no highlights and no ambient light, and no shadows but those
+    /// that are in it. It takes materials and lights over from the world that was solved.
     pub fn showing(solution: Arc<dyn IndirectLight>, world: World<'a>, plan: &'a Plan) -> ScanLine<'a> {
         ScanLine::with_light(world.appearance, plan, Some(solution))
     }
@@ -304,8 +305,8 @@ impl<'a> PictureWork<'a> {
     }
 }
 
-/// For each triangle, whether something is seen straight through it; nothing where that is so for none. Glass, which bends
-/// light, is seen through; rough glass throws the shadow of an opaque body.
+/// For each triangle, whether something is seen straight through it; nothing where that is so for none. Glass, which
+/// bends light, is seen through; rough glass throws the shadow of an opaque body.
 fn passable_triangles(appearance: &Appearance<'_>, groups: &[u8]) -> Vec<bool> {
     let prepared = appearance.prepared;
     let is_glass = |triangle: u32| {
@@ -318,7 +319,8 @@ fn passable_triangles(appearance: &Appearance<'_>, groups: &[u8]) -> Vec<bool> {
     if passable.contains(&true) { passable } else { Vec::new() }
 }
 
-/// For each triangle, which group of casters it is of, and what each group lets through; no groups where all are opaque.
+/// For each triangle, which group of casters it is of, and what each group lets through; no groups where all are
+/// opaque.
 ///
 /// A polished body lets through what its two surfaces do at right angles, less what is absorbed on its mean chord.
 fn groups(appearance: &Appearance<'_>) -> (Vec<u8>, Vec<Vec<Channels>>) {

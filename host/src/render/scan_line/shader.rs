@@ -32,7 +32,7 @@ pub(super) struct SampleSight {
     pub(super) like: usize,
     /// How many of its parts are before a light that is no object, if it sees one.
     pub(super) before_light: Option<usize>,
-    /// What it gets, summed over the combs of wavelengths, if it is not like another.
+    /// What it gets, summed over the wavelength sets, if it is not like another.
     pub(super) light: DVec3,
 }
 
@@ -47,7 +47,7 @@ pub(super) struct Shader<'a> {
     pub(super) solution: Option<&'a dyn IndirectLight>,
     /// For each lamp with shadows.
     pub(super) enclosed: &'a [Option<ShadowVolumes<'a>>],
-    /// What each group of casters lets through, comb by comb.
+    /// What each group of casters lets through, set by set.
     pub(super) group_transmittance: &'a [Vec<Channels>],
     pub(super) eye: &'a CameraRays,
     /// Whether every sample sees bands of light through nothing passable, and no light that is a surface.

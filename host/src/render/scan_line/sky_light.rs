@@ -6,26 +6,27 @@ use crate::numeric::sequence::SobolSequence;
 use crate::render::world::Appearance;
 use glam::DVec3;
 
-/// Directions by which a sky is summed up, for each comb of wavelengths.
+/// Directions by which a sky is summed up, for each wavelength set.
 const DIRECTIONS: u32 = 4096;
 /// What a cosine around the normal leaves of spherical harmonics of degree 0, 1 and 2.
 const COSINE_KERNEL: [f64; 9] = [1.0, 2.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0, 0.25, 0.25, 0.25, 0.25, 0.25];
 
 /// The irradiance of all skies of a scene, discs aside, by the direction of the normal.
 ///
-/// E(n)/π is held as the sum of nine spherical harmonics. For an even sky it is exact; a clear one is off by a few percent.
+/// E(n)/π is held as the sum of nine spherical harmonics. For an even sky it is exact; a clear one is off by a few
+/// percent.
 ///
 /// *Not modelled*: what stands between the sky and a surface.
 ///
 /// # Source
 /// Ramamoorthi and Hanrahan 2001, "An efficient representation for irradiance environment maps".
 pub(super) struct SkyLight {
-    /// For each comb, the coefficients of E(n)/π.
+    /// For each wavelength set, the coefficients of E(n)/π.
     coefficients: Vec<[Channels; 9]>,
 }
 
 impl SkyLight {
-    /// That of the lights that are made ready; none without a sky.
+    /// That of the lights that are prepared; none without a sky.
     pub(super) fn new(appearance: &Appearance<'_>) -> Option<SkyLight> {
         let skies: Vec<&LightSource> =
             appearance.sources.iter().map(|(_, source)| source).filter(|source| source.is_sky()).collect();

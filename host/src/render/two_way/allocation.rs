@@ -1,7 +1,7 @@
-//! How ways of light are divided among lamps, and what they are aimed at.
+//! How light paths are divided among lamps, and what they are aimed at.
 //!
-//! What a lamp sends to where is found for each lamp by itself; only how many ways it gets depends on the others. Where other
-//! lamps change, its ways thus stay the same, though there may be fewer or more of them.
+//! What a lamp sends to where is found for each lamp by itself; only how many ways it gets depends on the others. Where
+//! other lamps change, its ways thus stay the same, though there may be fewer or more of them.
 
 use super::photon_source::{PhotonSource, PhotonTarget};
 use super::photon_tracing::{PhotonDimension, PhotonSampler};
@@ -14,18 +14,19 @@ use rayon::prelude::*;
 const PILOT: std::ops::RangeInclusive<u32> = 1 << 12..=1 << 14;
 /// What stands for a pass when they are followed.
 const PILOT_PASS: u64 = u64::MAX;
-/// The least of them for each lamp and ball.
+/// The least of them for each lamp and bounding sphere.
 const LEAST_PILOT: u32 = 32;
-/// Of the ways of a lamp and ball, the least part of the mean of all, however little came of them.
+/// Of the ways of a lamp and bounding sphere, the least part of the mean of all, however little came of them.
 const LEAST_PART: f64 = 0.05;
 /// A spot of which the cosine of the half angle is above this is aimed at as a whole, too.
 const NARROW: f64 = 0.9;
 
-/// What a few ways from a lamp to a ball brought.
+/// What a few ways from a lamp to a bounding sphere brought.
 struct PilotResult {
     /// Flux, W.
     stored: f64,
-    /// The root mean square of what a way adds to it. With ways in proportion to this, chance shows least in all together.
+    /// The root mean square of what a way adds to it. With ways in proportion to this, chance shows least in all
+    /// together.
     ///
     /// # Source
     /// Neyman 1934, optimal allocation.
@@ -35,7 +36,7 @@ struct PilotResult {
 }
 
 impl PhotonMapper<'_> {
-    /// How many ways from each of so many lamps, and to each of so many balls, are followed first.
+    /// How many ways from each of so many lamps, and to each of so many bounding spheres, are followed first.
     pub(super) fn pilot_paths(photons: u32, lamps: usize, spheres: usize) -> u32 {
         let pilot = (photons / 8).clamp(*PILOT.start(), *PILOT.end());
         // A lamp more or less seldom matters to the others.
@@ -43,10 +44,10 @@ impl PhotonMapper<'_> {
         (each / spheres as u32).max(LEAST_PILOT)
     }
 
-    /// Divides the ways among lamps and balls, as a few of them are of use.
+    /// Divides the ways among lamps and bounding spheres, as a few of them are of use.
     ///
-    /// - `lamps`: indices into the sources. `everything`: the ball around what sends light on by broad turns; none if
-    ///   nothing does.
+    /// - `lamps`: indices into the sources. `everything`: the bounding sphere around what sends light on by broad
+    ///   turns; none if nothing does.
     pub(super) fn allocate_paths(&mut self, world: &World<'_>, lamps: &[usize], everything: Option<BoundingSphere>) {
         let photons = world.appearance.prepared.settings.photons.count;
         let wide = everything.map(|sphere| {
@@ -102,7 +103,7 @@ impl PhotonMapper<'_> {
         }
     }
 
-    /// Follows a few ways from a lamp to a ball: what they bring, and where they have to be sent.
+    /// Follows a few ways from a lamp to a bounding sphere: what they bring, and where they have to be sent.
     fn trace_pilot(&self, world: &World<'_>, chunk: &PathBatch, wide: Option<usize>) -> PilotResult {
         let PhotonTarget { sphere, count, part, .. } = self.lamps[chunk.lamp].targets[chunk.target];
         let mut used = Vec::new();

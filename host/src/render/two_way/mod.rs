@@ -1,19 +1,21 @@
-//! Phase one of two-way ray tracing: light is followed from lamps through mirrors and glass, and caught where it arrives.
+//! Phase one of two-way ray tracing: light is followed from lamps through mirrors and glass, and caught where it
+//! arrives.
 //!
-//! It does not depend on the view. Phase two, the rays from the eye, adds what was caught around each place that they meet,
-//! as light that comes from where it came from.
+//! It does not depend on the view. Phase two, the rays from the eye, adds what was caught around each place that they
+//! meet, as light that comes from where it came from.
 //!
-//! **Which ways of light are found by whom.** Each turn of light at a surface is by a *narrow* lobe, a mirror, an
+//! **Which light paths are found by whom.** Each turn of light at a surface is by a *narrow* lobe, a mirror, an
 //! interface or a highlight, or by a *broad* one, such as Lambert's. How light came to its last broad turn decides:
 //!
 //! - without any turn since the lamp it is direct: rays to lights bring it;
-//! - by a narrow turn it is caught there, whatever was before: light that is followed from lamps takes broad turns, too;
+//! - by a narrow turn it is caught there, whatever was before: light that is followed from lamps takes broad turns,
+//!   too;
 //! - by another broad turn it is found by the rays from the eye, which go on to where that was and ask there again;
 //! - light that comes to the eye by narrow turns alone is found by the rays from the eye.
 //!
-//! A ray from the eye that goes on from a broad turn by a narrow one is on a way of the second kind, and ends there. A sky
-//! without a picture is left to the rays from the eye: it is as bright everywhere, and they find it. For it, and for ambient
-//! light, these rays do not end.
+//! A ray from the eye that goes on from a broad turn by a narrow one is on a way of the second kind, and ends there. A
+//! sky without a picture is left to the rays from the eye: it is as bright everywhere, and they find it. For it, and
+//! for ambient light, these rays do not end.
 
 mod projection_map;
 mod photon_tracing;
@@ -66,7 +68,7 @@ const MOST_BYTES: u64 = 1 << 30;
 /// Follows light from lamps.
 pub(in crate::render) struct PhotonMapper<'a> {
     surfaces: SmoothSurfaces,
-    /// Triangles that stand in the way of light.
+    /// Triangles that stand in the light path.
     opaque: TriangleBvh,
     /// Those around what mirrors or refracts, and then others at which lamps are aimed.
     spheres: Vec<BoundingSphere>,
@@ -80,7 +82,7 @@ pub(in crate::render) struct PhotonMapper<'a> {
     store: Option<&'a PhotonStore>,
 }
 
-/// Ways that are followed together: so many from a lamp to one ball.
+/// Ways that are followed together: so many from a lamp to one bounding sphere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct PathBatch {
     lamp: usize,
@@ -169,7 +171,8 @@ impl<'s> PhotonMapper<'s> {
         (!two_way.lamps.is_empty()).then_some(two_way)
     }
 
-    /// Follows all ways of a pass; none if it was cancelled. What was followed until then is on the shelf, if there is one.
+    /// Follows all ways of a pass; none if it was cancelled. What was followed until then is on the photon store, if
+    /// there is one.
     ///
     /// - `pass`: counts from 0. The more of them, the smaller the discs over which light is spread.
     pub(in crate::render) fn trace_pass<'a>(
@@ -375,8 +378,8 @@ impl PhotonEstimator<'_> {
         self.pass.balance
     }
 
-    /// What a side of a triangle reflects diffusely of the light that was caught around a point, W/m², in lanes that are
-    /// means over all combs.
+    /// What a side of a triangle reflects diffusely of the light that was caught around a point, W/m², in lanes that
+    /// are means over all wavelength sets.
     pub(in crate::render) fn exitance(&self, triangle: u32, outside: bool, at: DVec3) -> Channels {
         let appearance = &self.world.appearance;
         let prepared = appearance.prepared;
@@ -421,9 +424,9 @@ impl PhotonEstimator<'_> {
     ///
     /// - `passed`: how much of the radiance comes to the eye. `is_parted`: whether a single wavelength is left of it.
     /// - `coarse`: whether the element is one of many that send light to what is seen.
-    /// - Returns what comes to the eye in the lanes of the ray; and what comes at other wavelengths, linear sRGB: of light
-    ///   that took narrow turns only, and of light that took broad ones among them. And the standard error of all of it,
-    ///   over it.
+    /// - Returns what comes to the eye in the lanes of the ray; and what comes at other wavelengths, linear sRGB: of
+    ///   light that took narrow turns only, and of light that took broad ones among them. And the standard error of all
+    ///   of it, over it.
     pub(in crate::render) fn radiance_estimate(
         &self,
         interaction: &SurfaceInteraction<'_>,
@@ -470,7 +473,7 @@ impl PhotonEstimator<'_> {
     }
 }
 
-/// A quantity that is known at the wavelengths of a comb, at those of another, by straight lines.
+/// A quantity that is known at the wavelengths of a wavelength set, at those of another, by straight lines.
 fn between(quantity: Channels, known: usize, wanted: usize, sets: usize) -> Channels {
     let apart = (wanted as f64 - known as f64) / sets as f64;
     let (other, part) = (if apart < 0.0 { -1 } else { 1 }, apart.abs());

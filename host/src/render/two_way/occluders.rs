@@ -1,4 +1,4 @@
-//! What stands on a plane, in the way of light along it.
+//! What stands on a plane, in the light path along it.
 
 use super::smooth_surfaces::{LEAST_PART, beyond, part_of_disc};
 use crate::numeric::bounds::Bounds;

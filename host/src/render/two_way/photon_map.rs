@@ -1,8 +1,8 @@
 //! Caught light as a surface shows it: its density around a place.
 //!
-//! The flux that arrived within a small disc, over its area, is the irradiance. A small disc has few ways of light in it, so
-//! that chance shows; a large one blurs. Which is right is different from place to place: discs are tried from small to
-//! large as long as what they tell is the same within what chance allows.
+//! The flux that arrived within a small disc, over its area, is the irradiance. A small disc has few light paths in it,
+//! so that chance shows; a large one blurs. Which is right is different from place to place: discs are tried from small
+//! to large as long as what they tell is the same within what chance allows.
 
 use super::occluders::{OccluderSegment, PlanarDisc, VisibleParts};
 use super::photon_tracing::Photon;
@@ -30,8 +30,8 @@ const LEAST: u32 = 10;
 const RINGS: usize = 32;
 /// Discs that are tried: so many rings each.
 const DISCS: [usize; 10] = [1, 2, 3, 4, 6, 8, 11, 16, 22, 32];
-/// Two discs tell the same if they differ by no more than so many standard errors. With few of them, a disc is often taken
-/// because chance made it tell little, and pictures get too dark; with many, edges blur.
+/// Two discs tell the same if they differ by no more than so many standard errors. With few of them, a disc is often
+/// taken because chance made it tell little, and pictures get too dark; with many, edges blur.
 const SAME: f64 = 3.0;
 /// So many walls around a place are looked at for each light; of more, the octree finds those in the way.
 const MANY_WALLS: usize = 64;
@@ -54,7 +54,7 @@ pub(super) struct PhotonMap {
     wavelength_sets: Vec<u8>,
 }
 
-/// Marks what took a broad turn; combs are fewer.
+/// Marks what took a broad turn; wavelength sets are fewer.
 const HAD_BROAD: u8 = 0x80;
 
 /// A place that asks for the light around it.
@@ -85,7 +85,7 @@ pub(super) enum GatherDetail {
 pub(super) struct GatherContext<'a> {
     pub(super) world: &'a World<'a>,
     pub(super) surfaces: &'a SmoothSurfaces,
-    /// Triangles that stand in the way of light.
+    /// Triangles that stand in the light path.
     pub(super) opaque: &'a TriangleBvh,
     /// The largest disc, scene units.
     pub(super) reach: f64,
@@ -196,8 +196,8 @@ impl PhotonMap {
 
     /// Visits the light that arrives around a place, as if it arrived at it.
     ///
-    /// - Returns the standard error of the irradiance by all of it, over the irradiance: what chance does as ways of light
-    ///   arrive or not; 0 without light.
+    /// - Returns the standard error of the irradiance by all of it, over the irradiance: what chance does as light
+    ///   paths arrive or not; 0 without light.
     pub(super) fn each(
         &self,
         gather_point: &GatherPoint,
@@ -222,8 +222,9 @@ impl PhotonMap {
         error
     }
 
-    /// The irradiance around a place, W/m²: by light that took narrow turns only, and by light that took broad ones among
-    /// them; and the standard error, as [`PhotonMap::each`] has it. Wherever it comes from and whatever its comb is.
+    /// The irradiance around a place, W/m²: by light that took narrow turns only, and by light that took broad ones
+    /// among them; and the standard error, as [`PhotonMap::each`] has it. Wherever it comes from and whatever its
+    /// wavelength set is.
     pub(super) fn irradiance(
         &self,
         gather_point: &GatherPoint,
@@ -281,8 +282,8 @@ impl PhotonMap {
         Some(Gathered { near, square, factor: FRAC_2_PI / (area * part), error })
     }
 
-    /// Leaves out light that arrived behind something that stands on the surface, as seen from the place; tells what stands
-    /// there.
+    /// Leaves out light that arrived behind something that stands on the surface, as seen from the place; tells what
+    /// stands there.
     ///
     /// All ways along the surface lie in one plane: walls are cut with it, and then stand in the way as segments.
     fn keep_visible(
@@ -329,7 +330,8 @@ impl PhotonMap {
     /// The disc that tells most.
     ///
     /// # Source
-    /// Goldenshluger and Nemirovski 1997, intersection of confidence intervals; the weight is that of Epanechnikov 1969.
+    /// Goldenshluger and Nemirovski 1997, intersection of confidence intervals; the weight is that of Epanechnikov
+    /// 1969.
     fn disc(
         &self,
         near: &[(u32, f32)],

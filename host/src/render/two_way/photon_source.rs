@@ -1,4 +1,4 @@
-//! Lamps with what their ways of light are aimed at.
+//! Lamps with what their light paths are aimed at.
 
 use super::projection_map::ProjectionMap;
 
@@ -14,7 +14,7 @@ pub(super) struct PhotonSource {
     pub(super) name: Option<String>,
 }
 
-/// Ways from a lamp to a ball.
+/// Ways from a lamp to a bounding sphere.
 #[derive(Clone, Debug)]
 pub(super) struct PhotonTarget {
     pub(super) sphere: usize,

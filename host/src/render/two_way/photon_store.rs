@@ -1,9 +1,10 @@
-//! Caught light in a database: for every view of a scene, also in other runs, as long as what it depends on is the same.
+//! Caught light in a database: for every view of a scene, also in other runs, as long as what it depends on is the
+//! same.
 //!
-//! A record holds the light of one lamp and pass. Its name is a hash of all that it depends on: geometry, materials, that
-//! lamp, and how light is followed; another lamp, the camera, the size of the picture and its samples are not in it. Ways
-//! are kept in whole blocks: where a lamp gets more ways or fewer than before, the blocks that are wanted are taken, and
-//! the others are followed. The picture is the same to the bit as without.
+//! A record holds the light of one lamp and pass. Its name is a hash of all that it depends on: geometry, materials,
+//! that lamp, and how light is followed; another lamp, the camera, the size of the picture and its samples are not in
+//! it. Ways are kept in whole blocks: where a lamp gets more ways or fewer than before, the blocks that are wanted are
+//! taken, and the others are followed. The picture is the same to the bit as without.
 
 use super::photon_source::PhotonSource;
 use super::photon_tracing::{FluxBalance, Photon};
@@ -22,12 +23,12 @@ use std::hash::Hasher;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Caught light that a database holds, bytes: beyond that, what belongs to other scenes gives way, and nothing is added if
-/// that is not enough.
+/// Caught light that a database holds, bytes: beyond that, what belongs to other scenes gives way, and nothing is added
+/// if that is not enough.
 const MOST_BYTES: u64 = 4 << 30;
 /// Rises when light is followed in another way, so that records of before are not taken.
 const FORM: u32 = 1;
-/// Marks light that took a broad turn; combs are fewer.
+/// Marks light that took a broad turn; wavelength sets are fewer.
 const HAD_BROAD: u8 = 0x80;
 
 /// Where caught light of a scene is kept.
@@ -75,8 +76,8 @@ impl Sum {
 impl PhotonStore {
     /// A database for the light of a scene; it is made if there is none.
     ///
-    /// - `every`: light of a pass that takes longer is kept after each such time. `lasts`: whether light is kept when its pass
-    ///   is finished; otherwise the database serves only one who goes on with an interrupted pass.
+    /// - `every`: light of a pass that takes longer is kept after each such time. `lasts`: whether light is kept when
+    ///   its pass is finished; otherwise the database serves only one who goes on with an interrupted pass.
     ///
     /// # Errors
     /// [`DatabaseError`] if the file is no database or cannot be written.

@@ -22,8 +22,8 @@ const FAINT: f64 = 1.0 / 64.0;
 const FAINT_BROAD: f64 = 0.25;
 /// Parts in which light is spread, and one more.
 const MOST_PARTS: u32 = 17;
-/// How wide light is on its way, as a part of the diagonal of the scene: hardly more than a point, but a relief is tilted by
-/// heights side by side.
+/// How wide light is on its way, as a part of the diagonal of the scene: hardly more than a point, but a relief is
+/// tilted by heights side by side.
 const WIDTH: f64 = 1e-6;
 
 /// Light that was caught on a surface.
@@ -167,7 +167,7 @@ pub(super) enum PhotonDimension {
     /// In which direction, by a narrow lobe or a broad one.
     Direction,
     Spread,
-    /// Towards which ball a broad lobe sends it, if towards any.
+    /// Towards which bounding sphere a broad lobe sends it, if towards any.
     Aimed,
     /// Whether it is followed further.
     Survival,
@@ -200,10 +200,10 @@ pub(super) struct PhotonTracer<'a> {
     pub(super) spheres: &'a [BoundingSphere],
     /// Most turns.
     pub(super) most_bounces: u32,
-    /// The flux of light as it is caught, in the mean, W: more than this is sent on in parts, and of less only some. None if
-    /// it is not known yet.
+    /// The flux of light as it is caught, in the mean, W: more than this is sent on in parts, and of less only some.
+    /// None if it is not known yet.
     pub(super) typical_flux: Option<f64>,
-    /// Legs to be followed; none between ways.
+    /// Photon segments to be followed; none between ways.
     pub(super) waiting: Vec<PhotonSegment>,
     pub(super) photons: Vec<Photon>,
     pub(super) balance: FluxBalance,
@@ -288,7 +288,7 @@ impl PhotonTracer<'_> {
         }
     }
 
-    /// Ends a leg by chance where it is faint, or gives it what others have lost.
+    /// Ends a photon segment by chance where it is faint, or gives it what others have lost.
     fn russian_roulette(&mut self, segment: &mut PhotonSegment, first: f64, sampler: &PhotonSampler) {
         let faint = match segment.had_broad {
             true => (first * FAINT).max(FAINT_BROAD * self.typical_flux.unwrap_or(0.0)),
@@ -471,15 +471,16 @@ struct PhotonInteraction<'a> {
 }
 
 impl PhotonInteraction<'_> {
-    /// Whether a direction of a spread lobe is on the same side of the triangle and of its surface: what is not is lost.
+    /// Whether a direction of a spread lobe is on the same side of the triangle and of its surface: what is not is
+    /// lost.
     fn is_sound(&self, drawn: &BsdfSample) -> bool {
         let above = drawn.light.z > 0.0;
         let plane = self.interaction.element.plane(above);
         (self.frame.world(drawn.light).dot(plane) > 0.0) == above && drawn.weight.is_finite()
     }
 
-    /// Gives a direction of a spread lobe the weight with which light goes from here to there, where that is not the same as
-    /// from there to here.
+    /// Gives a direction of a spread lobe the weight with which light goes from here to there, where that is not the
+    /// same as from there to here.
     fn make_adjoint(&self, context: &ShadingContext<'_>, selection: LobeSelection, drawn: &mut BsdfSample) {
         if let Some(pdf) = drawn.pdf.filter(|_| drawn.light.z > 0.0) {
             let back = ShadingContext { view: drawn.light, ..*context };
@@ -487,7 +488,7 @@ impl PhotonInteraction<'_> {
         }
     }
 
-    /// The leg that goes on by a narrow turn.
+    /// The photon segment that goes on by a narrow turn.
     fn next_segment(&self, drawn: &BsdfSample, (flux, lane): (Channels, Option<usize>), number: u32) -> PhotonSegment {
         let PhotonInteraction { segment, interaction, frame, .. } = self;
         let segments = segment.segments + 1;

@@ -1,4 +1,4 @@
-//! Where light is sent so that it meets what mirrors or refracts: at balls around it.
+//! Where light is sent so that it meets what mirrors or refracts: at bounding spheres around it.
 
 use crate::numeric::bounds::Bounds;
 use crate::numeric::sampling::{disk, sphere};
@@ -6,18 +6,18 @@ use crate::scene::Prepared;
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 
-/// Balls at the most.
+/// Bounding spheres at the most.
 const MOST_BALLS: usize = 16;
-/// A ball of whose disc more than this part is empty is divided, if there may be more balls.
+/// A bounding sphere of whose disc more than this part is empty is divided, if there may be more bounding spheres.
 const LOOSE: f64 = 0.7;
-/// By how much balls are larger than they need be, so that rounding does not lose their rims.
+/// By how much bounding spheres are larger than they need be, so that rounding does not lose their rims.
 const WIDER: f64 = 1.0 + 1e-9;
 const BELOW_ONE: f64 = 1.0_f64.next_down();
 
 /// The density with which a direction or line is drawn, and the point of the square that gives it.
 pub(super) type DirectionPdf = (f64, [f64; 2]);
 
-/// A ball around something that mirrors or refracts.
+/// A bounding sphere around something that mirrors or refracts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct BoundingSphere {
     pub(super) center: DVec3,
@@ -25,9 +25,10 @@ pub(super) struct BoundingSphere {
 }
 
 impl BoundingSphere {
-    /// The ball that fills a cone.
+    /// The bounding sphere that fills a cone.
     ///
-    /// - `way`: from the tip to the middle of the ball. `cosine`: of the half angle, which is known to the last digit of it.
+    /// - `way`: from the tip to the middle of the bounding sphere. `cosine`: of the half angle, which is known to the
+    ///   last digit of it.
     pub(super) fn in_cone(tip: DVec3, way: DVec3, cosine: f64) -> BoundingSphere {
         let off = 1.0 - cosine + 2.0 * f64::EPSILON;
         BoundingSphere { center: tip + way, radius: way.length() * (off * (2.0 - off)).sqrt() }
@@ -67,7 +68,8 @@ impl BoundingSphere {
         0.5 * (direction - offset.normalize()).length_squared() <= cap * WIDER
     }
 
-    /// The density of [`BoundingSphere::direction`], 1/sr, and the point of the square that gives a direction; none beside the ball.
+    /// The density of [`BoundingSphere::direction`], 1/sr, and the point of the square that gives a direction; none
+    /// beside the bounding sphere.
     pub(super) fn pdf(&self, from: DVec3, direction: DVec3) -> Option<DirectionPdf> {
         let offset = self.center - from;
         let Some(cap) = self.cap(offset) else { return Some((0.5 / TAU, sphere_inverse(direction))) };
@@ -83,14 +85,15 @@ impl BoundingSphere {
         Some(((TAU * cap).recip(), place))
     }
 
-    /// A point on a line that goes in a direction and meets the ball, even in area across the direction.
+    /// A point on a line that goes in a direction and meets the bounding sphere, even in area across the direction.
     pub(super) fn line(&self, direction: DVec3, uniform: [f64; 2]) -> DVec3 {
         let (u, v) = direction.any_orthonormal_pair();
         let [x, y] = disk(uniform);
         self.center + (u * x + v * y) * self.radius
     }
 
-    /// The density of [`BoundingSphere::line`], one over an area, and the point of the square that gives a line; none beside the ball.
+    /// The density of [`BoundingSphere::line`], one over an area, and the point of the square that gives a line; none
+    /// beside the bounding sphere.
     pub(super) fn line_pdf(&self, direction: DVec3, on: DVec3) -> Option<DirectionPdf> {
         let offset = on - self.center;
         let aside = offset - direction * offset.dot(direction);
@@ -213,7 +216,7 @@ fn within(below: &[f64], uniform: f64) -> (usize, f64) {
     (index, ((uniform - from) / (below[index] - from)).clamp(0.0, BELOW_ONE))
 }
 
-/// Balls around all triangles that a test chooses, as tight as so many allow.
+/// Bounding spheres around all triangles that a test chooses, as tight as so many allow.
 pub(super) fn bounding_spheres(prepared: &Prepared, is_meant: impl Fn(u32) -> bool) -> Vec<BoundingSphere> {
     let mut parts: Vec<Part> = Vec::new();
     for object in &prepared.objects {
@@ -234,17 +237,17 @@ pub(super) fn bounding_spheres(prepared: &Prepared, is_meant: impl Fn(u32) -> bo
     parts.into_iter().map(|part| part.ball).filter(|sphere| sphere.radius > 0.0 && sphere.radius.is_finite()).collect()
 }
 
-/// The ball around all triangles that a test chooses; none if there are none.
+/// The bounding sphere around all triangles that a test chooses; none if there are none.
 pub(super) fn bounding_sphere(prepared: &Prepared, is_meant: impl Fn(u32) -> bool) -> Option<BoundingSphere> {
     let meant: Vec<u32> = (0..prepared.triangles.len() as u32).filter(|triangle| is_meant(*triangle)).collect();
     (!meant.is_empty()).then(|| Part::new(prepared, meant).ball).filter(|sphere| sphere.radius > 0.0)
 }
 
-/// Some triangles in a ball.
+/// Some triangles in a bounding sphere.
 struct Part {
     triangles: Vec<u32>,
     ball: BoundingSphere,
-    /// How much of the disc of the ball they leave empty, as seen from all sides in the mean, square units.
+    /// How much of the disc of the bounding sphere they leave empty, as seen from all sides in the mean, square units.
     empty: f64,
 }
 

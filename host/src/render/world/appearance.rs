@@ -1,4 +1,4 @@
-//! Materials and lights of a scene made ready for rendering, as the plan keeps them.
+//! Materials and lights of a scene prepared for rendering, as the plan keeps them.
 
 use crate::color::{Channels, SpectralTable, WavelengthSets};
 use crate::illumination::Material;
@@ -12,7 +12,7 @@ use crate::scene::{Caustics, Prepared};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
-/// A prepared scene with its materials and lights made ready.
+/// A prepared scene with its materials and lights prepared.
 pub(in crate::render) struct Appearance<'a> {
     pub(in crate::render) prepared: &'a Prepared,
     pub(in crate::render) wavelengths: WavelengthSets,
@@ -34,7 +34,8 @@ pub(in crate::render) struct Appearance<'a> {
     pub(in crate::render) exact: bool,
     /// Whether something lets light straight through.
     pub(in crate::render) has_passable: bool,
-    /// Whether light of lamps goes through polished bodies as if they did not bend it: where what they throw is left out.
+    /// Whether light of lamps goes through polished bodies as if they did not bend it: where what they throw is left
+    /// out.
     pub(in crate::render) has_clear_shadows: bool,
     /// The place of each object among all of them, the largest first; empty where less than two are transparent.
     by_size: Vec<u32>,
@@ -145,8 +146,8 @@ impl<'a> Appearance<'a> {
         self.bsdf(object, material).interior.as_ref()
     }
 
-    /// Of transparent bodies in one place, that of the greatest is there: of the greatest priority; of several with the same
-    /// the smallest, and of equally large ones the last of the scene.
+    /// Of transparent bodies in one place, that of the greatest is there: of the greatest priority; of several with the
+    /// same the smallest, and of equally large ones the last of the scene.
     pub(in crate::render) fn rank(&self, object: u32, material: u32) -> (i32, u32) {
         let priority = self.interior(object, material).map_or(0, |interior| interior.priority);
         (priority, self.by_size.get(object as usize).copied().unwrap_or(object))

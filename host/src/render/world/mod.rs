@@ -1,4 +1,4 @@
-//! The world: a prepared scene made ready for renderers, with its index for rays, lights, materials and eye. It knows no
+//! The world: a prepared scene prepared for renderers, with its index for rays, lights, materials and eye. It knows no
 //! renderer.
 
 mod appearance;

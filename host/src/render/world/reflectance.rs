@@ -5,7 +5,7 @@ use crate::illumination::optics::{Bsdf, InterfaceIndices, ShadingContext};
 use crate::illumination::texture::TextureFootprint;
 use glam::DVec3;
 
-/// The part of light that a material reflects diffusely at a place, in the mean over all combs of wavelengths.
+/// The part of light that a material reflects diffusely at a place, in the mean over all wavelength sets.
 pub(in crate::render) fn mean_diffuse_albedo(
     bsdf: &Bsdf,
     footprint: Option<&TextureFootprint>,
