@@ -1,5 +1,5 @@
-//! Accumulation of samples on a film: passes over all pixels, each of which adds samples, that can be stopped and taken up
-//! again anywhere.
+//! Accumulation of samples on a film: passes over all pixels, each of which adds samples, that can be stopped and taken
+//! up again anywhere.
 
 use super::tracer::PathScratch;
 use super::{PathLog, RayTracer};
@@ -38,7 +38,7 @@ fn pool(order: &RenderOrder) -> Result<ThreadPool, RenderError> {
 pub struct Accumulated {
     /// How many rays were traced.
     pub rays: RayCounts,
-    /// What became of the light of lamps that was followed first, if any was.
+    /// What became of the flux of the photons that were traced first, if any were.
     pub flux_balance: Option<FluxBalance>,
     /// Whether it was not stopped from outside.
     pub complete: bool,
@@ -51,8 +51,8 @@ pub struct Accumulated {
 impl RayTracer<'_> {
     /// Adds samples to a film until each pixel has what the order asks for.
     ///
-    /// The film may hold samples of the same order already, as after an interruption, also one in the middle of a pass: the
-    /// same samples are then added as if there had been none.
+    /// The film may hold samples of the same order already, as after an interruption, also one in the middle of a pass:
+    /// the same samples are then added as if there had been none.
     ///
     /// - `checkpoints`: keeps the film while samples are added.
     ///
@@ -96,7 +96,7 @@ impl RayTracer<'_> {
             }
             let photons = match &self.photon_mapper {
                 Some(two_way) if is_needed => {
-                    (watch.stage)("while following light from lamps");
+                    (watch.stage)("while tracing photons");
                     let pass = (samples - 1) / SHARING;
                     let photons = pool.install(|| two_way.trace_pass(&self.world, pass, watch));
                     if photons.is_none() {
@@ -184,7 +184,7 @@ impl RayTracer<'_> {
 
     /// Makes a picture of a film to which samples are added, as [`RayTracer::accumulate`] does it.
     ///
-    /// If it is to be denoised, a film that holds samples has to hold guides, too; without these it stays as it is.
+    /// If it is to be denoised, a film that holds samples has to hold features, too; without these it stays as it is.
     ///
     /// # Errors
     /// [`RenderError`].
@@ -222,8 +222,8 @@ impl RayTracer<'_> {
         Ok(Rendering { picture, film, complete, rays, spans, flux_balance: balance, seconds, threads })
     }
 
-    /// How many samples pixels have after each pass: one first, so that there is a whole picture soon, and then twice as many
-    /// each time, so that errors and the clock can decide about more; and where light is caught anew.
+    /// How many samples pixels have after each pass: one first, so that there is a whole picture soon, and then twice
+    /// as many each time, so that errors and the clock can decide about more; and where photons are traced anew.
     fn passes(&self, order: &RenderOrder) -> Vec<u32> {
         let doubled = std::iter::successors(Some(FIRST_DOUBLED), |samples| samples.checked_mul(2));
         let mut passes = vec![1, order.samples];

@@ -81,8 +81,8 @@ fn zero(points: &[(f64, f64)]) -> f64 {
 fn a_hollow_mirror_bends_parallel_light_to_a_nephroid() {
     let light = Light::Directional { direction: DVec3::new(1.0, -1.0, 0.0), irradiance: Color::grey(2.0) };
     let found = along_the_axis(&hollow_mirror(1.2, light));
-    // A ray that meets the mirror at angle t from the axis is thrown along 2 t; s behind the mirror its neighbour is
-    // |2 s / cos t − 1| times as far away as they were. From beyond the cusp two more rays come, of cos t = 1 / 2x.
+    // A ray that hits the mirror at angle t from the axis is thrown along 2 t; s behind the mirror its neighbour is |2
+    // s / cos t − 1| times as far away as they were. From beyond the cusp two more rays come, of cos t = 1 / 2x.
     let direct = 2.0 * 0.5f64.sqrt();
     let expected = |x: f64| {
         let others = if x > 0.5 { 2.0 / (4.0 * x * x - 1.0) } else { 0.0 };
@@ -100,8 +100,8 @@ fn a_hollow_mirror_bends_parallel_light_to_a_nephroid() {
 fn a_hollow_mirror_bends_light_from_its_rim_to_a_cardioid() {
     let (height, intensity) = (1.0, 5.0);
     let found = along_the_axis(&hollow_mirror(0.42 * height, lamp(DVec3::new(-1.0, height, 0.0), intensity)));
-    // By the equation of a hollow mirror: from the rim, 2 cos i away, to a focus 2 cos i / 3 behind it, i half of the angle
-    // t of the mirror's place. `way` is all of the way along the floor.
+    // By the equation of a hollow mirror: from the rim, 2 cos i away, to a focus 2 cos i / 3 behind it, i half of the
+    // angle t of the mirror's place. `way` is the whole distance along the floor.
     let plain = |way: f64| intensity * height / (way * way + height * height).powf(1.5);
     let thrown = |before: f64, behind: f64| {
         plain(before + behind) * (before + behind) / (before * (1.0 - 3.0 * behind / before).abs())
@@ -182,13 +182,13 @@ fn a_prism_turns_each_wavelength_as_snell_and_sellmeier_tell() {
     }
 }
 
-/// What became of parallel light on something over a wide floor, as parts of what met it first.
+/// What became of parallel light on something over a wide floor, as parts of what hit it first.
 fn parts(thing: Object, direction: DVec3) -> FluxBalance {
     let floor = block(DVec3::new(200.0, 0.1, 200.0), DVec3::new(0.0, -10.0, 0.0), diffuse(0.5));
     let light = Light::Directional { direction, irradiance: Color::grey(1.0) };
     let mut scene = scene(vec![thing, floor], vec![light], 4);
     (scene.settings.image.samples, scene.settings.photons.count) = (1, 200_000);
-    let balance = two_way(&scene, Some(from_above(1.0)), 2).flux_balance.expect("light is followed");
+    let balance = two_way(&scene, Some(from_above(1.0)), 2).flux_balance.expect("photons are traced");
     let met = balance.sent - balance.straight;
     FluxBalance {
         stored: balance.stored / met,
@@ -218,7 +218,8 @@ fn a_ball_of_dark_glass_absorbs_what_fresnel_and_bouguer_tell() {
     let glass =
         Transparent { absorption: Color::grey(absorption), ..Transparent::clear(RefractiveIndex::Constant(index)) };
     let found = parts(ball(1.0, DVec3::ZERO, MaterialKind::Transparent(glass)), DVec3::NEG_Y);
-    // Over the disc, evenly by the square of the distance from its middle. Each chord is as long, each reflection as strong.
+    // Over the disc, evenly by the square of the distance from its middle. Each chord is as long, each reflection as
+    // strong.
     let term = |k: u32| {
         let square = (f64::from(k) + 0.5) / 10_000.0;
         let reflected = fresnel(index, (1.0 - square).sqrt());

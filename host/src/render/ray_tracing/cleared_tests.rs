@@ -48,7 +48,8 @@ fn a_floor_behind_glass_gets_what_fresnel_and_bouguer_leave() {
 
 #[test]
 fn glass_that_hardly_is_there_changes_no_light() {
-    // A floor that spreads light in two ways, under a lamp and a sky, with a slab between that bends next to nothing.
+    // A floor with a diffuse and a metallic lobe, under a lamp and a sky, with a slab between that bends next to
+    // nothing.
     let copper = crate::color::shipped::metal("copper").expect("a metal");
     let finish = Finish::Rough { name: "GGX, all".into(), roughness: 0.5.into() };
     let metal = Material::from(MaterialKind::Metal(Metal { n: copper.n, k: copper.k, finish }));
@@ -74,7 +75,7 @@ fn glass_that_hardly_is_there_changes_no_light() {
 
 #[test]
 fn caustics_that_are_asked_for_are_not_counted_twice() {
-    // The same floor under a slab of glass: with caustics, rays from the eye find the lamp behind it, which is large.
+    // The same floor under a slab of glass: with caustics, camera paths find the lamp behind it, which is large.
     let lamp =
         LightShape::Rectangle { corner: DVec3::new(-20.0, 9.0, -20.0), across: DVec3::X * 40.0, up: DVec3::Z * 40.0 };
     let found = [false, true].map(|caustics| {
@@ -116,7 +117,7 @@ fn what_glass_stands_on_is_seen_through_it() {
 }
 
 #[test]
-fn bodies_that_touch_absorb_on_their_own_ways_alone() {
+fn bodies_that_touch_absorb_on_their_own_segments_alone() {
     let light = Light::Directional { direction: DVec3::NEG_Y, irradiance: Color::grey(1.0) };
     let index = 1.0 + 1e-9;
     for [low, high] in [[0.3, 0.0], [0.0, 0.3]] {

@@ -1,4 +1,4 @@
-//! Light that comes to an element from lights, without a way in between.
+//! Direct light: light samples of lights at a path vertex, with their shadow rays.
 
 use super::sampler::SampleDimension;
 use super::vertex::{PathVertex, power_heuristic};
@@ -9,14 +9,14 @@ use crate::numeric::ray::Ray;
 use crate::render::RayCounts;
 use crate::render::world::{Occluders, World};
 
-/// How much shorter a ray to a triangle that emits is, so that it does not meet it.
+/// Length of a shadow ray to a triangle that emits, over the distance, so that it does not hit the triangle.
 const SHORT: f64 = 1.0 - 1e-7;
 
-/// Asks lights.
+/// Samples lights.
 pub(super) struct DirectLighting<'a> {
     world: &'a World<'a>,
     shadows: bool,
-    /// Points of each light that has a size.
+    /// Light samples of each light that has a size.
     samples: u32,
     /// Whether some light has a size.
     has_area_lights: bool,
@@ -28,19 +28,19 @@ impl<'a> DirectLighting<'a> {
         DirectLighting { world, shadows, samples, has_area_lights: spread }
     }
 
-    /// Whether some light has a size, so that other rays may meet it.
+    /// Whether some light has a size, so that other rays may hit it.
     pub(super) fn has_area_lights(&self) -> bool {
         self.has_area_lights
     }
 
-    /// Whether something is seen where rays meet nothing.
+    /// Whether there is a light where rays hit nothing.
     pub(super) fn has_sky(&self) -> bool {
         self.world.appearance.sources.iter().any(|(_, source)| source.is_infinite())
     }
 
-    /// Radiance towards the viewer by the light of all lights, of broad lobes and of narrow ones.
+    /// Radiance towards the viewer by all lights: of broad lobes, and of narrow ones.
     ///
-    /// - `add`: is told what each light brings, by its number.
+    /// - `add`: is told what each light adds, by its number.
     pub(super) fn radiance(
         &self,
         vertex: &PathVertex<'_>,
@@ -81,7 +81,7 @@ impl<'a> DirectLighting<'a> {
         sum
     }
 
-    /// What a beam adds by broad lobes and by narrow ones.
+    /// Radiance towards the viewer by a light sample, of broad lobes and of narrow ones.
     fn reflected(
         &self,
         vertex: &PathVertex<'_>,
@@ -108,7 +108,7 @@ impl<'a> DirectLighting<'a> {
             if let Some(pdf) = light_sample.pdf
                 && continued != Channels::ZERO
             {
-                // The rest is what a further path segment brings that meets the light.
+                // The rest is brought by BSDF sampling, where a path segment hits the light.
                 continued *= power_heuristic(Some(pdf), bsdf.pdf(class, context, light, *selection));
             }
             *value += continued;
@@ -124,20 +124,20 @@ impl<'a> DirectLighting<'a> {
         let (transmittance, is_cleared) =
             self.world.transmittance(&ray, t_max, (index, occluders), (context.wavelength_set, vertex.sampler.time));
         match is_cleared {
-            // A further path segment would be bent, and brings nothing.
+            // A further path segment would be refracted, and bring nothing.
             true => whole.map(|value| value * light_sample.irradiance * light.z.abs() * transmittance),
             false => radiance.map(|radiance| radiance * transmittance),
         }
     }
 
-    /// Whether nothing comes from a light to an element, as far as the light buffer knows.
+    /// Whether no light of a source arrives at an element, as far as the light buffer knows.
     fn is_dark(&self, vertex: &PathVertex<'_>, index: usize) -> bool {
         let dark = |from| matches!(self.world.occluders(from, index), Some(Occluders::Dark));
         let element = &vertex.interaction.element;
         self.shadows && dark(element.leave_curved) && dark(element.through)
     }
 
-    /// The ray to where a beam comes from, and how much of it counts.
+    /// The shadow ray of a light sample, and the parameter at which it ends.
     fn ray(&self, vertex: &PathVertex<'_>, index: usize, light_sample: &LightSample, above: bool) -> (Ray, f64) {
         let element = &vertex.interaction.element;
         let origin = if above { element.leave_curved } else { element.through };

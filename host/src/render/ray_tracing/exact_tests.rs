@@ -24,8 +24,9 @@ fn ball(radius: f64) -> Shape {
     Shape::from(Primitive::Sphere { radius })
 }
 
-/// Sends parallel rays from many sides and tells of each that meets something: where it began, its direction, what it met.
-/// How many there were, and the part of them that are on an exact surface: shading normals are not of single precision.
+/// Sends parallel rays from many sides and tells of each that hits something: where it began, its direction, what it
+/// hit. How many there were, and the part of them that are on an exact surface: shading normals are not of single
+/// precision.
 fn met(objects: Vec<Object>, mut tell: impl FnMut(&Ray, &SurfaceInteraction<'_>)) -> usize {
     let prepared = Prepared::new(&scene(objects, Vec::new(), 8)).unwrap_or_else(|e| panic!("{e}"));
     let plan = Plan::new(&prepared, &prepared.view());
@@ -79,7 +80,7 @@ fn an_uneven_placement_keeps_the_normals_of_its_ellipsoid() {
 }
 
 #[test]
-fn a_coarse_torus_is_met_exactly_but_where_rays_pass_by_it() {
+fn a_coarse_torus_is_hit_exactly_but_where_rays_pass_by_it() {
     let torus = Shape::from(Primitive::Torus { ring: 2.0, tube: 0.7 });
     let mut missed = 0;
     let count = met(vec![coarse(torus, DMat4::IDENTITY)], |_, found| {
@@ -98,7 +99,7 @@ fn a_coarse_torus_is_met_exactly_but_where_rays_pass_by_it() {
 }
 
 #[test]
-fn patches_of_a_coarse_teapot_are_met_on_the_patches() {
+fn patches_of_a_coarse_teapot_are_hit_on_the_patches() {
     let patches = teapot();
     let (mut missed, mut far) = (0, 0.0f64);
     let pot = Object { tolerance: Some(0.03), ..coarse(Shape::Teapot, DMat4::IDENTITY) };
@@ -134,7 +135,7 @@ fn a_boolean_of_two_has_the_points_and_normals_of_both() {
             on[2] += 1;
         }
     });
-    // Beside the edge that both share, the tangent plane goes on beyond the border of neither.
+    // Beside the edge that both share, the tangent plane continues beyond the border of neither.
     assert!(on[0] > 1000 && on[1] > 100 && on[2] < 5, "{on:?}");
 }
 

@@ -1,4 +1,4 @@
-//! Tells the way of a sample, and every term that it adds.
+//! Explains the path of a sample, and every term that it adds.
 
 use crate::color::Channels;
 use crate::render::world::SurfaceInteraction;
@@ -6,7 +6,7 @@ use crate::scene::Prepared;
 use glam::DVec3;
 use serde::Serialize;
 
-/// Something that happened on the way of a sample.
+/// Something that happened on the path of a sample.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PathNote {
     /// How many path segments came before.
@@ -15,7 +15,7 @@ pub struct PathNote {
     pub what: String,
     /// Where, if at an element, scene units.
     pub at: Option<DVec3>,
-    /// What it adds to the radiance that comes to the eye, at the wavelengths or in the bands of the sample.
+    /// What it adds to the radiance at the camera, at the wavelengths or in the bands of the sample.
     pub adds: Option<Vec<f64>>,
 }
 
@@ -45,7 +45,7 @@ impl PathNote {
     }
 
     pub(super) fn light(depth: u32, number: usize, adds: Channels) -> PathNote {
-        PathNote::new(depth, format!("meets light {}", number + 1), Some(adds))
+        PathNote::new(depth, format!("hits light {}", number + 1), Some(adds))
     }
 
     pub(super) fn term(depth: u32, what: &str, adds: Channels) -> PathNote {

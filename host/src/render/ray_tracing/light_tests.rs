@@ -44,7 +44,7 @@ fn light_of_a_disc_and_of_a_sphere_on_a_floor_follow_their_closed_forms() {
         let light = Light::Area { patch, radiance: Color::grey(10.0) };
         let mut scene = scene(vec![floor], vec![light], 1);
         scene.settings.image.samples = 1024;
-        // A pixel that sees a square of a hundredth around the foot of the light, from below the light.
+        // A pixel that sees a square of a hundredth around the foot point of the light, from below the light.
         let mut view = Camera::framing(&crate::numeric::bounds::Bounds::of([DVec3::ZERO]));
         (view.from, view.at, view.up) = (DVec3::Y, DVec3::ZERO, DVec3::Z);
         (view.parallel, view.near) = (Some(Parallel { height: 0.01, oblique: DVec2::ZERO }), 0.5);
@@ -124,7 +124,7 @@ fn an_eye_in_water_sees_through_water_from_the_beginning() {
 
 #[test]
 fn rays_that_carry_spectra_show_the_colors_of_those_that_carry_bands() {
-    // As many samples as there are wavelength sets: each has its turn once, and nothing else differs within a pixel.
+    // As many samples as there are wavelength sets: each is used once, and nothing else differs within a pixel.
     let sun = Light::Directional { direction: DVec3::NEG_Y, irradiance: Color::Bands(RgbPower::new(3.0, 2.0, 1.0)) };
     let floor = Classic { diffuse: Paint::grey(0.6), ..Classic::default() };
     let mut scene = scene(vec![object(Shape::Ground { size: 9.0 }, DMat4::IDENTITY, floor)], vec![sun], 2);
@@ -235,7 +235,7 @@ fn a_sphere_far_from_the_origin_is_lit_as_one_at_the_origin() {
 
 #[test]
 fn a_pane_that_lets_everything_through_hides_no_light_of_a_lamp() {
-    // Spread and narrow lobes, a lamp with a size and one that emits as an object, with and without a pane between.
+    // Glossy and diffuse lobes, a lamp with a size and one that emits as an object, with and without a pane between.
     let coat = MaterialKind::Coated(Coated { diffuse: Paint::grey(0.5), index: 1.5, roughness: 0.3.into() });
     let clear = Classic { transparency: Paint::grey(1.0), ..diffuse(0.0) };
     let shining = Material { emission: Color::grey(8.0), ..Material::from(diffuse(0.0)) };
@@ -261,7 +261,7 @@ fn a_pane_that_lets_everything_through_hides_no_light_of_a_lamp() {
 }
 
 #[test]
-fn highlights_that_spread_light_sees_are_cut_off_unless_caustics_count() {
+fn highlights_behind_broad_scattering_are_cut_off_unless_caustics_count() {
     // A small bright lamp over a smooth coat beside a matt wall: what the wall shows of it comes by chance only.
     let wall = DMat4::from_translation(DVec3::new(0.0, 0.0, -1.0)) * DMat4::from_rotation_x(PI / 2.0);
     let coat = MaterialKind::Coated(Coated { diffuse: Paint::grey(0.0), index: 1.5, roughness: 0.03.into() });

@@ -1,5 +1,5 @@
-//! Ray tracing over the linear octree, after Whitted and Cook: light of all lights with its shadows, reflection and
-//! refraction, sharp and spread.
+//! Ray tracing over the linear octree, after Whitted 1980 and Cook, Porter and Carpenter 1984: light of all lights with
+//! its shadows, reflection and refraction, sharp and blurred.
 //!
 //! Each pixel is the mean of its samples as a reconstruction filter weighs them: by a box, which is what scenes have
 //! without a word, the mean over its area, and coverage the covered share of it. Places in the pixel and on the lens,
@@ -80,18 +80,18 @@ pub struct Explanation {
 }
 
 impl<'a> RayTracer<'a> {
-    /// Takes up a world, and looks where the light of lamps goes if the plan follows it.
+    /// Takes a world, and prepares photon tracing if the plan asks for it.
     ///
     /// - `plan`: of the world. Where it needs radiosity, the light of a solution is to be given by
     ///   [`RayTracer::with_indirect`].
-    /// - `shelf`: where caught light is kept beyond this tracer; nowhere without one.
+    /// - `photon_store`: where photon maps are stored beyond this tracer; nowhere without one.
     pub fn new(world: World<'a>, plan: &'a Plan, photon_store: Option<&'a PhotonStore>) -> RayTracer<'a> {
         let keeps = |object| plan.includes_object(object);
         let two_way = plan.needs(Stage::PhotonMap).then(|| PhotonMapper::new(&world, keeps, photon_store)).flatten();
         RayTracer { plan, world, photon_mapper: two_way, indirect: None }
     }
 
-    /// Reads light that diffuse surfaces send each other from there.
+    /// Takes indirect light of diffuse surfaces from there.
     pub fn with_indirect(self, indirect: Box<dyn IndirectLight>) -> RayTracer<'a> {
         RayTracer { indirect: Some(indirect), ..self }
     }
@@ -101,8 +101,7 @@ impl<'a> RayTracer<'a> {
         &self.world
     }
 
-    /// The light of lamps that was followed, as the first pass caught it; none if none is followed, or if it was
-    /// stopped.
+    /// The photon map of the first pass; none if no lamp emits photons, or if tracing was stopped.
     pub(super) fn photon_estimator(&self, watch: &Watch<'_>) -> Option<PhotonEstimator<'_>> {
         self.photon_mapper.as_ref().and_then(|two_way| two_way.trace_pass(&self.world, 0, watch))
     }
@@ -143,7 +142,7 @@ impl<'a> RayTracer<'a> {
         Ok(eye.with_cones(filter / f64::from(order.footprints).sqrt()))
     }
 
-    /// One sample, its light by classes, and the wavelength set that it carries.
+    /// One sample, its light by classes, and its wavelength set.
     fn sample(
         &self,
         (tracer, eye, order): (&PathTracer<'_>, &CameraRays, &RenderOrder),
@@ -195,9 +194,9 @@ impl<'a> RayTracer<'a> {
         (sample, classes, wavelength_set)
     }
 
-    /// Tells how the samples of a pixel come to their radiance.
+    /// Explains how the samples of a pixel come to their radiance.
     ///
-    /// - `most`: no more samples than this are told of.
+    /// - `most`: no more samples than this are explained.
     ///
     /// # Errors
     /// [`RenderError::View`].

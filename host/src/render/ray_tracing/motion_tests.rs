@@ -36,8 +36,8 @@ fn ramp(from: f64, to: f64) -> f64 {
     (integral(to) - integral(from)) / (to - from)
 }
 
-/// Compares a row of 64 pixels from -1 to 1 with means over them. Times are spread evenly, and independent of places in the
-/// pixel: errors are chance where both decide.
+/// Compares a row of 64 pixels from -1 to 1 with means over them. Times are spread evenly, and independent of places in
+/// the pixel: errors are chance where both decide.
 fn compare(rendering: &Rendering, mean: impl Fn(f64, f64) -> f64) {
     let mut sum = 0.0;
     for x in 0..64 {
@@ -116,8 +116,8 @@ fn a_moving_plate_throws_a_shadow_that_is_a_ramp() {
 
 #[test]
 fn a_rising_mirror_shows_an_edge_as_a_ramp() {
-    // A mirror at 45 degrees in the plane y = x + c, c from -1/2 to 1/2, seen from above, shows at x what is to the left at
-    // the height x + c: a wall above the height 0.
+    // A mirror at 45 degrees in the plane y = x + c, c from -1/2 to 1/2, seen from above, shows at x what is to the
+    // left at the height x + c: a wall above the height 0.
     let tilted = DMat4::from_rotation_z(FRAC_PI_4);
     let mirror = object(Shape::Ground { size: 20.0 }, tilted, mirror(1.0));
     let wall = Shape::from(Primitive::Box { size: DVec3::new(0.5, 50.0, 50.0) });
@@ -136,7 +136,7 @@ fn what_stands_still_in_an_octree_of_its_own_gives_the_same_picture() {
     let mut scene = scene(vec![plate(4.0, DVec3::Y * -0.5, 0.7), ball], vec![light], 32);
     scene.settings.image.samples = 4;
     let [lean, forced] = [false, true].map(|everything| trace(&scene, Some(from_above(1.0)), everything, 2).picture);
-    assert_eq!(lean.pixels(), forced.pixels(), "no time is drawn where nothing moves");
+    assert_eq!(lean.pixels(), forced.pixels(), "no time is sampled where nothing moves");
     scene.motions = vec![(1, STILL)];
     let moving = trace(&scene, Some(from_above(1.0)), false, 2).picture;
     for (a, b) in lean.pixels().iter().zip(moving.pixels()) {
@@ -148,7 +148,7 @@ fn what_stands_still_in_an_octree_of_its_own_gives_the_same_picture() {
 
 #[test]
 fn a_ball_that_rolls_keeps_its_texture_and_its_outline() {
-    // A turn about its middle changes nothing of a ball of one colour, wherever the exact surface is met.
+    // A rotation about its middle changes nothing of a ball of one colour, wherever the exact surface is hit.
     let ball = Object {
         tolerance: Some(0.1),
         ..object(Shape::from(Primitive::Sphere { radius: 0.8 }), DMat4::IDENTITY, diffuse(1.0))

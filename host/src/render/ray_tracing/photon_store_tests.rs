@@ -1,4 +1,5 @@
-//! Facts about caught light that is kept in a database: it is what would be caught, and is taken as far as it is the same.
+//! Facts about photon maps that are stored in a database: they are what would be traced, and are taken as far as they
+//! are the same.
 
 use super::two_way_tests::{from_below, lamp, mirror_under_a_ceiling};
 use super::*;
@@ -21,7 +22,7 @@ fn two_lamps() -> Scene {
     scene
 }
 
-/// A picture with its balance, by a database or without one.
+/// A picture with its flux balance, by a database or without one.
 fn picture(scene: &Scene, path: Option<&Path>) -> (Picture, FluxBalance) {
     let prepared = Prepared::new(scene).expect("sound");
     let plan = Plan::new(&prepared, &from_below());
@@ -31,11 +32,11 @@ fn picture(scene: &Scene, path: Option<&Path>) -> (Picture, FluxBalance) {
         .expect("a tracer")
         .0;
     let rendering = tracer.render(&from_below(), &RenderOrder::of(&scene.settings), &Watch::NOBODY).expect("a picture");
-    (rendering.picture, rendering.flux_balance.expect("light was caught"))
+    (rendering.picture, rendering.flux_balance.expect("photons were traced"))
 }
 
 #[test]
-fn light_from_a_database_gives_the_same_picture_to_the_bit_and_is_not_followed_again() {
+fn photons_from_a_database_give_the_same_picture_to_the_bit_and_are_not_traced_again() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("light.redb");
     let mut scene = two_lamps();
@@ -45,13 +46,13 @@ fn light_from_a_database_gives_the_same_picture_to_the_bit_and_is_not_followed_a
     assert_eq!((&first, balance.stored_paths), (&plain, 0));
     let (again, balance) = picture(&scene, Some(&path));
     assert_eq!(again, plain);
-    // The last ways to each of what lamps are aimed at are no whole block.
+    // The last paths to each photon target are no whole block.
     assert!(balance.stored_paths > balance.paths * 4 / 5 && balance.stored_paths < balance.paths, "{balance}");
     let before = balance.stored_paths;
-    // Neither the size of the picture nor the samples matter, nor where light is looked for.
+    // Neither the size of the picture nor the samples matter, nor where photons are gathered.
     (scene.settings.image.width, scene.settings.image.samples, scene.settings.photons.radius) = (9, 2, Some(0.1));
     assert_eq!(picture(&scene, Some(&path)).1.stored_paths, before);
-    // Each pass has its own light.
+    // Each pass has its own photons.
     scene.settings.image.samples = 2 * SHARING;
     let (plain, _) = picture(&scene, None);
     assert_eq!(picture(&scene, Some(&path)).0, plain);
@@ -70,7 +71,7 @@ fn where_one_lamp_changes_the_light_of_the_other_is_taken_from_the_database() {
     let (changed, balance) = picture(&scene, Some(&path));
     assert_eq!(changed, plain);
     assert!(balance.stored_paths > whole / 4 && balance.stored_paths < whole * 9 / 10, "{balance}");
-    // More ways of a lamp are added to those that are there.
+    // More paths of a lamp are added to those that are there.
     scene.settings.photons.count = 50_000;
     let (plain, _) = picture(&scene, None);
     let (more, balance) = picture(&scene, Some(&path));
@@ -79,7 +80,7 @@ fn where_one_lamp_changes_the_light_of_the_other_is_taken_from_the_database() {
 }
 
 #[test]
-fn nothing_is_taken_where_surfaces_or_how_light_is_followed_have_changed() {
+fn nothing_is_taken_where_surfaces_or_how_photons_are_traced_have_changed() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("light.redb");
     let scene = two_lamps();

@@ -70,7 +70,7 @@ fn a_polished_pane_lets_lamps_through_as_fresnel_tells() {
         let (sin, cos) = degrees.to_radians().sin_cos();
         let light = Light::Directional { direction: DVec3::new(sin, -cos, 0.0), irradiance: Color::grey(1.0) };
         let floor = object(Shape::Ground { size: 20.0 }, DMat4::IDENTITY, diffuse(0.8));
-        // Beside what is looked at, in the way of the light alone; or above it.
+        // Beside what is looked at, between it and the light alone; or above it.
         let beside = if specular { DVec3::new(-2.0 * sin / cos, 2.0, 0.0) } else { DVec3::Y * 2.0 };
         let size = if degrees == 0.0 || !specular { 20.0 } else { 4.0 };
         let plate = object(Shape::Ground { size }, DMat4::from_translation(beside), of(pane.clone()));

@@ -1,9 +1,9 @@
-//! Random choices of a sample: each has its number, so that what one needs does not move another.
+//! The random numbers of a sample, by dimension: what one purpose needs does not shift those of another.
 
 use crate::numeric::sequence::SobolSequence;
 use crate::picture::Filter;
 
-/// What a choice is for.
+/// What a random number is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u64)]
 pub(super) enum SampleDimension {
@@ -11,21 +11,21 @@ pub(super) enum SampleDimension {
     Pixel,
     /// Place on the lens.
     Lens,
-    /// Which wavelength set, and which of them where they part.
+    /// The wavelength set, and the lane that is left where wavelengths separate.
     Wavelengths,
-    /// Which lobe carries a ray on.
+    /// The lobe that continues the path.
     Choice,
-    /// Whether a faint path segment goes on.
+    /// Russian roulette of a faint path segment.
     Survival,
-    /// The direction in which it goes on.
+    /// The direction of a BSDF sample.
     Direction,
-    /// Points of lights: one purpose for each from here on.
+    /// Points of lights: one dimension for each from here on.
     Lights,
     /// When the sample is taken; beyond all lights.
     Time = 1 << 31,
 }
 
-/// The choices of one sample of one pixel.
+/// The random numbers of one sample of one pixel.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PathSampler {
     sequence: SobolSequence,
@@ -41,7 +41,7 @@ impl PathSampler {
         PathSampler { sequence: SobolSequence::new(seed, pixel), index, of, time: 0.0 }
     }
 
-    /// These draws at a time drawn from those in which a shutter is open for so long; a single sample in their middle.
+    /// The sampler at a time drawn from those in which a shutter is open for so long; a single sample in their middle.
     pub(super) fn at_random_time(self, shutter: f64) -> PathSampler {
         let part = if self.of <= 1 { 0.5 } else { self.point(SampleDimension::Time)[0] };
         PathSampler { time: (part - 0.5) * shutter, ..self }
@@ -61,9 +61,9 @@ impl PathSampler {
         self.sequence.point(self.index, purpose as u64)
     }
 
-    /// A point of the unit square for a path segment of the sample's way.
+    /// A point of the unit square for a path segment of the sample.
     ///
-    /// - `leg`: its number, above 0, unlike that of all other path segments. `more`: which of several for the same
+    /// - `segment`: its number, above 0, unlike that of all other path segments. `more`: which of several for the same
     ///   purpose.
     pub(super) fn for_segment(&self, segment: u32, purpose: SampleDimension, more: u32) -> [f64; 2] {
         self.for_one_of_several(segment, purpose, more, [0, 1])

@@ -187,7 +187,7 @@ fn two_facing_mirrors_end_by_depth_or_by_energy() {
     assert_eq!(trace(&scene, Some(View::Camera(straight_down)), false, 1).rays.reflected, 5);
     scene.settings.light.reflection_depth = 1000;
     let chain = trace(&scene, Some(View::Camera(straight_down)), false, 1).rays.reflected;
-    assert!((12..40).contains(&chain), "0.5^12 is the last that is surely followed, not {chain}");
+    assert!((12..40).contains(&chain), "0.5^12 is the last that is surely traced, not {chain}");
 }
 
 #[test]
@@ -211,7 +211,7 @@ fn no_surface_shadows_itself_at_any_scale_or_place() {
         let center = DVec3::new(shift, -0.5 * shift, shift);
         let place = DMat4::from_translation(center) * DMat4::from_scale(DVec3::splat(size));
         let ball = object(Shape::from(Primitive::Sphere { radius: 1.0 }), place, diffuse(1.0));
-        // The light stands behind the eye: whatever is seen is lit.
+        // The light stands behind the camera: whatever is seen is lit.
         let towards = DVec3::new(0.2, 0.3, 1.0).normalize();
         let lights = vec![Light::Directional { direction: -towards, irradiance: Color::grey(PI) }];
         let mut scene = scene(vec![ball], lights, 64);

@@ -1,4 +1,4 @@
-//! Follows the path segments of a sample's way from the eye: what each meets, and where it goes on.
+//! Traces the path of a sample from the camera (Kajiya 1986), in two parts where an interface splits it (Whitted 1980).
 
 use super::direct::DirectLighting;
 use super::explain::{PathLog, PathNote};
@@ -16,70 +16,67 @@ use crate::render::{PathClass, RayCounts};
 use crate::scene::Caustics;
 use glam::DVec3;
 
-/// Path segments that would pass on less than this fraction of the light are followed by chance only, and then count
-/// for more.
+/// Throughput below which Russian roulette decides what continues (Arvo and Kirk 1990).
 pub const ENERGY_CUTOFF: f64 = 1.0 / 4096.0;
-/// Where a way parts, both parts are followed as long as each passes on so much of the light.
+/// Throughput above which both parts of a path are traced where it splits.
 const LEAST_SPLIT: f64 = 1.0 / 64.0;
-/// What a lamp reflects on an element that is seen by spread light is cut off at this value, 1/sr, unless caustics
-/// count: a diffuse surface has at most 1/π.
-///
-/// # Source
-/// Ours, in the place of the path regularisation of Kaplanyan and Dachsbacher 2013.
+/// Greatest value, 1/sr, with which narrow lobes reflect a lamp on an element reached by broad scattering, unless
+/// caustics count; Lambert's is at most 1/π. Ours, in the place of the path regularisation of Kaplanyan and Dachsbacher
+/// 2013.
 const HIGHEST: f64 = 1.0;
-/// Most path segments of a sample that wait to be followed.
+/// Most path segments of a sample that wait to be traced.
 const MOST_WAITING: usize = 8;
 
-/// A part of a sample's way.
+/// A segment of a sample's path: one ray with its throughput, its pdf and the history of the path.
 #[derive(Clone, Copy)]
 struct PathSegment {
     bounded: BoundedRay,
-    /// How much of the radiance along it comes to the eye.
+    /// Throughput: the radiance that arrives at the camera for a radiance of 1 along it.
     throughput: Channels,
-    /// How much of the light of a lamp counts that it meets.
+    /// Part of the light of a lamp that counts if it hits one; below 1 where the lobe was cut off.
     lamp_weight: f64,
-    /// How far from the beginning of its ray it begins, scene units: more than 0 behind what it went straight through.
+    /// Where on its ray it begins, scene units: more than 0 behind what it went straight through.
     begin: f64,
     /// How many path segments came before it.
     depth: u32,
     /// Unlike that of all other path segments of the sample.
     number: u32,
-    /// The density with which its direction was drawn, 1/sr; none where there was no choice.
+    /// The pdf of its direction, 1/sr; none where there was no choice.
     pdf: Option<f64>,
-    /// The normal of the element from which it goes on.
+    /// The normal of the element from which it starts.
     normal: Option<DVec3>,
-    /// What it goes through.
     media: Media,
-    /// The only lane that is left, after wavelengths parted.
+    /// The only lane that is left, after a dispersive interface separated the wavelengths.
     lane: Option<usize>,
-    /// Whether it only looks for lights: it is one too many for anything else.
+    /// Whether it only tests for lights: it is one beyond the depth for anything else.
     for_lights: bool,
-    /// Which turns its light takes from here to the eye.
+    /// The scattering events on the path from here to the camera.
     history: PathHistory,
-    /// What its last turn was.
+    /// The last scattering event.
     last_scattering: LastScattering,
-    /// Whether light that was followed from lamps counts nothing on it: it was caught where narrow turns bring it to a
+    /// Whether lights that emit photons count nothing on it: the photon map has theirs where a narrow lobe precedes a
     /// broad one.
     is_in_photon_map: bool,
-    /// Whether a denoiser is guided by what it meets: it comes from the eye, by mirrors and smooth interfaces alone.
+    /// Whether its hit gives features to a denoiser: it comes from the camera, by mirrors and smooth interfaces alone.
     records_features: bool,
 }
 
-/// Which turns light takes to the eye, by the lobes that it goes on from.
+/// The scattering events on a path, in the order in which light takes them, by the classes of their lobes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum PathHistory {
     /// No broad one.
     NoBroad,
-    /// A broad one first, and none but narrow ones behind.
+    /// A broad one first, and none but narrow ones behind it.
     OneBroad,
-    /// Narrow ones first, then a broad one, and none but narrow ones behind: what is met there is a caustic.
+    /// Narrow ones first, then a broad one, and none but narrow ones behind it: a light that is hit there makes a
+    /// caustic.
     Caustic,
     /// Several broad ones.
     SeveralBroad,
 }
 
 impl PathHistory {
-    /// With a turn before those that it has.
+    /// The history with a scattering event before those that it has.
     fn extended(self, is_broad: bool) -> PathHistory {
         match (self, is_broad) {
             (PathHistory::NoBroad, true) => PathHistory::OneBroad,
@@ -89,7 +86,7 @@ impl PathHistory {
         }
     }
 
-    /// The class of light that leaves a lamp on it.
+    /// The class of light that leaves a lamp on such a path.
     fn class(self) -> PathClass {
         match self {
             PathHistory::NoBroad => PathClass::Emitted,
@@ -100,10 +97,10 @@ impl PathHistory {
     }
 }
 
-/// What the turns of a path segment were since light was spread last.
+/// The scattering events of a path segment since the last lobe that was not delta.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum LastScattering {
-    /// None: it was spread.
+    /// None: the last lobe was not delta.
     NonDelta,
     /// It went through polished interfaces only.
     ClearInterface,
@@ -111,7 +108,7 @@ enum LastScattering {
     Other,
 }
 
-/// What a sample found.
+/// The result of a sample.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PathResult {
     /// Radiance of each class.
@@ -120,13 +117,13 @@ pub(super) struct PathResult {
     pub(super) other_wavelengths: [DVec3; PathClass::ALL.len()],
     /// Whether the first path segment met an object or light.
     pub(super) covered: bool,
-    /// What it met: distance from the eye, normal, object and material.
+    /// The first hit: distance from the camera, normal, object and material.
     pub(super) first: Option<FirstHit>,
-    /// Variance of its luminance by the chance in caught light that is seen, which other samples share.
+    /// Variance of its luminance by chance in the photon map that is seen, which other samples share.
     pub(super) shared_variance: f64,
     /// The albedo that is seen, straight or by mirrors and smooth interfaces; a light counts as 1.
     pub(super) albedo: Channels,
-    /// The normals there, each times the part of the light that comes to the eye.
+    /// The normals there, each times the throughput.
     pub(super) normal: DVec3,
 }
 
@@ -135,7 +132,7 @@ impl PathResult {
         self.radiance[class as usize] += radiance;
     }
 
-    /// A light that a path segment meets.
+    /// Takes a light that a path segment hits as an albedo of 1.
     fn record_light_albedo(&mut self, segment: &PathSegment) {
         if segment.records_features {
             self.albedo += segment.throughput;
@@ -143,7 +140,7 @@ impl PathResult {
     }
 }
 
-/// The first element in sight.
+/// The first element that a path hits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct FirstHit {
     pub(super) distance: f64,
@@ -152,46 +149,42 @@ pub(super) struct FirstHit {
     pub(super) material: u32,
 }
 
-/// What one thread needs for its samples, one after the other.
+/// Scratch of a thread, for one sample after the other.
 #[derive(Default)]
 pub(super) struct PathScratch {
-    /// How many rays were traced.
     pub(super) counts: RayCounts,
-    /// Path segments that wait to be followed; none between samples.
+    /// Path segments that wait to be traced; none between samples.
     waiting: Vec<PathSegment>,
 }
 
-/// Who counts rays, and who listens.
+/// Where rays are counted, terms are logged and light is summed up.
 struct SampleRecord<'a, 'b> {
     counts: &'a mut RayCounts,
     log: &'a mut PathLog<'b>,
     result: &'a mut PathResult,
 }
 
-/// Follows rays through a scene as its plan tells.
+/// Traces paths through a scene as its plan tells.
 pub(super) struct PathTracer<'a> {
     world: &'a World<'a>,
     direct: DirectLighting<'a>,
     /// Most path segments after the first.
     depth: u32,
     caustics: Caustics,
-    /// Light that was caught on its way from lamps.
+    /// The photon map of lamps, if they emit photons.
     photons: Option<&'a PhotonEstimator<'a>>,
     /// Light that diffuse surfaces send each other, if it is known already.
     indirect: Option<&'a dyn IndirectLight>,
-    /// Whether there is light that is not followed from where it comes from.
+    /// Whether there is light that is not in the photon map: lights that emit no photons, or ambient light.
     has_unmapped_lights: bool,
-    /// What the eye is in.
     camera_media: Media,
-    /// Whether a denoiser is to be guided.
     records_features: bool,
 }
 
 impl<'a> PathTracer<'a> {
     /// - `depth`: most path segments after the first. `shadows`: whether anything can stand before a light.
-    /// - `catches`: whether light of lamps was followed; `caught` is what was caught. `around`: what the eye is in.
-    /// - `indirect`: light that diffuse surfaces send each other, if it is known already.
-    /// - `guides`: whether samples tell what guides a denoiser.
+    /// - `catches`: whether lamps emit photons; `photons` is the photon map. `around`: the media around the camera.
+    /// - `indirect`: known light of other diffuse elements. `records_features`: whether a denoiser needs features.
     pub(super) fn new(
         world: &'a World<'a>,
         depth: u32,
@@ -203,7 +196,7 @@ impl<'a> PathTracer<'a> {
     ) -> PathTracer<'a> {
         let settings = &world.appearance.prepared.settings;
         let caustics = match settings.light.caustics {
-            // Rays from the eye may not find again what was caught.
+            // Camera paths must not count again what is in the photon map.
             _ if catches => Caustics::PhotonMapped,
             Caustics::PathTraced => Caustics::PathTraced,
             _ => Caustics::LeftOut,
@@ -225,7 +218,7 @@ impl<'a> PathTracer<'a> {
         }
     }
 
-    /// The radiance that arrives along a line of sight.
+    /// The radiance that arrives along a camera ray.
     pub(super) fn radiance(
         &self,
         bounded: &BoundedRay,
@@ -273,7 +266,7 @@ impl<'a> PathTracer<'a> {
                     result.add(segment.history.class(), segment.throughput * radiance);
                     result.record_light_albedo(&segment);
                     result.covered |= segment.depth > 0;
-                    log.note(|| PathNote::term(segment.depth, "meets nothing", segment.throughput * radiance));
+                    log.note(|| PathNote::term(segment.depth, "hits nothing", segment.throughput * radiance));
                 }
                 RayHit::Light(index, light_hit) => {
                     let absorbed = segment.media.transmittance(
@@ -303,7 +296,7 @@ impl<'a> PathTracer<'a> {
         result
     }
 
-    /// What an element sends back along a path segment, and the path segments that go on from there.
+    /// Adds the radiance of an element along a path segment, and the path segments that continue from there.
     fn scatter(
         &self,
         mut segment: PathSegment,
@@ -341,8 +334,7 @@ impl<'a> PathTracer<'a> {
             return;
         }
         let frame = interaction.frame();
-        // Where wavelengths part, the one that is left is drawn together with the wavelength set, as often as it will
-        // be seen.
+        // Where wavelengths separate, a lane is sampled together with the set, in proportion to how much of it is seen.
         let drawn = match segment.lane {
             None if interaction.disperses() => {
                 let visibility = self.world.appearance.wavelengths.visibility(wavelength_set);
@@ -426,7 +418,7 @@ impl<'a> PathTracer<'a> {
             for (class, (radiance, elsewhere)) in [first, PathClass::Indirect].into_iter().zip(light) {
                 result.add(class, radiance);
                 result.other_wavelengths[class as usize] += elsewhere;
-                log.note(|| PathNote::term(segment.depth, "caught light", radiance));
+                log.note(|| PathNote::term(segment.depth, "photon map", radiance));
             }
         }
         if bsdf.continues_paths() {
@@ -460,16 +452,16 @@ impl<'a> PathTracer<'a> {
         )
     }
 
-    /// How much a light counts that a path segment meets.
+    /// MIS weight of a light that a path segment hits.
     ///
-    /// - `density`: with which the light would have drawn the path segment's direction.
+    /// - `pdf`: of the segment's direction by sampling the light, 1/sr.
     fn mis_weight(&self, segment: &PathSegment, source: &LightSource, pdf: f64) -> f64 {
         let is_caustic = segment.pdf.is_none() && segment.history != PathHistory::NoBroad;
         match self.caustics {
-            // What is not followed from lamps counts wherever it is met.
+            // A light that emits no photons counts wherever it is hit.
             Caustics::PhotonMapped if !source.emits_photons() => power_heuristic(segment.pdf, pdf),
             Caustics::PhotonMapped if segment.is_in_photon_map => 0.0,
-            // A shadow ray has gone through what is polished.
+            // A shadow ray has gone through the polished interfaces.
             Caustics::LeftOut
                 if segment.last_scattering == LastScattering::ClearInterface
                     && self.world.appearance.has_clear_shadows =>
@@ -491,7 +483,7 @@ impl<'a> PathTracer<'a> {
         }
     }
 
-    /// The path segment that goes on in a direction; none if it is not worth following.
+    /// The path segment that continues by a BSDF sample; none if it is not worth tracing.
     fn next_segment(
         &self,
         segment: &PathSegment,
@@ -505,7 +497,7 @@ impl<'a> PathTracer<'a> {
         }
         let through = sample.light.z < 0.0;
         let parts_wavelengths = through && segment.lane.is_none() && interaction.disperses();
-        // Beyond the last path segment, a direction that might have been drawn for a light still looks for it.
+        // Beyond the last path segment, a direction that might have been sampled for a light still tests for it.
         let is_last = segment.depth >= self.depth;
         if is_last && (sample.pdf.is_none() || !self.direct.has_area_lights()) {
             return None;
@@ -521,7 +513,7 @@ impl<'a> PathTracer<'a> {
         let throughput = russian_roulette(throughput, number, &sampler)?;
         let element = &interaction.element;
         let direction = frame.world(sample.light);
-        // Of a spread lobe, what falls on the wrong side of the triangle or its surface is lost.
+        // Of a lobe with a pdf, what falls on the wrong side of the triangle or its surface is lost.
         if sample.pdf.is_some() && (direction.dot(element.plane(!through)) < 0.0) != through {
             return None;
         }
@@ -566,8 +558,8 @@ impl<'a> PathTracer<'a> {
         })
     }
 
-    /// The rest of a path segment behind what it goes straight through: the same ray, so that lights are met as if
-    /// nothing was there.
+    /// The path segment behind what it goes straight through: the same ray, so that lights are hit as if nothing was
+    /// there.
     fn straight_segment(
         &self,
         segment: &PathSegment,
@@ -595,7 +587,7 @@ impl<'a> PathTracer<'a> {
     }
 }
 
-/// What of a path segment is followed: all of it, or, of one that passes little on, by chance more or nothing.
+/// Russian roulette: the throughput as it is, or of a faint segment by chance more of it or nothing.
 fn russian_roulette(throughput: Channels, number: u32, sampler: &PathSampler) -> Option<Channels> {
     let most = throughput.max();
     if most >= ENERGY_CUTOFF {

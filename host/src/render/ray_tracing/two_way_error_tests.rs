@@ -1,4 +1,5 @@
-//! Facts about the error of two-way ray tracing: that it is as it says, and that samples are added where it is large.
+//! Facts about the error of two-way ray tracing: that it is as large as it is told, and that samples are added where it
+//! is large.
 
 use super::tests::{diffuse, scene};
 use super::two_way_tests::{ball, block, glass, lamp};
@@ -53,7 +54,7 @@ fn spread(renderings: &[Rendering]) -> Vec<(f64, f64)> {
 #[test]
 fn the_standard_error_that_is_told_is_how_far_renderings_are_apart() {
     let mut scene = caustic();
-    // Within one pass of light, chance in it counts as if light paths were independent: that is more than it is.
+    // Within one pass of photons, chance in it counts as if they were independent: that is more than it is.
     for (samples, most) in [(8, 2.0), (16, 1.5), (20, 1.5), (32, 1.5)] {
         scene.settings.image.samples = samples;
         let all = renderings(&scene, None);

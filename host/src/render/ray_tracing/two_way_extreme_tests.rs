@@ -1,4 +1,4 @@
-//! Light that is followed from lamps, at the extremes: each is held against a closed form or an invariant.
+//! Photon tracing at the extremes: each picture is held against a closed form or an invariant.
 
 use super::caustic_tests::{down_on, fresnel};
 use super::tests::{diffuse, from_above, mirror, object, red, scene};
@@ -15,13 +15,13 @@ use crate::solid::Primitive;
 use glam::{DMat4, DVec3};
 use std::f64::consts::PI;
 
-/// Follows light, and asks that it is finite and that no more arrives than was sent.
+/// Traces photons, and asks that their flux is finite and that no more arrives than was sent.
 fn followed(mut scene: Scene, view: Option<View>, photons: u32) -> (Rendering, FluxBalance) {
     scene.settings.photons.count = photons;
     let rendering = two_way(&scene, view, 2);
     let finite = |pixel: &crate::picture::Pixel| pixel.radiance.iter().all(|band| band.is_finite() && *band >= 0.0);
     assert!(rendering.picture.pixels().iter().all(finite));
-    let balance = rendering.flux_balance.expect("light is followed");
+    let balance = rendering.flux_balance.expect("photons are traced");
     let parts = [balance.straight, balance.stored, balance.absorbed, balance.escaped, balance.stopped];
     assert!(parts.iter().all(|part| *part > -1e-9 * balance.sent), "{balance}");
     (rendering, balance)
@@ -61,7 +61,7 @@ fn a_burning_mirror_gathers_all_light_in_a_point() {
     let (rendering, balance) = followed(scene, Some(down_on(DVec3::ZERO, 0.02, 0.2)), 50_000);
     let expected = 0.9 * (PI - 0.04);
     assert!((balance.stored / expected - 1.0).abs() < 0.01, "{} {expected}", balance.stored);
-    // A disc is never wider than what holds a few hundred light paths.
+    // A disc is never wider than what holds a few hundred photons.
     assert!((shown(&rendering, 0.02) / expected - 1.0).abs() < 0.1, "{} {expected}", shown(&rendering, 0.02));
 }
 
@@ -118,7 +118,7 @@ fn a_rod_guides_light_through_a_hundred_reflections() {
     let scene = scene(vec![rod, floor(20.0, 0.5 * length + 1.0)], vec![light], 4);
     let (_, balance) = followed(scene, Some(from_above(5.0)), 20_000);
     let found = [balance.stored, balance.escaped, balance.stopped].map(|part| part / power);
-    // What comes back from the far end has too many turns before it.
+    // What comes back from the far end has too many scattering events before it.
     let expected = [(1.0 - reflected).powi(2), reflected, (1.0 - reflected) * reflected];
     assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 0.01), "{found:?} {expected:?}");
 }

@@ -1,4 +1,4 @@
-//! Facts about light that is followed from lamps: closed forms, accounts that are even, and what other ways of finding it tell.
+//! Facts about photon tracing: closed forms, flux that adds up, and agreement with other algorithms.
 
 use super::tests::{diffuse, from_above, mirror, object, red, scene};
 use super::*;
@@ -68,9 +68,10 @@ pub(super) fn mirror_under_a_ceiling(size: f64, side: u32) -> Scene {
 
 #[test]
 fn a_mirror_lights_a_ceiling_as_a_lamp_behind_it_would() {
-    // Up to the edge of the ceiling, and as far as the mirror reaches: from the lamp's image, 4 times as far as it is wide.
+    // Up to the edge of the ceiling, and as far as the mirror reaches: from the lamp's image, 4 times as far as it is
+    // wide.
     let rendering = two_way(&mirror_under_a_ceiling(3.0, 30), Some(from_below()), 1);
-    // Where the disc is cut by an edge, there is less light in it to tell by: the mean over the edge is asked for.
+    // Where the disc is cut by an edge, there are fewer photons in it: the mean over the edge is asked for.
     let mut edge = [0.0; 2];
     let (mut squares, mut count) = (0.0, 0.0);
     for (x, y) in (0..30).flat_map(|x| (0..30).map(move |y| (x, y))) {
@@ -113,7 +114,7 @@ fn more_light_makes_it_more_right() {
     assert!(errors[0] > 2.0 * errors[1] && errors[1] > 2.0 * errors[2], "{errors:?}");
 }
 
-/// A glass ball and a mirror under a lamp that is large enough for rays from the eye to find it.
+/// A glass ball and a mirror under a lamp that is large enough for camera paths to find it.
 fn ball_and_mirror() -> Scene {
     let patch =
         LightShape::Rectangle { corner: DVec3::new(-1.5, 4.0, -1.5), across: DVec3::X * 3.0, up: DVec3::Z * 3.0 };
@@ -176,7 +177,7 @@ fn light_of_a_sky_with_a_sun_is_found_once_whoever_looks_for_it() {
 }
 
 #[test]
-fn classes_of_light_add_up_and_are_the_same_by_both_ways_of_finding_it() {
+fn classes_of_light_add_up_and_are_the_same_for_both_algorithms() {
     let mut scene = ball_and_mirror();
     let classes = |scene: &Scene| {
         let prepared = Prepared::new(scene).expect("sound");
@@ -199,7 +200,8 @@ fn classes_of_light_add_up_and_are_the_same_by_both_ways_of_finding_it() {
     for ((a, b), most) in found.iter().zip(expected).zip([0.03, 0.01, 0.03, 0.15]) {
         assert!(*a > 0.0 && (a / b - 1.0).abs() < most, "{found:?} {expected:?}");
     }
-    // Left out, caustics are not there, neither straight nor carried on; light goes straight through glass instead.
+    // Left out, caustics are not there, neither directly seen nor scattered on; light goes straight through glass
+    // instead.
     scene.settings.light.caustics = Caustics::LeftOut;
     let without = classes(&scene);
     assert!(without[2] == 0.0 && without[3] < expected[3], "{without:?} {expected:?}");

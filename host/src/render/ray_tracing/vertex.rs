@@ -1,4 +1,4 @@
-//! An element that a ray met, as light and further rays are asked for there.
+//! A path vertex: a surface interaction as light and further segments are sampled there.
 
 use super::sampler::PathSampler;
 use crate::color::Channels;
@@ -6,29 +6,33 @@ use crate::illumination::distribution::ShadingFrame;
 use crate::illumination::optics::{LobeSelection, ShadingContext};
 use crate::render::world::{Media, SurfaceInteraction};
 
-/// An element that a ray met, with the frame in which its optics has directions.
+/// A surface interaction of a path, with the frame in which its BSDF has directions.
 pub(super) struct PathVertex<'a> {
     pub(super) interaction: &'a SurfaceInteraction<'a>,
-    /// What a ray is in that goes through it.
+    /// The media behind it.
     pub(super) media_behind: Media,
     pub(super) frame: ShadingFrame,
     pub(super) context: ShadingContext<'a>,
-    /// The choices of the sample.
+    /// The random numbers of the sample.
     pub(super) sampler: PathSampler,
-    /// The number of the path segment that met it.
+    /// The number of the path segment that hit it.
     pub(super) segment: u32,
-    /// Among which lobes a direction is drawn: not among those of mirrors, if all of these are followed beside it.
+    /// The lobes among which a direction is sampled: not those of mirrors, if all of these are traced beside it.
     pub(super) selection: LobeSelection,
     /// The greatest value with which it may reflect a lamp, 1/sr.
     pub(super) clamp_value: f64,
-    /// Whether lamps that were followed count nothing.
+    /// Whether lamps that emit photons count nothing.
     pub(super) is_in_photon_map: bool,
-    /// How much of the radiance along the path segment comes to the eye, where wavelengths part: in the one lane that
-    /// is left.
+    /// Throughput of the path segment, where wavelengths separate: in the one lane that is left.
     pub(super) lane_throughput: Channels,
 }
 
-/// How much a light counts that a path segment of a density meets: the rest is what its own samples bring.
+/// Weight of a light that a path segment hits; the rest is brought by light sampling.
+///
+/// w = p² / (p² + q²)
+///
+/// - `bsdf_pdf`: p, of the direction by the BSDF, 1/sr; none where there was no choice.
+/// - `light_pdf`: q, of the direction by sampling the light, 1/sr.
 ///
 /// # Source
 /// Veach and Guibas 1995, the power heuristic.

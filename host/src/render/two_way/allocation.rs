@@ -1,7 +1,7 @@
-//! How light paths are divided among lamps, and what they are aimed at.
+//! Allocates photon paths to lamps and their photon targets.
 //!
-//! What a lamp sends to where is found for each lamp by itself; only how many ways it gets depends on the others. Where
-//! other lamps change, its ways thus stay the same, though there may be fewer or more of them.
+//! What a lamp sends to each target is found for each lamp by itself; only how many paths it gets depends on the
+//! others. Where other lamps change, its paths thus stay the same, though there may be fewer or more of them.
 
 use super::photon_source::{PhotonSource, PhotonTarget};
 use super::photon_tracing::{PhotonDimension, PhotonSampler};
@@ -10,44 +10,44 @@ use super::{PathBatch, PhotonMapper};
 use crate::render::world::World;
 use rayon::prelude::*;
 
-/// Ways that are followed first, to see where light goes: an eighth of those of a pass, within limits.
+/// Photon paths that are traced first, to see where light goes: an eighth of those of a pass, within limits.
 const PILOT: std::ops::RangeInclusive<u32> = 1 << 12..=1 << 14;
-/// What stands for a pass when they are followed.
+/// Number of the pass for which they are traced.
 const PILOT_PASS: u64 = u64::MAX;
 /// The least of them for each lamp and bounding sphere.
 const LEAST_PILOT: u32 = 32;
-/// Of the ways of a lamp and bounding sphere, the least part of the mean of all, however little came of them.
+/// Paths of a lamp to a bounding sphere, at the least, as a part of the mean of all, however few photons they stored.
 const LEAST_PART: f64 = 0.05;
-/// A spot of which the cosine of the half angle is above this is aimed at as a whole, too.
+/// A spot of which the cosine of the half angle is above this has all of its cone for a target, too.
 const NARROW: f64 = 0.9;
 
-/// What a few ways from a lamp to a bounding sphere brought.
+/// Result of some paths from a lamp to a bounding sphere.
 struct PilotResult {
     /// Flux, W.
     stored: f64,
-    /// The root mean square of what a way adds to it. With ways in proportion to this, chance shows least in all
+    /// The root mean square of what a path adds to it. With paths in proportion to this, noise is least in all
     /// together.
     ///
     /// # Source
     /// Neyman 1934, optimal allocation.
     deviation: f64,
-    /// Where they have to be sent.
+    /// The cells of the target that are worth photons.
     map: ProjectionMap,
 }
 
 impl PhotonMapper<'_> {
-    /// How many ways from each of so many lamps, and to each of so many bounding spheres, are followed first.
+    /// How many paths from each of so many lamps, and to each of so many bounding spheres, are traced first.
     pub(super) fn pilot_paths(photons: u32, lamps: usize, spheres: usize) -> u32 {
         let pilot = (photons / 8).clamp(*PILOT.start(), *PILOT.end());
-        // A lamp more or less seldom matters to the others.
+        // One lamp more or less seldom changes what the others get.
         let each = pilot >> lamps.next_power_of_two().trailing_zeros().min(31);
         (each / spheres as u32).max(LEAST_PILOT)
     }
 
-    /// Divides the ways among lamps and bounding spheres, as a few of them are of use.
+    /// Allocates the paths to lamps and bounding spheres, by what some of them stored.
     ///
-    /// - `lamps`: indices into the sources. `everything`: the bounding sphere around what sends light on by broad
-    ///   turns; none if nothing does.
+    /// - `lamps`: indices into the sources. `everything`: the bounding sphere around what scatters broadly; none if
+    ///   nothing does.
     pub(super) fn allocate_paths(&mut self, world: &World<'_>, lamps: &[usize], everything: Option<BoundingSphere>) {
         let photons = world.appearance.prepared.settings.photons.count;
         let wide = everything.map(|sphere| {
@@ -103,7 +103,7 @@ impl PhotonMapper<'_> {
         }
     }
 
-    /// Follows a few ways from a lamp to a bounding sphere: what they bring, and where they have to be sent.
+    /// Traces some paths from a lamp to a bounding sphere: what they store, and which cells are worth photons.
     fn trace_pilot(&self, world: &World<'_>, chunk: &PathBatch, wide: Option<usize>) -> PilotResult {
         let PhotonTarget { sphere, count, part, .. } = self.lamps[chunk.lamp].targets[chunk.target];
         let mut used = Vec::new();

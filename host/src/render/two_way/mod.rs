@@ -1,21 +1,22 @@
-//! Phase one of two-way ray tracing: light is followed from lamps through mirrors and glass, and caught where it
-//! arrives.
+//! Two-way ray tracing, phase one: photons are traced from lamps through mirrors and glass, and stored where they
+//! arrive (photon mapping, Jensen 1996).
 //!
-//! It does not depend on the view. Phase two, the rays from the eye, adds what was caught around each place that they
-//! meet, as light that comes from where it came from.
+//! It does not depend on the view. Phase two, the paths from the camera, adds the radiance estimate of the photons
+//! around each surface interaction.
 //!
-//! **Which light paths are found by whom.** Each turn of light at a surface is by a *narrow* lobe, a mirror, an
-//! interface or a highlight, or by a *broad* one, such as Lambert's. How light came to its last broad turn decides:
+//! **Which light paths are found by which phase.** Each scattering event at a surface is by a *narrow* lobe, a mirror,
+//! an interface or a highlight (LPE classes S and G), or by a *broad* one, such as Lambert's (D). How light came to its
+//! last broad scattering decides:
 //!
-//! - without any turn since the lamp it is direct: rays to lights bring it;
-//! - by a narrow turn it is caught there, whatever was before: light that is followed from lamps takes broad turns,
-//!   too;
-//! - by another broad turn it is found by the rays from the eye, which go on to where that was and ask there again;
-//! - light that comes to the eye by narrow turns alone is found by the rays from the eye.
+//! - without any scattering since the lamp it is direct: light samples bring it;
+//! - by narrow scattering it is a photon stored there, whatever was before: photons are scattered broadly, too;
+//! - by other broad scattering it is found by the paths from the camera, which continue to where that was and estimate
+//!   there again;
+//! - light that comes to the camera by narrow scattering alone is found by the paths from the camera.
 //!
-//! A ray from the eye that goes on from a broad turn by a narrow one is on a way of the second kind, and ends there. A
-//! sky without a picture is left to the rays from the eye: it is as bright everywhere, and they find it. For it, and
-//! for ambient light, these rays do not end.
+//! A path from the camera that continues from broad scattering by a narrow lobe is a light path of the second kind, and
+//! ends there. A sky without a picture is left to the paths from the camera: it is as bright everywhere, and they find
+//! it. For it, and for ambient light, these paths do not end.
 
 mod projection_map;
 mod photon_tracing;
@@ -53,36 +54,36 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Ways that one thread follows before it takes others.
+/// Photon paths that one thread traces before it takes others.
 const CHUNK: u32 = 1024;
-/// The largest disc over which caught light is spread, as a part of the diagonal of the scene.
+/// The largest disc of a radiance estimate, as a part of the diagonal of the scene.
 const REACH: f64 = 0.05;
 
-/// How far above a surface ways along it lead, as a part of the size of the scene.
+/// How far above a surface lines along it lie, as a part of the size of the scene.
 const LIFT: f64 = 1e-9;
 /// Work on a pass that is kept when it is interrupted.
 const WORTH_KEEPING: Duration = Duration::from_secs(5);
-/// Memory that caught light takes while it is kept for further views, bytes at the most.
+/// Memory that photon maps take while they are kept for further views, bytes at the most.
 const MOST_BYTES: u64 = 1 << 30;
 
-/// Follows light from lamps.
+/// Traces passes of photons from lamps.
 pub(in crate::render) struct PhotonMapper<'a> {
     surfaces: SmoothSurfaces,
-    /// Triangles that stand in the light path.
+    /// Triangles that occlude light.
     opaque: TriangleBvh,
-    /// Those around what mirrors or refracts, and then others at which lamps are aimed.
+    /// Those around what mirrors or refracts, and then other targets of lamps.
     spheres: Vec<BoundingSphere>,
     bodies: usize,
     lamps: Vec<PhotonSource>,
     most_bounces: u32,
     reach: f64,
     seed: u64,
-    /// What was caught, pass by pass, as far as it is kept.
+    /// The photon maps, pass by pass, as far as they are kept.
     passes: Mutex<Vec<Arc<PhotonPass>>>,
     store: Option<&'a PhotonStore>,
 }
 
-/// Ways that are followed together: so many from a lamp to one bounding sphere.
+/// Photon paths that are traced together: so many from a lamp to one bounding sphere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct PathBatch {
     lamp: usize,
@@ -90,7 +91,7 @@ struct PathBatch {
     number: u32,
 }
 
-/// What such ways brought, as if each of them were all of the lamp.
+/// Result of such paths, as if each of them were all of the lamp.
 #[derive(Clone, Debug)]
 struct BatchResult {
     photons: Vec<Photon>,
@@ -104,14 +105,14 @@ impl BatchResult {
     }
 }
 
-/// What a pass caught.
+/// The photon map of a pass.
 struct PhotonPass {
     pass: u32,
     map: PhotonMap,
     balance: FluxBalance,
 }
 
-/// Light that was caught, with what is needed to show it.
+/// A photon map, with what radiance estimates need.
 pub(in crate::render) struct PhotonEstimator<'a> {
     world: &'a World<'a>,
     mapper: &'a PhotonMapper<'a>,
@@ -120,9 +121,10 @@ pub(in crate::render) struct PhotonEstimator<'a> {
 }
 
 impl<'s> PhotonMapper<'s> {
-    /// Looks where light of lamps goes; none if nothing of it goes through mirrors or glass to where it can be caught.
+    /// Looks where light of lamps goes; none if nothing of it goes through mirrors or glass to where photons are
+    /// stored.
     ///
-    /// - `shelf`: where caught light is kept beyond this, if anywhere.
+    /// - `photon_store`: where photon maps are kept beyond this, if anywhere.
     pub(in crate::render) fn new(
         world: &World<'_>,
         keeps: impl Fn(usize) -> bool,
@@ -171,10 +173,11 @@ impl<'s> PhotonMapper<'s> {
         (!two_way.lamps.is_empty()).then_some(two_way)
     }
 
-    /// Follows all ways of a pass; none if it was cancelled. What was followed until then is on the photon store, if
+    /// Traces all paths of a pass; none if it was cancelled. What was traced until then is in the photon store, if
     /// there is one.
     ///
-    /// - `pass`: counts from 0. The more of them, the smaller the discs over which light is spread.
+    /// - `pass`: counts from 0. The higher it is, the smaller are the discs of radiance estimates (progressive photon
+    ///   mapping, Knaus and Zwicker 2011).
     pub(in crate::render) fn trace_pass<'a>(
         &'a self,
         world: &'a World<'a>,
@@ -192,7 +195,7 @@ impl<'s> PhotonMapper<'s> {
         let photon_pass = Arc::new(self.photon_pass(world, pass, watch)?);
         let mut kept = kept();
         let bytes: usize = kept.iter().map(|photon_pass| photon_pass.map.bytes()).sum();
-        // Half of what is left is for the work that goes on.
+        // Half of what is left is for the work that continues.
         let most = MOST_BYTES.min(bytes as u64 + memory::left() / 2);
         if (bytes + photon_pass.map.bytes()) as u64 <= most {
             kept.push(photon_pass.clone());
@@ -258,7 +261,7 @@ impl<'s> PhotonMapper<'s> {
         Some(PhotonPass { pass, map: PhotonMap::new(&photons, lanes), balance })
     }
 
-    /// What of the light of a pass was followed in other runs.
+    /// The batches of a pass that other runs traced.
     fn stored_blocks(&self, pass: u32, lanes: usize) -> HashMap<PathBatch, BatchResult> {
         let Some(photon_store) = self.store else { return HashMap::new() };
         let named =
@@ -266,7 +269,7 @@ impl<'s> PhotonMapper<'s> {
         named.flat_map(|(lamp, name)| photon_store.load(&format!("{name}-{pass}"), lamp, lanes)).collect()
     }
 
-    /// Keeps light of a pass for other runs, with what was kept before, of each lamp of which something is new.
+    /// Stores batches of a pass for other runs, with what was stored before, for each lamp of which something is new.
     fn store_blocks(
         &self,
         world: &World<'_>,
@@ -288,7 +291,7 @@ impl<'s> PhotonMapper<'s> {
         }
     }
 
-    /// Follows some ways from a lamp.
+    /// Traces some paths from a lamp.
     fn trace_batch(&self, world: &World<'_>, pass: u64, chunk: &PathBatch, paths: Range<u32>) -> BatchResult {
         let lamp = &self.lamps[chunk.lamp];
         let mut flight = PhotonTracer {
@@ -309,20 +312,20 @@ impl<'s> PhotonMapper<'s> {
                 _ => flight.balance.paths += 1,
             }
         }
-        // As exactly as it is kept.
+        // As exactly as it is stored.
         let rounded = |flux: Channels| Channels(flux.0.map(|flux| f64::from(flux as f32)));
         let photons = flight.photons.into_iter().map(|photon| Photon { flux: rounded(photon.flux), ..photon });
         BatchResult { photons: photons.collect(), balance: flight.balance }
     }
 
-    /// The choices of a pass for ways from a lamp.
+    /// The random numbers of a pass for paths from a lamp.
     fn sequence(&self, world: &World<'_>, pass: u64, chunk: &PathBatch) -> SobolSequence {
         let light = world.appearance.sources[self.lamps[chunk.lamp].source].0;
         let number = (light as u64) << 32 | chunk.target as u64;
         SobolSequence::new(self.seed ^ pass.wrapping_mul(0x9e37_79b9_7f4a_7c15), number)
     }
 
-    /// Light as it leaves a lamp, as if this were all of it.
+    /// Samples a photon that leaves a lamp, as if it were all of the light.
     fn emit(
         &self,
         world: &World<'_>,
@@ -337,7 +340,7 @@ impl<'s> PhotonMapper<'s> {
         let time = if world.moves() { (time - 0.5) * appearance.prepared.settings.geometry.shutter } else { 0.0 };
         let place = target.map.sample(sampler.point(PhotonDimension::Aim, 0));
         let sphere = &self.spheres[target.sphere];
-        // However a way might have been drawn.
+        // By whichever target a path might have been sampled.
         let all = |pdf: &dyn Fn(&BoundingSphere) -> Option<DirectionPdf>| -> f64 {
             let of = |other: &PhotonTarget| {
                 let (pdf, place) = pdf(&self.spheres[other.sphere])?;
@@ -367,19 +370,19 @@ impl<'s> PhotonMapper<'s> {
     }
 }
 
-/// The radius of the largest disc over which caught light is spread, unless the scene has one, scene units.
+/// The radius of the largest disc of a radiance estimate, unless the scene has one, scene units.
 pub fn greatest_gather_radius(prepared: &Prepared) -> f64 {
     REACH * prepared.bounds.diagonal()
 }
 
 impl PhotonEstimator<'_> {
-    /// What became of all that was sent.
+    /// What became of all flux that was sent.
     pub(in crate::render) fn balance(&self) -> FluxBalance {
         self.pass.balance
     }
 
-    /// What a side of a triangle reflects diffusely of the light that was caught around a point, W/m², in lanes that
-    /// are means over all wavelength sets.
+    /// Exitance of a side of a triangle by what it reflects diffusely of the photons around a point, W/m², in lanes
+    /// that are means over all wavelength sets.
     pub(in crate::render) fn exitance(&self, triangle: u32, outside: bool, at: DVec3) -> Channels {
         let appearance = &self.world.appearance;
         let prepared = appearance.prepared;
@@ -420,13 +423,13 @@ impl PhotonEstimator<'_> {
         }
     }
 
-    /// Radiance towards the viewer of an element by the light that was caught around it.
+    /// Radiance estimate towards the viewer of an element, by the photons around it.
     ///
-    /// - `passed`: how much of the radiance comes to the eye. `is_parted`: whether a single wavelength is left of it.
-    /// - `coarse`: whether the element is one of many that send light to what is seen.
-    /// - Returns what comes to the eye in the lanes of the ray; and what comes at other wavelengths, linear sRGB: of
-    ///   light that took narrow turns only, and of light that took broad ones among them. And the standard error of all
-    ///   of it, over it.
+    /// - `throughput`: of the path. `is_parted`: whether a single wavelength is left of it.
+    /// - `coarse`: whether the element is one of many that light what is seen.
+    /// - Returns radiance at the camera: in the lanes of the path, and at other wavelengths as linear sRGB; of photons
+    ///   that were scattered narrowly only, and of photons that were scattered broadly, too. And the standard error of
+    ///   all of it, over it.
     pub(in crate::render) fn radiance_estimate(
         &self,
         interaction: &SurfaceInteraction<'_>,
@@ -461,7 +464,7 @@ impl PhotonEstimator<'_> {
             if is_one_color {
                 *sum += interaction.bsdf.non_narrow_value(context, light) * contribution.irradiance;
             } else {
-                // The light has other wavelengths than the ray.
+                // The photon has other wavelengths than the path.
                 let at = ShadingContext { wavelength_set: contribution.wavelength_set, ..*context };
                 let throughput =
                     between(throughput, context.wavelength_set, contribution.wavelength_set, wavelengths.count());
@@ -473,7 +476,7 @@ impl PhotonEstimator<'_> {
     }
 }
 
-/// A quantity that is known at the wavelengths of a wavelength set, at those of another, by straight lines.
+/// Interpolates a quantity linearly from the wavelengths of one wavelength set to those of another.
 fn between(quantity: Channels, known: usize, wanted: usize, sets: usize) -> Channels {
     let apart = (wanted as f64 - known as f64) / sets as f64;
     let (other, part) = (if apart < 0.0 { -1 } else { 1 }, apart.abs());

@@ -1,4 +1,4 @@
-//! What stands on a plane, in the light path along it.
+//! Occluders of lines along a plane: walls that stand on it.
 
 use super::smooth_surfaces::{LEAST_PART, beyond, part_of_disc};
 use crate::numeric::bounds::Bounds;
@@ -24,7 +24,7 @@ pub(super) struct PlanarDisc {
 /// A segment that hides what is behind it from the middle of the disc, which has radius 1 here.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct OccluderSegment {
-    /// The middle is on the left of the way from one to the other.
+    /// The middle is on the left of the direction from one to the other.
     ends: [Vec2; 2],
 }
 
@@ -74,7 +74,7 @@ impl PlanarDisc {
 }
 
 impl OccluderSegment {
-    /// Whether it stands between the middle and a place.
+    /// Whether it occludes a place, as seen from the middle.
     #[inline]
     pub(super) fn hides(&self, place: Vec2) -> bool {
         let [a, b] = self.ends;
@@ -82,14 +82,14 @@ impl OccluderSegment {
     }
 }
 
-/// What of discs around a place is on its surface and in sight of it, disc by disc.
+/// The visible part of discs around a place: what is on its surface and in sight of it, disc by disc.
 pub(super) struct VisibleParts {
     parts: Vec<Part>,
-    /// Of each part what is of borders before its wall; without walls all of them.
+    /// Of each part those borders that are before its wall; without walls all of them.
     borders: Vec<[DVec2; 2]>,
 }
 
-/// What is seen of a disc between two angles where no end and no crossing is.
+/// The visible part of a disc between two angles where no end and no crossing is.
 struct Part {
     /// The nearest wall.
     wall: Option<[DVec2; 2]>,
@@ -109,7 +109,7 @@ impl VisibleParts {
         }
         let walls: Vec<[DVec2; 2]> = walls.iter().map(|wall| wall.ends.map(|end| end.as_dvec2())).collect();
         let mut angles: Vec<f64> = walls.iter().chain(borders).flatten().map(|end| end.to_angle()).collect();
-        // Which one is nearer changes where two of them cross.
+        // The nearer of two changes where they cross.
         for (number, wall) in walls.iter().enumerate() {
             let others = walls[number + 1..].iter().chain(borders);
             angles.extend(others.filter_map(|other| crossing(*wall, *other)).map(DVec2::to_angle));
@@ -136,7 +136,7 @@ impl VisibleParts {
         seen
     }
 
-    /// How much of a weighted disc is on the surface and in sight of its middle.
+    /// Part of a weighted disc that is on the surface and in sight of its middle.
     ///
     /// - `radius`: where the disc within which walls are known has 1.
     pub(super) fn part(&self, radius: f64) -> f64 {
@@ -166,14 +166,14 @@ fn crossing([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> Option<DVec2> {
     is_between.then(|| a.lerp(b, s / (s - t)))
 }
 
-/// Where a ray from the origin meets a segment, if it does.
+/// Where a ray from the origin hits a segment, if it does.
 fn along([a, b]: [DVec2; 2], way: DVec2) -> Option<f64> {
     let is_between = (a.perp_dot(way) >= 0.0) == (way.perp_dot(b) >= 0.0);
     let distance = along_line([a, b], way);
     (is_between && distance > 0.0).then_some(distance)
 }
 
-/// Where it meets its line.
+/// Where it hits its line.
 fn along_line([a, b]: [DVec2; 2], way: DVec2) -> f64 {
     a.perp_dot(b - a) / way.perp_dot(b - a)
 }
@@ -196,7 +196,7 @@ mod tests {
             let wall = flat.cut(corners);
             let at = DVec2::new(coordinate(), coordinate()) * 0.7;
             let end = middle + (flat.axes[0] * at.x + flat.axes[1] * at.y) * 0.8;
-            // By signs of volumes: the ends are on both sides of the triangle, and the way goes through it.
+            // By signs of volumes: the ends are on both sides of the triangle, and the line goes through it.
             let volume = |a: DVec3, b: DVec3, c: DVec3, d: DVec3| (b - a).cross(c - a).dot(d - a);
             let [a, b, c] = corners;
             let (s, t) = (volume(a, b, c, middle), volume(a, b, c, end));

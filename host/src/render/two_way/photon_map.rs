@@ -1,8 +1,8 @@
-//! Caught light as a surface shows it: its density around a place.
+//! The photon map: radiance estimates from the density of photons around a place (Jensen 1996).
 //!
-//! The flux that arrived within a small disc, over its area, is the irradiance. A small disc has few light paths in it,
-//! so that chance shows; a large one blurs. Which is right is different from place to place: discs are tried from small
-//! to large as long as what they tell is the same within what chance allows.
+//! The flux that arrived within a small disc, over its area, is the irradiance. A small disc has few photons in it, so
+//! that it is noisy; a large one blurs. Which is right is different from place to place: discs are tried from small to
+//! large as long as their estimates are the same within their standard errors.
 
 use super::occluders::{OccluderSegment, PlanarDisc, VisibleParts};
 use super::photon_tracing::Photon;
@@ -15,30 +15,30 @@ use glam::{DVec3, Vec2};
 use rayon::prelude::*;
 use std::f64::consts::FRAC_2_PI;
 
-/// Caught light that is looked at around a place, at the least, if there is so much.
+/// Photons of a fine estimate, at the least, if there are so many.
 const FEW: usize = 256;
-/// Pieces of caught light that are looked at around a place where few will do.
+/// Photons of a coarse estimate.
 const COARSE: usize = 96;
-/// Times as many pieces of caught light are looked at around a place where little noise is to be left.
+/// Times as many photons as of a fine estimate where little noise is to be left.
 const SMOOTH: usize = 8;
-/// Where there is much, it is as this times the power 2/3 of all: discs then become as small, and chance in them as
-/// little, as makes the error fall fastest.
+/// Of many photons, a fine estimate takes this times the power 2/3 of all: the discs then become as small, and their
+/// noise as little, as makes the error fall fastest.
 const SHARE: f64 = 0.3;
-/// The least that a disc holds, if there is so much around the place.
+/// Photons in a disc, at the least, if there are so many around the place.
 const LEAST: u32 = 10;
 /// Rings of equal area around a place.
 const RINGS: usize = 32;
 /// Discs that are tried: so many rings each.
 const DISCS: [usize; 10] = [1, 2, 3, 4, 6, 8, 11, 16, 22, 32];
-/// Two discs tell the same if they differ by no more than so many standard errors. With few of them, a disc is often
-/// taken because chance made it tell little, and pictures get too dark; with many, edges blur.
+/// Two estimates are the same if they differ by no more than so many standard errors. With few of them, a disc is often
+/// taken because chance made its estimate low, and pictures get too dark; with many, edges blur.
 const SAME: f64 = 3.0;
-/// So many walls around a place are looked at for each light; of more, the octree finds those in the way.
+/// So many walls around a place are tested for each photon; of more, the octree finds the occluders.
 const MANY_WALLS: usize = 64;
-/// How far above or below the plane at a place light may have arrived to count there, over the radius.
+/// How far above or below the plane at a place a photon may have arrived to count there, over the radius.
 const HEIGHT: f64 = 0.25;
 
-/// Light that was caught on surfaces, by its place.
+/// Photons that are stored on surfaces, by their places.
 pub(super) struct PhotonMap {
     points: SortedPoints,
     towards: Vec<[f32; 3]>,
@@ -48,44 +48,44 @@ pub(super) struct PhotonMap {
     lanes: usize,
     /// Their mean.
     strength: Vec<f32>,
-    /// How much is looked at around a place, at the most.
+    /// How many photons a fine estimate takes, at the most.
     most: usize,
-    /// Which wavelengths each carries, and whether it took a broad turn.
+    /// The wavelength set of each, and whether it was scattered broadly.
     wavelength_sets: Vec<u8>,
 }
 
-/// Marks what took a broad turn; wavelength sets are fewer.
+/// Marks what was scattered broadly; wavelength sets are fewer.
 const HAD_BROAD: u8 = 0x80;
 
-/// A place that asks for the light around it.
+/// A place of which the irradiance is estimated.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct GatherPoint {
     pub(super) position: DVec3,
     /// Outer normal of the surface.
     pub(super) outside: DVec3,
-    /// Where rays from there to other places of the surface begin.
+    /// Origin of rays from there to other places of the surface.
     pub(super) leave: DVec3,
     pub(super) surface: u32,
     /// The side, as [`super::photon_tracing::side_of`] numbers them.
     pub(super) side: u32,
 }
 
-/// How much light is looked at around a place.
+/// How many photons an estimate takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum GatherDetail {
     /// For a place that is seen.
     Fine,
-    /// A few ways will do, as for one of the many places that send light to what is seen.
+    /// Few photons will do, as for one of the many places that light what is seen.
     Coarse,
-    /// So much that little chance is left.
+    /// So many that little noise is left.
     Smooth,
 }
 
-/// What stands around places.
+/// The surroundings of gather points, and what their estimates need.
 pub(super) struct GatherContext<'a> {
     pub(super) world: &'a World<'a>,
     pub(super) surfaces: &'a SmoothSurfaces,
-    /// Triangles that stand in the light path.
+    /// Triangles that occlude light.
     pub(super) opaque: &'a TriangleBvh,
     /// The largest disc, scene units.
     pub(super) reach: f64,
@@ -94,7 +94,7 @@ pub(super) struct GatherContext<'a> {
     pub(super) shrink: f64,
 }
 
-/// Light that arrives at a place, over an area.
+/// A photon's part of the irradiance at a place.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PhotonContribution {
     /// Towards where it comes from.
@@ -102,11 +102,11 @@ pub(super) struct PhotonContribution {
     /// Irradiance, W/m².
     pub(super) irradiance: Channels,
     pub(super) wavelength_set: usize,
-    /// Whether a broad turn was among those that it took.
+    /// Whether it was scattered broadly before.
     pub(super) had_broad: bool,
 }
 
-/// Sums over the light within a ring, or a disc: of its strength and of the square, each times powers of d².
+/// Sums over the photons within a ring, or a disc: of their mean flux and of its square, each times powers of d².
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
     count: u32,
@@ -141,19 +141,19 @@ impl Sums {
     }
 }
 
-/// Light around a place that counts there.
+/// The photons of an estimate.
 struct Gathered {
-    /// Its numbers, and the squares of its distances, sides of the cube.
+    /// Their numbers, and the squares of their distances, sides of the cube.
     near: Vec<(u32, f32)>,
-    /// The square of the radius of the disc in which it is, sides of the cube.
+    /// The square of the radius of the disc in which they are, sides of the cube.
     square: f64,
-    /// What makes an irradiance of a flux, times 1 − d²/r².
+    /// Irradiance over flux, but for the weight 1 − d²/r².
     factor: f64,
     /// Standard error of the irradiance over the irradiance.
     error: f64,
 }
 
-/// A disc over which light is gathered.
+/// A disc over which photons are gathered.
 #[derive(Clone, Copy, Debug)]
 struct Disc {
     /// The square of its radius, in sides of the cube.
@@ -165,7 +165,7 @@ struct Disc {
 }
 
 impl PhotonMap {
-    /// Sorts what was caught.
+    /// Sorts photons by their places.
     pub(super) fn new(photons: &[Photon], lanes: usize) -> PhotonMap {
         let positions: Vec<DVec3> = photons.iter().map(|c| c.position).collect();
         let (points, order) = SortedPoints::new(&positions);
@@ -194,10 +194,10 @@ impl PhotonMap {
             + size_of_val(&self.wavelength_sets[..])
     }
 
-    /// Visits the light that arrives around a place, as if it arrived at it.
+    /// Visits the photons around a place, as if they arrived at it.
     ///
-    /// - Returns the standard error of the irradiance by all of it, over the irradiance: what chance does as light
-    ///   paths arrive or not; 0 without light.
+    /// - Returns the standard error of the irradiance by all of them, over the irradiance: as if photons arrived
+    ///   independently; 0 without photons.
     pub(super) fn each(
         &self,
         gather_point: &GatherPoint,
@@ -222,9 +222,9 @@ impl PhotonMap {
         error
     }
 
-    /// The irradiance around a place, W/m²: by light that took narrow turns only, and by light that took broad ones
-    /// among them; and the standard error, as [`PhotonMap::each`] has it. Wherever it comes from and whatever its
-    /// wavelength set is.
+    /// The irradiance around a place, W/m²: by photons that were scattered narrowly only, and by photons that were
+    /// scattered broadly, too; and the standard error, as [`PhotonMap::each`] has it. Photons of all directions and
+    /// wavelength sets count.
     pub(super) fn irradiance(
         &self,
         gather_point: &GatherPoint,
@@ -249,7 +249,7 @@ impl PhotonMap {
         &self.flux[number * self.lanes..(number + 1) * self.lanes]
     }
 
-    /// What counts around a place.
+    /// The photons that count around a place.
     fn gathered(&self, gather_point: &GatherPoint, gather_context: &GatherContext<'_>) -> Option<Gathered> {
         let most = match gather_context.detail {
             GatherDetail::Fine => self.most,
@@ -282,10 +282,10 @@ impl PhotonMap {
         Some(Gathered { near, square, factor: FRAC_2_PI / (area * part), error })
     }
 
-    /// Leaves out light that arrived behind something that stands on the surface, as seen from the place; tells what
-    /// stands there.
+    /// Leaves out photons that arrived behind something that stands on the surface, as seen from the place; returns
+    /// what stands there.
     ///
-    /// All ways along the surface lie in one plane: walls are cut with it, and then stand in the way as segments.
+    /// All lines along the surface lie in one plane: walls are cut with it, and then occlude as segments.
     fn keep_visible(
         &self,
         near: &mut Vec<(u32, f32)>,
@@ -327,7 +327,7 @@ impl PhotonMap {
         walls
     }
 
-    /// The disc that tells most.
+    /// The best disc: the largest whose estimate agrees with those of all smaller ones.
     ///
     /// # Source
     /// Goldenshluger and Nemirovski 1997, intersection of confidence intervals; the weight is that of Epanechnikov

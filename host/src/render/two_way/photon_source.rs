@@ -1,27 +1,27 @@
-//! Lamps with what their light paths are aimed at.
+//! Lamps that emit photons, with their photon targets.
 
 use super::projection_map::ProjectionMap;
 
-/// A lamp with what it is aimed at.
+/// A lamp with its photon targets.
 #[derive(Clone, Debug)]
 pub(super) struct PhotonSource {
     /// An index into the sources.
     pub(super) source: usize,
     pub(super) targets: Vec<PhotonTarget>,
-    /// What is caught of its flux, W; none before some of it was.
+    /// Flux that its photons store, W; none before some were traced.
     pub(super) stored_flux: Option<f64>,
-    /// The name of its light in a database, less the pass; none without one.
+    /// The name of its photons in a database, less the pass; none without one.
     pub(super) name: Option<String>,
 }
 
-/// Ways from a lamp to a bounding sphere.
+/// A bounding sphere towards which a lamp emits photons.
 #[derive(Clone, Debug)]
 pub(super) struct PhotonTarget {
     pub(super) sphere: usize,
-    /// How probable it is that a way of the lamp goes there; all together are 1.
+    /// Probability that a photon of the lamp is sent there; all together are 1.
     pub(super) part: f64,
-    /// How many do.
+    /// How many photon paths are sent there.
     pub(super) count: u32,
-    /// Where it is best aimed at.
+    /// The cells of it that are worth photons.
     pub(super) map: ProjectionMap,
 }

@@ -1,10 +1,10 @@
-//! Caught light in a database: for every view of a scene, also in other runs, as long as what it depends on is the
+//! Photon maps in a database: for every view of a scene, also in other runs, as long as what they depend on is the
 //! same.
 //!
-//! A record holds the light of one lamp and pass. Its name is a hash of all that it depends on: geometry, materials,
-//! that lamp, and how light is followed; another lamp, the camera, the size of the picture and its samples are not in
-//! it. Ways are kept in whole blocks: where a lamp gets more ways or fewer than before, the blocks that are wanted are
-//! taken, and the others are followed. The picture is the same to the bit as without.
+//! A record holds the photons of one lamp and pass. Its name is a hash of all that they depend on: geometry, materials,
+//! that lamp, and how photons are traced; another lamp, the camera, the size of the picture and its samples are not in
+//! it. Paths are stored in whole blocks: where a lamp gets more paths or fewer than before, the blocks that are wanted
+//! are taken, and the others are traced. The picture is the same to the bit as without.
 
 use super::photon_source::PhotonSource;
 use super::photon_tracing::{FluxBalance, Photon};
@@ -23,23 +23,23 @@ use std::hash::Hasher;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Caught light that a database holds, bytes: beyond that, what belongs to other scenes gives way, and nothing is added
-/// if that is not enough.
+/// Photons that a database holds, bytes: beyond that, what belongs to other scenes gives way, and nothing is added if
+/// that is not enough.
 const MOST_BYTES: u64 = 4 << 30;
-/// Rises when light is followed in another way, so that records of before are not taken.
+/// Rises when photons are traced in another way, so that records of before are not taken.
 const FORM: u32 = 1;
-/// Marks light that took a broad turn; wavelength sets are fewer.
+/// Marks photons that were scattered broadly; wavelength sets are fewer.
 const HAD_BROAD: u8 = 0x80;
 
-/// Where caught light of a scene is kept.
+/// Where the photons of a scene are stored.
 #[derive(Clone, Debug)]
 pub struct PhotonStore {
     path: PathBuf,
     /// A hash of the scene without lamps.
     scene: u128,
-    /// Time after which light of an unfinished pass is kept.
+    /// Time after which photons of an unfinished pass are stored.
     pub(super) every: Duration,
-    /// Whether light of finished passes is kept, too.
+    /// Whether photons of finished passes are stored, too.
     pub(super) keeps_finished: bool,
 }
 
@@ -74,10 +74,10 @@ impl Sum {
 }
 
 impl PhotonStore {
-    /// A database for the light of a scene; it is made if there is none.
+    /// A database for the photons of a scene; it is made if there is none.
     ///
-    /// - `every`: light of a pass that takes longer is kept after each such time. `lasts`: whether light is kept when
-    ///   its pass is finished; otherwise the database serves only one who goes on with an interrupted pass.
+    /// - `every`: photons of a pass that takes longer are stored after each such time. `lasts`: whether photons are
+    ///   stored when their pass is finished; otherwise the database serves only to continue an interrupted pass.
     ///
     /// # Errors
     /// [`DatabaseError`] if the file is no database or cannot be written.
@@ -95,7 +95,7 @@ impl PhotonStore {
         for material in dark.objects.iter_mut().filter_map(|object| object.material.as_mut()) {
             material.emission = Color::grey(0.0);
         }
-        // What only pictures depend on, radiosity, and where caught light is looked for.
+        // What only pictures depend on, radiosity, and where photons are gathered.
         let Settings { image, geometry, light, photons, .. } = scene.settings;
         let PhotonSettings { count, radius, .. } = PhotonSettings::default();
         let LightSettings { samples, buffer, .. } = LightSettings::default();
@@ -117,9 +117,9 @@ impl PhotonStore {
         Ok(PhotonStore { path: path.into(), scene: sum.value(), every, keeps_finished: lasts })
     }
 
-    /// The name of the light of a lamp, less the pass.
+    /// The name of the photons of a lamp, less the pass.
     ///
-    /// - `pilot`: how many ways were followed first to each thing that it is aimed at.
+    /// - `pilot`: how many paths were traced first to each of its photon targets.
     pub(super) fn name(
         &self,
         world: &World<'_>,
@@ -144,19 +144,19 @@ impl PhotonStore {
         format!("{}-{:032x}", self.prefix(), sum.value())
     }
 
-    /// What the names of all light of the scene begin with.
+    /// The prefix of the names of all photons of the scene.
     fn prefix(&self) -> String {
         format!("{:08x}", self.scene as u32)
     }
 
-    /// Light of a lamp that was followed before, block by block; of more, the first blocks.
+    /// Photons of a lamp that are stored, block by block; of more, the first blocks.
     pub(super) fn load(&self, name: &str, lamp: usize, lanes: usize) -> HashMap<PathBatch, BatchResult> {
         let found = Store::open(&self.path).and_then(|store| store.find(RecordKind::Photons, name));
         let stored_photons = match found {
             Ok(Some(Record { content: RecordContent::Photons(stored_photons), .. })) => *stored_photons,
             Ok(_) => return HashMap::new(),
             Err(error) => {
-                tracing::warn!("caught light is not read: {error}");
+                tracing::warn!("the photon map is not read: {error}");
                 return HashMap::new();
             }
         };
@@ -166,7 +166,8 @@ impl PhotonStore {
             .collect()
     }
 
-    /// Keeps light of a lamp instead of what was kept of it; what cannot be kept is told of and else not missed.
+    /// Stores photons of a lamp instead of what was stored of it; what cannot be stored is reported and else not
+    /// missed.
     ///
     /// - `what`: the lamp and the pass in words.
     pub(super) fn save(&self, name: &str, what: String, lanes: usize, blocks: &HashMap<PathBatch, &BatchResult>) {
@@ -177,7 +178,7 @@ impl PhotonStore {
         let origin = Origin { what, source: "two-way ray tracing".into(), terms: String::new() };
         let record = Record { name: name.into(), origin, content };
         if let Err(error) = Store::open_to_write(&self.path).and_then(|store| self.add(&store, record)) {
-            tracing::warn!("caught light is not kept: {error}");
+            tracing::warn!("the photon map is not stored: {error}");
         }
     }
 

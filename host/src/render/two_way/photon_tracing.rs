@@ -1,4 +1,4 @@
-//! Light on its way from a lamp: through mirrors and glass to where it is caught.
+//! Traces photons from a lamp: through mirrors and glass to where they are stored.
 
 use super::projection_map::BoundingSphere;
 use super::smooth_surfaces::SmoothSurfaces;
@@ -12,21 +12,21 @@ use glam::DVec3;
 use serde::Serialize;
 use std::f64::consts::PI;
 
-/// Turns after which light is followed at least; the scene may ask for more.
+/// Scattering events after which a photon may be stopped, at the least; the scene may ask for more.
 pub(super) const LEAST_BOUNCES: u32 = 128;
-/// So many turns are followed whatever is left.
+/// So many scattering events are traced whatever flux is left.
 const CERTAIN_BOUNCES: u32 = 8;
-/// Of what has less left than this part, only some is followed, and then counts for more.
+/// Part of the flux of a photon below which Russian roulette decides (Arvo and Kirk 1990).
 const FAINT: f64 = 1.0 / 64.0;
-/// Of what was spread and has less left than this part of what is caught in the mean, only some is followed.
+/// Part of the mean flux of stored photons below which Russian roulette decides about what was scattered broadly.
 const FAINT_BROAD: f64 = 0.25;
-/// Parts in which light is spread, and one more.
+/// Photons into which broad scattering splits one, and one more.
 const MOST_PARTS: u32 = 17;
-/// How wide light is on its way, as a part of the diagonal of the scene: hardly more than a point, but a relief is
+/// Width of the ray cone of a photon, as a part of the diagonal of the scene: hardly more than a point, but a relief is
 /// tilted by heights side by side.
 const WIDTH: f64 = 1e-6;
 
-/// Light that was caught on a surface.
+/// A photon that is stored on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Photon {
     pub(super) position: DVec3,
@@ -36,9 +36,9 @@ pub(super) struct Photon {
     pub(super) flux: Channels,
     /// The side of a surface on which it arrived, as [`side_of`] numbers them.
     pub(super) side: u32,
-    /// Which wavelengths it carries.
+    /// Its wavelength set.
     pub(super) wavelength_set: u8,
-    /// Whether a broad turn was among those that it took.
+    /// Whether it was scattered broadly before.
     pub(super) had_broad: bool,
 }
 
@@ -49,10 +49,10 @@ pub(super) fn side_of(surface: u32, outside: bool) -> u32 {
 
 /// What became of the flux that was sent out, W: the mean over the wavelengths or bands.
 ///
-/// `sent`, `again` and `gained` together are all the others together.
+/// `sent`, `rescattered` and `gained` together are all the others together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct FluxBalance {
-    /// Ways that were followed.
+    /// Photon paths that were traced.
     #[serde(rename = "ways")]
     pub paths: u64,
     /// How many of them were taken from a database.
@@ -60,21 +60,21 @@ pub struct FluxBalance {
     pub stored_paths: u64,
     /// Sent out towards what mirrors or refracts.
     pub sent: f64,
-    /// Sent again by what spreads light.
+    /// Sent again by broad scattering.
     #[serde(rename = "again")]
     pub rescattered: f64,
-    /// Gained, or lost where negative, by chance: where one of several ways was followed instead of all.
+    /// Gained, or lost where negative, by chance: where one of several photons was traced instead of all.
     pub gained: f64,
-    /// Came to what spreads it without a mirror or glass on the way: light that goes straight.
+    /// Came to a broad lobe without a mirror or glass before: light that goes straight.
     pub straight: f64,
-    /// Caught on surfaces, behind mirrors and glass.
+    /// Stored on surfaces, behind mirrors and glass.
     #[serde(rename = "caught")]
     pub stored: f64,
     /// Absorbed by mirrors, in glass, and by lamps.
     pub absorbed: f64,
     /// Left the scene.
     pub escaped: f64,
-    /// Was not followed further after very many turns.
+    /// Was not traced further after very many scattering events.
     pub stopped: f64,
 }
 
@@ -85,7 +85,7 @@ impl FluxBalance {
         (self.sent + self.rescattered + self.gained - arrived).abs() / self.sent.max(f64::MIN_POSITIVE)
     }
 
-    /// The balance of ways with another flux.
+    /// The balance of paths with another flux.
     pub(super) fn scaled(&self, factor: f64) -> FluxBalance {
         FluxBalance {
             paths: self.paths,
@@ -105,13 +105,13 @@ impl FluxBalance {
 impl std::fmt::Display for FluxBalance {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let part = |watts: f64| 100.0 * watts / self.sent.max(f64::MIN_POSITIVE);
-        write!(f, "{} ways of light followed", self.paths)?;
+        write!(f, "{} photon paths traced", self.paths)?;
         if self.stored_paths > 0 {
-            write!(f, ", {} of them before", self.stored_paths)?;
+            write!(f, ", {} of them in other runs", self.stored_paths)?;
         }
         write!(
             f,
-            ": {:.5} W sent, {:.2} % again by what spreads it ({:+.2} % by chance); caught \
+            ": {:.5} W sent, {:.2} % again by broad scattering ({:+.2} % by chance); stored \
              {:.2} %, absorbed {:.2} %, escaped {:.2} %, straight {:.2} %, stopped {:.2} %; {:.1e} of it is missing",
             self.sent,
             part(self.rescattered),
@@ -145,31 +145,31 @@ impl std::ops::Add for FluxBalance {
     }
 }
 
-/// Choices on one way: each has its number.
+/// The random numbers of one photon path, by dimension.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PhotonSampler {
     sequence: SobolSequence,
     index: u32,
 }
 
-/// What a choice is for.
+/// What a random number is for.
 #[derive(Clone, Copy, Debug)]
 #[repr(u64)]
 pub(super) enum PhotonDimension {
-    /// Where light leaves the lamp.
+    /// Where the photon leaves the lamp.
     Start,
-    /// Where it goes.
+    /// The direction of its emission.
     Aim,
-    /// Which wavelengths it carries, and when.
+    /// Its wavelength set, and its time.
     Wavelengths,
-    /// Which lobe passes it on, and which lane is left where wavelengths part.
+    /// The lobe that scatters it, and the lane that is left where wavelengths separate.
     Choice,
-    /// In which direction, by a narrow lobe or a broad one.
+    /// The direction of scattering by a narrow lobe or a broad one.
     Direction,
     Spread,
-    /// Towards which bounding sphere a broad lobe sends it, if towards any.
+    /// The bounding sphere towards which a broad lobe sends it, if towards any.
     Aimed,
-    /// Whether it is followed further.
+    /// Russian roulette.
     Survival,
 }
 
@@ -183,7 +183,7 @@ impl PhotonSampler {
     }
 }
 
-/// Light that goes out.
+/// A photon as it leaves a lamp.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EmittedPhoton {
     pub(super) ray: Ray,
@@ -192,36 +192,36 @@ pub(super) struct EmittedPhoton {
     pub(super) time: f64,
 }
 
-/// Follows light and keeps account of it.
+/// Traces photons and keeps account of their flux.
 pub(super) struct PhotonTracer<'a> {
     pub(super) world: &'a World<'a>,
     pub(super) surfaces: &'a SmoothSurfaces,
     /// Around what mirrors or refracts.
     pub(super) spheres: &'a [BoundingSphere],
-    /// Most turns.
+    /// Most scattering events.
     pub(super) most_bounces: u32,
-    /// The flux of light as it is caught, in the mean, W: more than this is sent on in parts, and of less only some.
-    /// None if it is not known yet.
+    /// The mean flux of stored photons, W: broad scattering splits what has more, and Russian roulette thins out what
+    /// has less. None if it is not known yet.
     pub(super) typical_flux: Option<f64>,
-    /// Photon segments to be followed; none between ways.
+    /// Photon segments to be traced; none between paths.
     pub(super) waiting: Vec<PhotonSegment>,
     pub(super) photons: Vec<Photon>,
     pub(super) balance: FluxBalance,
 }
 
-/// What is known of light on its way.
+/// A segment of a photon's path.
 pub(super) struct PhotonSegment {
     ray: Ray,
     t_min: f64,
     flux: Channels,
     media: Media,
     lane: Option<usize>,
-    /// Tells its choices from those of others of the same way.
+    /// Distinguishes its random numbers from those of others of the same path.
     number: u32,
-    /// How many were before it, and how often a surface has sent it on other than straight.
+    /// How many segments were before it, and how often a surface has scattered it, other than straight.
     segments: u32,
     bounces: u32,
-    /// Whether the last of them was narrow, and whether any was broad.
+    /// Whether the last scattering was narrow, and whether any was broad.
     was_narrow: bool,
     had_broad: bool,
 }
@@ -232,7 +232,7 @@ impl PhotonTracer<'_> {
         flux.0[..lanes].iter().sum::<f64>() / lanes as f64
     }
 
-    /// Follows light to its end.
+    /// Traces a photon to its end.
     pub(super) fn trace(&mut self, start: &EmittedPhoton, sampler: &PhotonSampler) {
         let EmittedPhoton { ray, flux, wavelength_set, time } = *start;
         self.balance.paths += 1;
@@ -255,7 +255,7 @@ impl PhotonTracer<'_> {
         self.waiting.push(segment);
         while let Some(mut segment) = self.waiting.pop() {
             self.russian_roulette(&mut segment, first, sampler);
-            // Straight through panes it goes on as it was; a limit keeps even endless stacks of them from hanging.
+            // Straight through panes it continues unscattered; a limit keeps even endless stacks of them from hanging.
             if segment.bounces > self.most_bounces || segment.segments > self.most_bounces.saturating_mul(2) {
                 self.balance.stopped += self.watts(segment.flux);
                 continue;
@@ -288,7 +288,7 @@ impl PhotonTracer<'_> {
         }
     }
 
-    /// Ends a photon segment by chance where it is faint, or gives it what others have lost.
+    /// Russian roulette: ends a faint photon segment by chance, or gives it the flux that others have lost.
     fn russian_roulette(&mut self, segment: &mut PhotonSegment, first: f64, sampler: &PhotonSampler) {
         let faint = match segment.had_broad {
             true => (first * FAINT).max(FAINT_BROAD * self.typical_flux.unwrap_or(0.0)),
@@ -304,7 +304,7 @@ impl PhotonTracer<'_> {
         }
     }
 
-    /// Catches light on an element, and sends it on.
+    /// Stores a photon on an element, and scatters it.
     fn scatter(
         &mut self,
         segment: &PhotonSegment,
@@ -335,7 +335,7 @@ impl PhotonTracer<'_> {
             sampler,
         };
         let narrow = (bsdf.casts_caustics() || bsdf.is_passable()).then(|| self.scatter_narrow(&arrival)).flatten();
-        // What does not go on is absorbed, or caught. What is spread was caught, too, and is sent again.
+        // What is not scattered is absorbed, or stored. What was scattered broadly was stored, too, and is sent again.
         let (expected, narrow) = narrow.unwrap_or((0.0, None));
         match (segment.was_narrow, bsdf.stores_photons()) {
             (false, true) => self.balance.straight += incoming - expected,
@@ -349,12 +349,12 @@ impl PhotonTracer<'_> {
         }
     }
 
-    /// Where narrow lobes send light: the flux that is expected to go on, and one of the ways.
+    /// Scattering by narrow lobes: the flux that is expected to continue, and one of the photon segments.
     fn scatter_narrow(&self, arrival: &PhotonInteraction<'_>) -> Option<(f64, Option<PhotonSegment>)> {
         let PhotonInteraction { segment, interaction, wavelength_set, sampler, .. } = arrival;
         let bsdf = interaction.bsdf;
         let [choice, parting] = sampler.point(PhotonDimension::Choice, segment.number);
-        // Where wavelengths part, the one that is left is drawn as it is seen.
+        // Where wavelengths separate, the lane that is left is sampled in proportion to how much of it is seen.
         let alone = match segment.lane {
             None if interaction.disperses() => {
                 segment.flux.sample_lane(self.world.appearance.wavelengths.visibility(*wavelength_set), parting)
@@ -371,7 +371,7 @@ impl PhotonTracer<'_> {
         arrival.make_adjoint(&context, LobeSelection::Narrow, &mut drawn);
         let flux = segment.flux * flux_factor(&context, &drawn);
         let expected = match drawn.pdf {
-            // Its own weight is all that is known of a spread one.
+            // Of a lobe with a pdf, only the weight of the sample is known.
             Some(_) => self.watts(flux),
             None => bsdf
                 .specular_samples(&context)
@@ -385,7 +385,7 @@ impl PhotonTracer<'_> {
         Some((expected, Some(arrival.next_segment(&drawn, (flux, lane), segment.number.wrapping_mul(MOST_PARTS)))))
     }
 
-    /// Sends on what broad lobes spread: half of it to what mirrors or refracts, as far as it is known where that is.
+    /// Scatters by broad lobes: half of it towards what mirrors or refracts, as far as it is known where that is.
     fn scatter_broad(&mut self, arrival: &PhotonInteraction<'_>) {
         let PhotonInteraction { segment, interaction, frame, sampler, .. } = arrival;
         let bsdf = interaction.bsdf;
@@ -394,9 +394,9 @@ impl PhotonTracer<'_> {
         let plane = interaction.element.plane(true);
         let spheres = self.spheres;
         let angles = || spheres.iter().map(|sphere| sphere.solid_angle(from, plane));
-        // Through what spreads it behind itself, only the lobes know the way.
+        // If the lobes scatter through the surface, too, only they know the directions.
         let all: f64 = if bsdf.interior.is_none() { angles().sum() } else { 0.0 };
-        // Much light is sent in many parts, each of them about as much as others that are caught.
+        // A photon of much flux is split, each part about as much as other stored photons.
         let worth = 0.5 * self.watts(segment.flux) * (all / PI).min(1.0);
         let parts = match self.typical_flux {
             Some(typical) if !segment.had_broad => (worth / typical).clamp(1.0, f64::from(MOST_PARTS - 1)) as u32,
@@ -458,7 +458,7 @@ impl PhotonTracer<'_> {
     }
 }
 
-/// Light that came to an element.
+/// A photon that arrives at an element.
 struct PhotonInteraction<'a> {
     segment: &'a PhotonSegment,
     interaction: &'a SurfaceInteraction<'a>,
@@ -471,7 +471,7 @@ struct PhotonInteraction<'a> {
 }
 
 impl PhotonInteraction<'_> {
-    /// Whether a direction of a spread lobe is on the same side of the triangle and of its surface: what is not is
+    /// Whether a direction of a lobe with a pdf is on the same side of the triangle and of its surface: what is not is
     /// lost.
     fn is_sound(&self, drawn: &BsdfSample) -> bool {
         let above = drawn.light.z > 0.0;
@@ -479,8 +479,8 @@ impl PhotonInteraction<'_> {
         (self.frame.world(drawn.light).dot(plane) > 0.0) == above && drawn.weight.is_finite()
     }
 
-    /// Gives a direction of a spread lobe the weight with which light goes from here to there, where that is not the
-    /// same as from there to here.
+    /// Gives a BSDF sample of a lobe with a pdf the weight of the adjoint, with which light goes from here to there,
+    /// where that is not the same as from there to here (Veach 1997, chapter 5).
     fn make_adjoint(&self, context: &ShadingContext<'_>, selection: LobeSelection, drawn: &mut BsdfSample) {
         if let Some(pdf) = drawn.pdf.filter(|_| drawn.light.z > 0.0) {
             let back = ShadingContext { view: drawn.light, ..*context };
@@ -488,7 +488,7 @@ impl PhotonInteraction<'_> {
         }
     }
 
-    /// The photon segment that goes on by a narrow turn.
+    /// The photon segment that continues by narrow scattering.
     fn next_segment(&self, drawn: &BsdfSample, (flux, lane): (Channels, Option<usize>), number: u32) -> PhotonSegment {
         let PhotonInteraction { segment, interaction, frame, .. } = self;
         let segments = segment.segments + 1;
@@ -516,7 +516,7 @@ impl PhotonInteraction<'_> {
     }
 }
 
-/// The part of flux that goes on: radiance grows as it enters what is denser; flux does not.
+/// The part of flux that continues: radiance grows as it enters what is denser; flux does not.
 fn flux_factor(context: &ShadingContext<'_>, sample: &BsdfSample) -> Channels {
     if sample.light.z >= 0.0 || sample.is_straight {
         return sample.weight;

@@ -1,4 +1,5 @@
-//! Where light is sent so that it meets what mirrors or refracts: at bounding spheres around it.
+//! Photon targets: bounding spheres around what mirrors or refracts, and the projection maps of the cells that are
+//! worth photons.
 
 use crate::numeric::bounds::Bounds;
 use crate::numeric::sampling::{disk, sphere};
@@ -8,13 +9,13 @@ use std::f64::consts::{FRAC_PI_4, PI, TAU};
 
 /// Bounding spheres at the most.
 const MOST_BALLS: usize = 16;
-/// A bounding sphere of whose disc more than this part is empty is divided, if there may be more bounding spheres.
+/// A bounding sphere of whose disc more than this part is empty is divided, if there may be more of them.
 const LOOSE: f64 = 0.7;
 /// By how much bounding spheres are larger than they need be, so that rounding does not lose their rims.
 const WIDER: f64 = 1.0 + 1e-9;
 const BELOW_ONE: f64 = 1.0_f64.next_down();
 
-/// The density with which a direction or line is drawn, and the point of the square that gives it.
+/// The pdf of a direction or line, and the point of the square that gives it.
 pub(super) type DirectionPdf = (f64, [f64; 2]);
 
 /// A bounding sphere around something that mirrors or refracts.
@@ -60,7 +61,7 @@ impl BoundingSphere {
         }
     }
 
-    /// Whether a ray from a point in a direction, unit length, meets it; from inside, whether at all.
+    /// Whether a ray from a point in a direction, unit length, hits it; from inside, whether at all.
     pub(super) fn is_hit(&self, from: DVec3, direction: DVec3) -> bool {
         let offset = self.center - from;
         let Some(cap) = self.cap(offset) else { return true };
@@ -68,8 +69,8 @@ impl BoundingSphere {
         0.5 * (direction - offset.normalize()).length_squared() <= cap * WIDER
     }
 
-    /// The density of [`BoundingSphere::direction`], 1/sr, and the point of the square that gives a direction; none
-    /// beside the bounding sphere.
+    /// The pdf of [`BoundingSphere::direction`], 1/sr, and the point of the square that gives a direction; none beside
+    /// the bounding sphere.
     pub(super) fn pdf(&self, from: DVec3, direction: DVec3) -> Option<DirectionPdf> {
         let offset = self.center - from;
         let Some(cap) = self.cap(offset) else { return Some((0.5 / TAU, sphere_inverse(direction))) };
@@ -85,14 +86,14 @@ impl BoundingSphere {
         Some(((TAU * cap).recip(), place))
     }
 
-    /// A point on a line that goes in a direction and meets the bounding sphere, even in area across the direction.
+    /// A point on a line that goes in a direction and hits the bounding sphere, even in area across the direction.
     pub(super) fn line(&self, direction: DVec3, uniform: [f64; 2]) -> DVec3 {
         let (u, v) = direction.any_orthonormal_pair();
         let [x, y] = disk(uniform);
         self.center + (u * x + v * y) * self.radius
     }
 
-    /// The density of [`BoundingSphere::line`], one over an area, and the point of the square that gives a line; none
+    /// The pdf of [`BoundingSphere::line`], one over an area, and the point of the square that gives a line; none
     /// beside the bounding sphere.
     pub(super) fn line_pdf(&self, direction: DVec3, on: DVec3) -> Option<DirectionPdf> {
         let offset = on - self.center;
@@ -135,12 +136,12 @@ fn sphere_inverse(direction: DVec3) -> [f64; 2] {
     [0.5 * (1.0 - direction.z), turn - turn.floor()].map(|c| c.clamp(0.0, BELOW_ONE))
 }
 
-/// Which parts of what is aimed at are of use: a map of cells of the square, each of them wanted or not.
+/// A projection map: cells of the square of a photon target, each of them worth photons or not.
 ///
-/// Those that are not get little, but never nothing, so that what was overlooked still counts in the mean.
+/// Those that are not get few, but never none, so that what was overlooked still counts in the mean.
 ///
 /// # Source
-/// Jensen 2001, projection maps; found by following light instead of by projection.
+/// Jensen 2001, projection maps; found by tracing photons instead of by projection.
 #[derive(Clone, Debug)]
 pub(super) struct ProjectionMap {
     /// The part of all up to each row.
@@ -152,7 +153,7 @@ pub(super) struct ProjectionMap {
 impl ProjectionMap {
     /// Cells along each side.
     const SIDE: usize = 32;
-    /// How often what is not wanted is asked for, for each time that the same area is that is.
+    /// How often a cell that is not worth photons is sampled, for each time that one is that is.
     const UNWANTED: f64 = 0.03;
 
     /// Every cell alike.
@@ -160,7 +161,7 @@ impl ProjectionMap {
         ProjectionMap::of(&[true; ProjectionMap::SIDE * ProjectionMap::SIDE])
     }
 
-    /// - `used`: points of the square that were of use; cells beside theirs are wanted, too.
+    /// - `used`: points of the square that stored photons; cells beside theirs are worth photons, too.
     pub(super) fn around(used: &[[f64; 2]]) -> ProjectionMap {
         let mut wanted = [false; ProjectionMap::SIDE * ProjectionMap::SIDE];
         for place in used {
@@ -193,14 +194,14 @@ impl ProjectionMap {
         map
     }
 
-    /// A point of the square, more often where it is wanted.
+    /// A point of the square, more often in cells that are worth photons.
     pub(super) fn sample(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let (row, y) = within(&self.rows, y);
         let (column, x) = within(&self.columns[row * ProjectionMap::SIDE..(row + 1) * ProjectionMap::SIDE], x);
         [(column as f64 + x) / ProjectionMap::SIDE as f64, (row as f64 + y) / ProjectionMap::SIDE as f64]
     }
 
-    /// The density of [`ProjectionMap::sample`].
+    /// The pdf of [`ProjectionMap::sample`].
     pub(super) fn pdf(&self, place: [f64; 2]) -> f64 {
         let [column, row] = place.map(|c| (c * ProjectionMap::SIDE as f64) as usize);
         let part = |below: &[f64], i: usize| below[i] - if i == 0 { 0.0 } else { below[i - 1] };
@@ -295,7 +296,7 @@ mod tests {
     use crate::numeric::sequence::SobolSequence;
 
     #[test]
-    fn directions_and_lines_to_a_ball_are_even_and_all_of_them() {
+    fn directions_and_lines_to_a_sphere_are_even_and_all_of_them() {
         let sphere = BoundingSphere { center: DVec3::new(1.0, 2.0, 3.0), radius: 0.5 };
         let sequence = SobolSequence::new(2, 2);
         let from = DVec3::new(-1.0, 0.5, 2.0);
@@ -307,11 +308,11 @@ mod tests {
         for i in 0..4096 {
             let direction = sphere.direction(from, sequence.point(i, 1));
             assert!((direction.length() - 1.0).abs() < 1e-12);
-            let (pdf, place) = sphere.pdf(from, direction).expect("towards the ball");
+            let (pdf, place) = sphere.pdf(from, direction).expect("towards the sphere");
             assert!((pdf * solid_angle - 1.0).abs() < 1e-9);
             assert!((sphere.direction(from, place) - direction).length() < 1e-9);
             let on = sphere.line(direction, sequence.point(i, 2));
-            let (pdf, place) = sphere.line_pdf(direction, on).expect("through the ball");
+            let (pdf, place) = sphere.line_pdf(direction, on).expect("through the sphere");
             assert!((pdf * PI * 0.25 - 1.0).abs() < 1e-12);
             assert!((sphere.line(direction, place) - on).length() < 1e-9);
             let (pdf, place) = sphere.pdf(sphere.center, direction).expect("from inside");
@@ -326,7 +327,7 @@ mod tests {
         let map = ProjectionMap::around(&[[0.1, 0.2], [0.11, 0.99], [0.0, 0.0]]);
         let sequence = SobolSequence::new(3, 3);
         let count = 1 << 14;
-        // The mean of what is drawn over its density is the integral over the square.
+        // The mean of what is sampled over its pdf is the integral over the square.
         let drawn = || (0..count).map(|i| map.sample(sequence.point(i, 0)));
         let mean = |of: &dyn Fn([f64; 2]) -> f64| {
             drawn().map(|place| of(place) / map.pdf(place)).sum::<f64>() / f64::from(count)

@@ -1,8 +1,8 @@
 //! Smooth surfaces: which triangles continue each other, and the edges where they end.
 //!
-//! Light that was caught on one side of a smooth surface tells nothing of its other side or of another surface, however
-//! near. And where a surface ends there is less of it around a place than a disc: by how much tells an integral along
-//! the edges.
+//! A photon on one side of a smooth surface tells nothing of its other side or of another surface, however near. And
+//! where a surface ends, the visible part of a disc around a place is less than the disc: by how much tells an integral
+//! along the edges.
 
 use crate::mesh::Mesh;
 use crate::mesh::edges::EdgeTable;
@@ -80,8 +80,8 @@ impl SmoothSurfaces {
         self.of[triangle as usize]
     }
 
-    /// The borders of a surface within a distance of a place, as its plane shows them, the place in the middle, in units of
-    /// the distance.
+    /// The borders of a surface within a distance of a place, as its plane shows them, the place in the middle, in
+    /// units of the distance.
     ///
     /// - `axes`: of the plane. As seen from outside, turning from the first to the second is counter-clockwise.
     pub(super) fn around(&self, surface: u32, place: DVec3, [x, y]: [DVec3; 2], reach: f64) -> Vec<[DVec2; 2]> {
@@ -101,9 +101,9 @@ impl SmoothSurfaces {
 /// How much of a weighted disc is on the surface: 1 where no border is near.
 ///
 /// The weight falls with the distance d from the middle as 1 − d²/r²; of all of it (1 − d²/r²)² lies beyond d. A border
-/// that is seen under a small angle from the middle takes away what lies beyond it under this angle, or gives it back if
-/// the surface is on its other side, so that the sum over all borders is what is missing. Along a straight border at height
-/// h, d = h / cos φ, and the integral over φ is one of tangents.
+/// that is seen under a small angle from the middle takes away what lies beyond it under this angle, or gives it back
+/// if the surface is on its other side, so that the sum over all borders is what is missing. Along a straight border at
+/// height h, d = h / cos φ, and the integral over φ is one of tangents.
 ///
 /// # Source
 /// Ours: Green's theorem in polar coordinates.
@@ -112,7 +112,8 @@ pub(super) fn part_of_disc(borders: &[[DVec2; 2]], radius: f64) -> f64 {
     (1.0 - missing / std::f64::consts::TAU).clamp(LEAST_PART, 1.0)
 }
 
-/// The integral of (1 − d²/r²)² over the angles under which a segment is seen within a disc, signed by its turn.
+/// The integral of (1 − d²/r²)² over the angles under which a segment is seen within a disc, signed by its direction of
+/// rotation.
 pub(super) fn beyond([a, b]: [DVec2; 2], radius: f64) -> f64 {
     let way = b - a;
     let length = way.length();
