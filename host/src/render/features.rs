@@ -1,5 +1,5 @@
-//! What guides the denoising of a pixel, beside its tally: what its samples saw behind mirrors and glass, how far they are
-//! apart, and their first half.
+//! Features of a pixel for the denoiser, beside its tally: what its samples saw behind mirrors and glass, the variance
+//! of that, and their first half.
 
 use super::tally::{PixelSample, Tally};
 use serde::{Deserialize, Serialize};
@@ -15,7 +15,7 @@ pub struct PixelFeatures {
     pub albedo: [f32; 3],
     /// Sum of its squared length.
     pub albedo_squares: f32,
-    /// Sum of the normals of what is seen there, each times how much of its light comes to the eye.
+    /// Sum of the normals of what is seen there, each times the throughput.
     pub normal: [f32; 3],
     /// Sum of their squared lengths.
     pub normal_squares: f32,

@@ -14,7 +14,7 @@ pub struct Film {
     tallies: Vec<Tally>,
     /// Sums of each class of light; none unless they are asked for.
     classes: Vec<RadianceByClass>,
-    /// What guides a denoiser; none unless it is asked for.
+    /// Features for a denoiser; none unless they are asked for.
     features: Vec<PixelFeatures>,
     /// Whether the samples of a pixel come one by one, so that halves of them tell the error of all.
     in_turn: bool,
@@ -60,7 +60,7 @@ pub(super) struct FilmRow<'a> {
     pub(super) tallies: &'a mut [Tally],
     /// The sums of each class of light, if they are kept.
     classes: Option<&'a mut [RadianceByClass]>,
-    /// What guides a denoiser, if it is kept.
+    /// Features for a denoiser, if they are kept.
     features: Option<&'a mut [PixelFeatures]>,
 }
 
@@ -92,8 +92,8 @@ impl Film {
         Ok(film)
     }
 
-    /// A film without samples whose memory is not got yet, for one who writes all of it before reading any: to read first
-    /// makes the system give each page twice. Samples may be added in any order.
+    /// A film without samples whose memory is not got yet, for one who writes all of it before reading any: to read
+    /// first makes the system give each page twice. Samples may be added in any order.
     pub(super) fn untouched(width: u32, height: u32) -> Result<Film, PictureError> {
         let mut tallies = bytemuck::zeroed_vec(Picture::pixels_of(width, height)?);
         prefer_large_pages(&mut tallies);
@@ -117,7 +117,7 @@ impl Film {
 
     /// A film of pixels that are known; none if there are not as many as that.
     ///
-    /// - `guides`: of a denoiser, for each of them; none if they are not kept.
+    /// - `features`: for a denoiser, of each of them; none if they are not kept.
     pub(super) fn of_tallies(
         width: u32,
         height: u32,
@@ -136,7 +136,8 @@ impl Film {
         })
     }
 
-    /// How far adaptive sampling has come that goes on towards a target: where it stopped, if that was the target before.
+    /// How far adaptive sampling has come that continues towards a target: where it stopped, if that was the target
+    /// before.
     pub(super) fn adaptive(&self, target: Option<f64>) -> Option<AdaptiveSampling> {
         let target = target?;
         let before = self.adaptive.clone().filter(|before| before.target == target);
@@ -184,12 +185,12 @@ impl Film {
         &self.classes
     }
 
-    /// What guides a denoiser, pixel by pixel; none unless it is kept.
+    /// Features for a denoiser, pixel by pixel; none unless they are kept.
     pub fn features(&self) -> &[PixelFeatures] {
         &self.features
     }
 
-    /// What guides a denoiser, pixel by pixel; none unless it is kept.
+    /// Features for a denoiser, pixel by pixel; none unless they are kept.
     #[cfg(test)]
     pub(super) fn features_mut(&mut self) -> &mut [PixelFeatures] {
         &mut self.features
@@ -227,8 +228,8 @@ impl Film {
 
     /// Root of the mean variance of all pixels: about the RMSE of the luminance, as far as chance goes.
     ///
-    /// Of pixels that saw caught light of one pass only, its chance counts as if its ways were independent; they are evenly
-    /// spread, so that it is less by a factor of up to 3. Light that no sample found is in no error.
+    /// Of pixels that saw photons of one pass only, their chance counts as if photon paths were independent; they are
+    /// evenly spread, so that it is less by a factor of up to 3. Light that no sample found is in no error.
     pub fn standard_error(&self) -> f64 {
         let variance = |tally: &Tally| {
             let halves = if self.in_turn { tally.variance_of_halves() } else { None };

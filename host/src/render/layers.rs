@@ -34,9 +34,9 @@ fn seen(tally: &Tally, sum: f64) -> Option<f64> {
 
 impl Film {
     /// Writes an EXR file with layers: R, G, B and A; the distance Z of what is seen first, its normal, its object and
-    /// material, counted from 1; the number of samples, and the variance of the mean luminance; and the radiance of each
-    /// [`PathClass`] of light, if these were kept apart: together they are R, G and B, as long as these are not denoised; and
-    /// the albedo, if it guided a denoiser.
+    /// material, counted from 1; the number of samples, and the variance of the mean luminance; and the radiance of
+    /// each [`PathClass`] of light, if these were kept apart: together they are R, G and B, as long as these are not
+    /// denoised; and the albedo, if the film holds features.
     ///
     /// - `picture`: that of the film, denoised or not, for R, G, B and A.
     ///

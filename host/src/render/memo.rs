@@ -1,8 +1,8 @@
 //! Results of long computations in a file, so that who does the same once more gets them from there.
 //!
-//! Layout: eight bytes of name and version; a fingerprint of what is computed (u32); then records, each the length of its
-//! content (u64), a checksum of it (CRC-32, u32) and the content: results in the order in which they were asked for. Numbers
-//! are little-endian. A last record that is not whole, as after a crash, is written anew.
+//! Layout: eight bytes of name and version; a fingerprint of what is computed (u32); then records, each the length of
+//! its content (u64), a checksum of it (CRC-32, u32) and the content: results in the order in which they were asked
+//! for. Numbers are little-endian. A last record that is not whole, as after a crash, is written anew.
 
 use super::StateError;
 use crate::encoding::{Integers, decode, encode};
@@ -43,7 +43,7 @@ enum MemoState {
 }
 
 impl Memo {
-    /// Goes on with the results in a file, or begins one.
+    /// Continues with the results in a file, or begins one.
     ///
     /// - `fingerprint`: of all that the results depend on.
     ///

@@ -13,8 +13,8 @@ pub struct RenderOrder {
     pub height: u32,
     /// Samples in each pixel, 1 and more; one samples the centre. With a target or a budget, the most of them.
     pub samples: u32,
-    /// So many samples of a pixel share the footprint in which textures are filtered, 1 and more: as many as there are, or
-    /// are thought to become.
+    /// So many samples of a pixel share the footprint in which textures are filtered, 1 and more: as many as there are,
+    /// or are thought to become.
     pub footprints: u32,
     /// How samples around a pixel become one value.
     pub filter: Filter,
@@ -22,7 +22,7 @@ pub struct RenderOrder {
     pub target: Option<f64>,
     /// Seconds after which no sample is begun.
     pub seconds: Option<f64>,
-    /// Whether samples that meet nothing are black: a picture whose radiance is premultiplied by its coverage. The
+    /// Whether samples that hit nothing are black: a picture whose radiance is premultiplied by its coverage. The
     /// background behind glass and in mirrors stays.
     pub matte: bool,
     /// Whether the picture is denoised, by ray tracing; scan line has no noise.

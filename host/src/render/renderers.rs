@@ -13,13 +13,13 @@ use serde::Serialize;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// A way to render.
+/// A rendering technique.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Technique {
-    /// Ray tracing, with rays from the eye alone.
+    /// Ray tracing, with paths from the camera alone.
     RayTracing,
-    /// Ray tracing, with light that is followed from lamps first.
+    /// Ray tracing, with photons that are traced from lamps first.
     TwoWay,
     /// Scan line.
     ScanLine,
@@ -37,21 +37,21 @@ pub struct RendererRow {
     pub word: &'static str,
     /// What it is good for.
     pub help: &'static str,
-    /// Whether it adds samples to pixels one by one: errors, seconds, a state to go on with, single pixels and
+    /// Whether it adds samples to pixels one by one: errors, seconds, a state to continue with, single pixels and
     /// denoising can then be asked for.
     pub adds_samples: bool,
-    /// Whether it follows light from lamps, which can be kept.
+    /// Whether it traces photons from lamps, which can be stored.
     pub can_map_photons: bool,
-    /// Whether photons are its way to caustics, in every scene.
+    /// Whether it finds caustics by photons, in every scene.
     pub always_maps_photons: bool,
     /// Whether it finds the light that diffuse surfaces send each other in every scene, which takes long and can be
-    /// gone on with.
+    /// continued.
     pub solves_radiosity: bool,
     /// Whether studies of knobs know it.
     pub is_studied: bool,
     /// Sets what it needs of the settings of a scene.
     pub require: fn(&mut Settings),
-    /// Makes it ready for a scene.
+    /// Prepares it for a scene.
     prepare: for<'a> fn(&Task<'a>) -> Result<PreparedRenderer<'a>, RenderError>,
 }
 
@@ -74,7 +74,7 @@ pub const RENDERERS: [RendererRow; 4] = [
         technique: Technique::TwoWay,
         option: "two-way",
         word: "two-way",
-        help: "All light, with that of lamps followed through mirrors and glass first: caustics",
+        help: "All light, with photons traced from lamps through mirrors and glass first: caustics",
         adds_samples: true,
         can_map_photons: true,
         always_maps_photons: true,
@@ -129,7 +129,7 @@ pub struct Task<'a> {
     pub prepared: &'a Prepared,
     /// What of it is needed.
     pub plan: &'a Plan,
-    /// Where caught light is kept beyond the renderer; nowhere without one.
+    /// Where photons are stored beyond the renderer; nowhere without one.
     pub photon_store: Option<&'a PhotonStore>,
     /// Who watches what is found before the first picture, and may stop it: the light that surfaces send each other is
     /// then known coarsely.
@@ -188,7 +188,7 @@ impl Technique {
         RENDERERS.iter().find(|row| row.option == option).map(|row| row.technique)
     }
 
-    /// Makes it ready for a scene, on the threads of the pool in which it is called.
+    /// Prepares it for a scene, on the threads of the pool in which it is called.
     ///
     /// # Errors
     /// [`RenderError`], for a scene that has no octree, an impossible material, or light that grows without end.
@@ -215,7 +215,7 @@ pub fn ray_tracer_watched<'a>(
     let Task { prepared, plan, photon_store, watch } = *task;
     (watch.stage)("while building the octree");
     let world = World::new(prepared, plan)?;
-    (watch.stage)("while looking where light goes");
+    (watch.stage)("while allocating photon paths");
     let tracer = RayTracer::new(world, plan, photon_store);
     if !plan.needs(Stage::Radiosity) {
         return Ok((tracer, None));

@@ -19,7 +19,7 @@ pub struct Rendering {
     pub rays: RayCounts,
     /// How many spans were drawn; none by ray tracing.
     pub spans: SpanCounts,
-    /// What became of the light of lamps that was followed first, if any was.
+    /// What became of the flux of the photons that were traced first, if any were.
     pub flux_balance: Option<FluxBalance>,
     /// Wall-clock time, seconds.
     pub seconds: f64,
@@ -28,8 +28,8 @@ pub struct Rendering {
 }
 
 impl Rendering {
-    /// What a file tells of how the picture was made: source, renderer, samples, seed, exposure, tone, and error, if it is
-    /// known.
+    /// What a file tells of how the picture was made: source, renderer, samples, seed, exposure, tone, and error, if it
+    /// is known.
     ///
     /// - `source`: the name of the scene. `renderer`: its word.
     /// - `display`: how the picture is shown, exposed by `stops`.
@@ -65,13 +65,13 @@ impl Rendering {
 /// Rays by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct RayCounts {
-    /// From the eye.
+    /// From the camera.
     pub primary: u64,
     /// Towards lights.
     pub shadow: u64,
-    /// From surfaces that reflect or let through.
+    /// From surfaces that reflect or transmit.
     pub reflected: u64,
-    /// Rays towards lights that were not needed: the light buffer knew that nothing comes from there.
+    /// Shadow rays that were not needed: the light buffer knew that no light comes from there.
     pub spared: u64,
 }
 

@@ -1,8 +1,8 @@
-//! The state of a rendering in a file, so that an interrupted one goes on where it stopped.
+//! The state of a rendering in a file, so that an interrupted one continues where it stopped.
 //!
-//! Layout: eight bytes of name and version; a [`Head`]; the [`Tally`] of each pixel; in version 5, which is that of a film to
-//! be denoised, the [`PixelFeatures`] of each pixel; where adaptive sampling is in the middle of a pass, the goal of each pixel
-//! (u32); and a checksum of all before it (CRC-32, u32). Numbers are little-endian.
+//! Layout: eight bytes of name and version; a [`Head`]; the [`Tally`] of each pixel; in version 5, which is that of a
+//! film to be denoised, the [`PixelFeatures`] of each pixel; where adaptive sampling is in the middle of a pass, the
+//! goal of each pixel (u32); and a checksum of all before it (CRC-32, u32). Numbers are little-endian.
 
 use super::RenderOrder;
 use super::features::PixelFeatures;
@@ -23,8 +23,8 @@ use std::time::{Duration, Instant};
 /// Time between checkpoints at least, in times that writing one took.
 const LEAST_WORK: u32 = 10;
 
-/// When the next checkpoint is due after one that began at a time and is written now: where writing takes long, later, so
-/// that most of the time goes into the work.
+/// When the next checkpoint is due after one that began at a time and is written now: where writing takes long, later,
+/// so that most of the time goes into the work.
 pub(super) fn after(every: Duration, begin: Instant) -> Instant {
     let now = Instant::now();
     now + every.max((now - begin) * LEAST_WORK)
@@ -32,7 +32,7 @@ pub(super) fn after(every: Duration, begin: Instant) -> Instant {
 
 /// What such a file begins with; the version follows.
 const MAGIC: [u8; 7] = *b"PERISF\x00";
-/// The versions of films without and with guides of a denoiser.
+/// The versions of films without and with features for a denoiser.
 const WITHOUT_FEATURES: u8 = 4;
 const WITH_FEATURES: u8 = 5;
 
@@ -41,8 +41,8 @@ const PIECE: usize = 1 << 20;
 
 /// A scene and an order, as far as samples depend on them: where it is the same, samples can be added to others.
 ///
-/// It is the checksum of everything that was tessellated and of the scene's own words; the number of samples, the target
-/// and the time are not in it.
+/// It is the checksum of everything that was tessellated and of the scene's own words; the number of samples, the
+/// target and the time are not in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fingerprint {
     scene: u32,
@@ -334,7 +334,7 @@ mod tests {
         }
         film().write_state(&destination, own, 0).expect("written");
         let error = RenderState::read(destination.path(), &RenderOrder { denoise: true, ..order() }, own)
-            .expect_err("no guides");
+            .expect_err("no features");
         assert!(error.to_string().contains("--denoise"), "{error}");
     }
 

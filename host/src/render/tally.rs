@@ -8,22 +8,23 @@ use serde::{Deserialize, Serialize};
 /// Below this luminance errors count as if it was this, so that black pixels do not take all the samples.
 const LEAST_LUMINANCE: f64 = 0.05;
 
-/// So many samples of a pixel, one after the other, see the same caught light; for those after them it is caught anew.
+/// So many samples of a pixel, one after the other, share a photon map; for those after them photons are traced anew.
 pub(super) const SHARING: u32 = 8;
 
-/// Light by the ways on which it comes to the eye: each way is in one class.
+/// Light by the classes of its paths to the camera, as light path expressions (Heckbert 1990) tell them apart: each
+/// path is in one class.
 ///
-/// A turn of light is broad where it is spread about everywhere, as by Lambert's term, and narrow where it is passed on
-/// as a beam: by mirrors, glass and highlights.
+/// Scattering is broad where light is scattered about everywhere, as by Lambert's term (D), and narrow where it is
+/// concentrated: by mirrors, glass and highlights (S and G).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PathClass {
-    /// Of lamps and skies, straight or by narrow turns alone.
+    /// Of lamps and skies, straight or by narrow scattering alone.
     Emitted,
-    /// By one broad turn, straight from the lamp; narrow ones may follow.
+    /// By one broad scattering, straight from the lamp; narrow ones may follow.
     Direct,
-    /// By narrow turns first, and then one broad one; narrow ones may follow.
+    /// By narrow scattering first, and then one broad; narrow ones may follow.
     Caustic,
-    /// By several broad turns, and ambient light.
+    /// By several broad ones, and ambient light.
     Indirect,
 }
 
@@ -54,7 +55,7 @@ pub struct Tally {
     pub squares: f64,
     /// Samples.
     pub count: u32,
-    /// Sum of the weights of those that met an object.
+    /// Sum of the weights of those that hit an object.
     pub covered: f32,
     /// Sum of the distances of the elements that were seen first, scene units.
     pub distances: f64,
@@ -77,17 +78,17 @@ pub struct PixelSample {
     pub radiance: DVec3,
     /// How much it counts in its pixel by the reconstruction filter; 1 on average.
     pub weight: f64,
-    /// Whether it met anything.
+    /// Whether it hit anything.
     pub covered: bool,
     /// The first element that it saw: distance, normal, object and material.
     pub first: Option<(f64, DVec3, [u32; 2])>,
     /// The albedo that it saw, straight or by mirrors and smooth interfaces, as
     /// [`broad_bands`](crate::color::WavelengthSets::broad_bands) bands; 0 unless a denoiser needs it.
     pub albedo: DVec3,
-    /// The normals there, each times how much of the light comes to the eye; 0 unless a denoiser needs them.
+    /// The normals there, each times the throughput; 0 unless a denoiser needs them.
     pub normal: DVec3,
-    /// Standard error of its luminance by what it shares with the samples before and after it: light that was caught
-    /// for all of them.
+    /// Standard error of its luminance by what it shares with the samples before and after it: the photon map of all of
+    /// them.
     pub shared: f64,
 }
 
@@ -144,8 +145,8 @@ impl Tally {
         Pixel { radiance: self.mean().as_vec3().to_array(), coverage: self.coverage() as f32 }
     }
 
-    /// Variance of the mean luminance, as if samples and light paths were independent: evenly spread ones are better.
-    /// What some of them share is added: light that was caught once is wrong by the same for all of these.
+    /// Variance of the mean luminance, as if samples and photon paths were independent: evenly spread ones are better.
+    /// What some of them share is added: a photon map is wrong by the same for all of these.
     pub fn variance(&self) -> f64 {
         if self.count < 2 {
             return f64::INFINITY;

@@ -1,4 +1,4 @@
-//! Who watches a rendering: what is told while it goes on, and how it is stopped.
+//! Who watches a rendering: what is told while it works, and how it is stopped.
 
 use super::memo::Memo;
 use std::sync::atomic::{AtomicBool, Ordering};

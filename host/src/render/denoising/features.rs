@@ -1,4 +1,4 @@
-//! What guides the regression, of the samples of a film.
+//! Features for the regression, of the samples of a film.
 
 use super::super::features::PixelFeatures;
 use super::super::film::Film;
@@ -7,10 +7,11 @@ use super::plane::PixelPlane;
 use super::regression::{FEATURES, FeaturePlanes, MARGIN};
 use std::array::from_fn;
 
-/// The least ridge of what guides: the variance of its mean is the ridge otherwise, so that what is noisy explains less.
+/// The least ridge of the features: the variance of their means is the ridge otherwise, so that what is noisy explains
+/// less.
 const LEAST_RIDGE: f32 = 1e-5;
 
-/// What guides the regression.
+/// Planes of the features of a film.
 pub(super) fn feature_planes(film: &Film) -> FeaturePlanes {
     let size = [film.width() as usize, film.height() as usize];
     let (tallies, features) = (film.tallies(), film.features());

@@ -16,8 +16,8 @@ const VARIANCE_FAR: usize = 10;
 const VARIANCE_PARTS: [f32; 2] = [0.02, 2.0];
 /// For so many samples counts the mean variance of the pixels around one.
 const VARIANCE_PRIOR: f32 = 1.0;
-/// As an eye at the usual distance sees errors: standard deviation of what it sees as one, and of what the errors are told
-/// by, pixels.
+/// As an eye at the usual distance sees errors: standard deviation of what it sees as one, and of what the errors are
+/// told by, pixels.
 const SEEN: f32 = 0.7;
 const TOLD: f32 = 4.0;
 /// Errors count relative to the radiance, but that is at least this part of the mean, squared.
@@ -26,8 +26,8 @@ const DARK: f32 = 0.1;
 const QUIET: f32 = 1.0 / 512.0;
 
 /// A half of a pixel is an outlier if it is so many times as bright as the brightest of the other halves within
-/// [`OUTLIER_FAR`] pixels; it then counts as that. Halves of fewer than [`OUTLIER_SAMPLES`] samples tell no outliers from
-/// light that is rare.
+/// [`OUTLIER_FAR`] pixels; it then counts as that. Halves of fewer than [`OUTLIER_SAMPLES`] samples tell no outliers
+/// from light that is rare.
 const OUTLIER: f32 = 4.0;
 const OUTLIER_FAR: isize = 2;
 const OUTLIER_SAMPLES: f32 = 4.0;
@@ -51,7 +51,7 @@ pub(super) struct Halves {
 }
 
 impl Halves {
-    /// None of a film without light or guides, and of one whose mean leaves [`UNITS`].
+    /// None of a film without light or features, and of one whose mean leaves [`UNITS`].
     pub(super) fn of(film: &Film) -> Option<Halves> {
         let size = [film.width() as usize, film.height() as usize];
         let (tallies, features) = (film.tallies(), film.features());
@@ -143,8 +143,8 @@ impl Halves {
         from_fn(|band| share * one[band].of(pixel) + (1.0 - share) * two[band].of(pixel))
     }
 
-    /// The squared errors of a pixel relative to its radiance: as it is, and filtered. The latter is told by the difference
-    /// of each filtered half from the other half, less the noise of that; it may come out below 0.
+    /// The squared errors of a pixel relative to its radiance: as it is, and filtered. The latter is told by the
+    /// difference of each filtered half from the other half, less the noise of that; it may come out below 0.
     pub(super) fn errors(&self, filtered: &[RgbPlanes; 2], pixel: usize) -> [f32; 2] {
         let values = self.mixed(filtered, pixel);
         let [one, two] = filtered;

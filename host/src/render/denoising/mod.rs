@@ -1,17 +1,17 @@
 //! Denoising: a picture of few samples as it would about look with many.
 //!
-//! The samples of each pixel are two halves. Each half is filtered by weights that the other tells, so that weights know
-//! nothing of the noise that they weigh; see [`regression`]. What both halves then say against each other tells how far the
-//! filter is off, and where that is more than the noise, the noise is kept: of both, each pixel gets as much as makes the
-//! error least that is seen from a distance.
+//! The samples of each pixel are two halves. Each half is filtered by weights that the other tells, so that weights
+//! know nothing of the noise that they weigh; see [`regression`]. What both halves then say against each other tells
+//! how far the filter is off, and where that is more than the noise, the noise is kept: of both, each pixel gets as
+//! much as makes the error least that is seen from a distance.
 //!
 //! All of it follows the noise that the film knows: where there is none, nothing is computed, and where a trial in some
-//! windows gains nothing, nothing is filtered; see [`pilot`]. Time grows with the pixels that have noise, memory with all of
-//! them, neither with the samples.
+//! windows gains nothing, nothing is filtered; see [`pilot`]. Time grows with the pixels that have noise, memory with
+//! all of them, neither with the samples.
 //!
 //! # Source
-//! Rousselle, Knaus and Zwicker 2012 for halves and weights; Bitterli and others 2016 for the regression. The mixture with
-//! what is not filtered is ours, for the candidates of both.
+//! Rousselle, Knaus and Zwicker 2012 for halves and weights; Bitterli and others 2016 for the regression. The mixture
+//! with what is not filtered is ours, for the candidates of both.
 
 mod features;
 mod halves;
@@ -29,13 +29,13 @@ use pilot::Pilot;
 use rayon::prelude::*;
 use regression::filtered;
 
-/// Memory that denoising takes for each pixel of a picture, bytes, the guides of its film included.
+/// Memory that denoising takes for each pixel of a picture, bytes, the features of its film included.
 pub(super) const BYTES: u64 = 220;
 
 /// The picture of a film without most of its noise; none if it was cancelled.
 ///
-/// The film has to keep guides. A pixel of a single sample has it in both halves. A film without guides, and one that is so
-/// dark or bright on average that squares leave the range of numbers, stays as it is.
+/// The film has to hold features. A pixel of a single sample has it in both halves. A film without features, and one
+/// that is so dark or bright on average that squares leave the range of numbers, stays as it is.
 ///
 /// - `is_cancelled`: asked from time to time.
 ///

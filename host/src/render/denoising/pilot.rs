@@ -1,6 +1,6 @@
 //! The pilot of the denoiser: some windows of a picture, in which is tried whether to filter is worth its time.
 //!
-//! Where all noise comes from edges that samples meet by chance, filtering gains nothing.
+//! Where all noise comes from edges that samples hit by chance, filtering gains nothing.
 
 use super::super::film::Film;
 use super::halves::Halves;
@@ -15,11 +15,11 @@ const SPARSE: usize = 8;
 const PIXELS: usize = 1 << 17;
 /// Errors are compared in cells of so many pixels to each side.
 const CELL: usize = 16;
-/// To filter is worth its time up to this error, times the square root of the samples of a pixel, as a part of the error of
-/// what was not filtered: the more samples there are, the less of the time goes into filtering.
+/// To filter is worth its time up to this error, times the square root of the samples of a pixel, as a part of the
+/// error of what was not filtered: the more samples there are, the less of the time goes into filtering.
 ///
-/// Measured on eleven scenes of 4, 8 and 16 samples: where the eye (FLIP) finds a gain it is at most 0.14 times the root,
-/// and at least 0.18 where it finds none.
+/// Measured on eleven scenes of 4, 8 and 16 samples: where the eye (FLIP) finds a gain it is at most 0.14 times the
+/// root, and at least 0.18 where it finds none.
 const WORTH: f64 = 0.15;
 
 /// Which pixels are tried.
@@ -43,8 +43,8 @@ impl Pilot {
         Pilot { quiet: quiet.par_iter().enumerate().map(is_left_out).collect(), width, most }
     }
 
-    /// Whether the best mixture of what was filtered and what was not has an error that is small enough; so if no pixel was
-    /// tried.
+    /// Whether the best mixture of what was filtered and what was not has an error that is small enough; so if no pixel
+    /// was tried.
     ///
     /// - `filtered`: both halves, where [`Pilot::quiet`] is false.
     pub(super) fn is_worth(&self, halves: &Halves, filtered: &[RgbPlanes; 2]) -> bool {

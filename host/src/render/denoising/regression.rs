@@ -1,8 +1,8 @@
-//! The regression at the heart of the denoiser: each pixel by a plane through the colors around it, over what guides them.
+//! The regression at the heart of the denoiser: each pixel by a plane through the colors around it, over its features.
 //!
-//! How much a neighbor counts is found from another picture of the same scene with independent noise: how far the patches
-//! around both are apart beyond their noise. The plane lies over albedo, normal, logarithm of the distance and place: where
-//! these tell the colors apart, edges and gradients stay, however many neighbors count.
+//! How much a neighbor counts is found from another picture of the same scene with independent noise: how far the
+//! patches around both are apart beyond their noise. The plane lies over albedo, normal, logarithm of the distance and
+//! place: where these tell the colors apart, edges and gradients stay, however many neighbors count.
 
 use super::plane::{LANES, PixelPlane, square};
 use processes::widest::{self, Work};
@@ -12,7 +12,7 @@ use std::sync::LazyLock;
 
 /// How far neighbors are looked for, pixels to each side.
 const FAR: isize = 12;
-/// Up to here all neighbors are looked at, beyond one of [`SPARSE`], pixels.
+/// Up to here all neighbors are taken, beyond one of [`SPARSE`], pixels.
 const NEAR: isize = 3;
 const SPARSE: isize = 5;
 /// Half of a patch, without its middle, pixels.
@@ -26,24 +26,24 @@ const TILE_HEIGHT: usize = 32;
 /// How far patches may be apart, in their noise, so that one counts much for the other.
 ///
 /// # Source
-/// Rousselle, Knaus and Zwicker 2012, who take 0.45 for means; planes bear less: at 0.35 the errors to the eye (FLIP) are
-/// least at four samples a pixel.
+/// Rousselle, Knaus and Zwicker 2012, who take 0.45 for means; planes bear less: at 0.35 the errors to the eye (FLIP)
+/// are least at four samples a pixel.
 const BANDWIDTH: f32 = 0.35;
 /// What is added to variances, of pictures whose mean is 1.
 const LEAST_VARIANCE: f32 = 1e-8;
 /// A neighbor counts less if its variance is more than so many times the mean over the patch: it hit rare light.
 const MOST_VARIANCE: f32 = 8.0;
-/// Numbers that guide, beside the place.
+/// Features, beside the place.
 pub(super) const FEATURES: usize = 7;
 /// Which of the ridges each of them has.
 const RIDGE_OF: [usize; FEATURES] = [0, 0, 0, 1, 1, 1, 2];
 /// The unit of places, and their ridge in it.
 const PLACE_UNIT: f32 = 10.0;
 const PLACE_RIDGE: f32 = 0.1;
-/// Unknowns: a slope for each guide and both axes, and the value in the middle.
+/// Unknowns: a slope for each feature and both axes, and the value in the middle.
 const UNKNOWNS: usize = FEATURES + 3;
 
-/// The neighbors that are looked at, from row to row.
+/// The neighbors that are taken, from row to row.
 static NEIGHBORS: LazyLock<Vec<[isize; 2]>> = LazyLock::new(|| {
     let all = (-FAR..=FAR).flat_map(|y| (-FAR..=FAR).map(move |x| [x, y]));
     all.filter(|[x, y]| x.abs().max(y.abs()) <= NEAR || (x + 2 * y).rem_euclid(SPARSE) == 0).collect()
@@ -57,8 +57,8 @@ pub(super) struct NoisyPicture {
     pub(super) bands: RgbPlanes,
     /// The variance in each.
     pub(super) variances: RgbPlanes,
-    /// The greatest variance with which a neighbor of each pixel counts in full, and one over that of each pixel; as means
-    /// over the bands.
+    /// The greatest variance with which a neighbor of each pixel counts in full, and one over that of each pixel; as
+    /// means over the bands.
     reliable: [PixelPlane; 2],
 }
 
@@ -74,8 +74,8 @@ impl NoisyPicture {
     }
 }
 
-/// What guides: albedo in three bands, the normal along three axes, and the logarithm of the distance; and the ridge of each
-/// of the three, which is greater where it is noisy itself.
+/// Planes of the features: albedo in three bands, the normal along three axes, and the logarithm of the distance; and
+/// the ridge of each of the three, which is greater where it is noisy itself.
 pub(super) struct FeaturePlanes {
     pub(super) values: [PixelPlane; FEATURES],
     pub(super) ridges: [PixelPlane; 3],
@@ -231,8 +231,8 @@ impl Work for Filtering<'_> {
     }
 }
 
-/// How much a neighbor counts for each pixel of a tile: less the farther the patches around both are apart, beyond their
-/// noise.
+/// How much a neighbor counts for each pixel of a tile: less the farther the patches around both are apart, beyond
+/// their noise.
 ///
 /// # Source
 /// Rousselle, Knaus and Zwicker 2012, the dual-buffer non-local means.
@@ -404,9 +404,9 @@ fn fit(
 /// What the normal equations of some pixels in a row are summed up of.
 struct Regression<'a> {
     bands: [&'a [f32]; 3],
-    /// What guides.
+    /// The features.
     values: [&'a [f32]; FEATURES],
-    /// What guides in the middle.
+    /// The features in the middle.
     middle: [Lanes; FEATURES],
 }
 

@@ -207,7 +207,7 @@ fn one_bright_sample_leaves_no_trace_and_what_is_bright_in_both_halves_stays() {
 }
 
 #[test]
-fn edges_that_samples_meet_by_chance_are_left_and_noise_on_them_is_filtered() {
+fn edges_that_samples_hit_by_chance_are_left_and_noise_on_them_is_filtered() {
     // Discs: what a pixel at an edge is depends on where its samples lie, and no other pixel tells.
     let discs: Truth<'_> = &|x, y| {
         let far = |at: f64| at.rem_euclid(20.0) - 10.0;

@@ -27,7 +27,7 @@ pub(super) struct ElementCorner {
 }
 
 impl ElementCorner {
-    /// From where it sees what its elements see, and its unit normal.
+    /// A point from where it sees what its elements see, and its unit normal.
     pub(super) fn view(&self) -> [DVec3; 2] {
         let normal = self.normals.normalize_or_zero();
         let offset = self.middles / self.count - self.at;
@@ -103,8 +103,8 @@ impl ElementCorners {
         })
     }
 
-    /// Corners that lie on edges of larger elements, each with the ends of the edge or of a half of it in the middle of which
-    /// it is, and the length of that; the longest first, since those within depend on them.
+    /// Corners that lie on edges of larger elements, each with the ends of the edge or of a half of it in the middle of
+    /// which it is, and the length of that; the longest first, since those within depend on them.
     pub(super) fn hanging(&self, hierarchy: &Hierarchy, leaves: &[u32]) -> Vec<(f64, [u32; 3])> {
         let mut edges: Vec<(f64, [u32; 3])> = Vec::new();
         for ((leaf, numbers), like) in leaves.iter().zip(&self.of).zip(&self.like) {

@@ -1,4 +1,4 @@
-//! Light that comes to elements straight from lights.
+//! External light of elements: straight from lights, and by exitance from elsewhere.
 
 use super::hierarchy::{HierarchyNode, RadiosityPatch};
 use super::visibility::VisibilityTester;
@@ -9,8 +9,8 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 /// Exitance from elsewhere at a point of a side of a triangle, W/m², in lanes that are means over all wavelength sets:
-/// light that surfaces send beside what they reflect of lights and of each other, as what two-way ray tracing caught,
-/// times their reflectance.
+/// light that surfaces send beside what they reflect of lights and of each other, such as the photons that two-way ray
+/// tracing stores, times their reflectance.
 ///
 /// Told the triangle, whether it is its outer side, and the point. It is asked at points next to the corners of
 /// elements and to the middles of their edges, from many threads, and elements are divided where it is not linear
@@ -19,23 +19,24 @@ use serde::{Deserialize, Serialize};
 /// that other surfaces send back is in the irradiance of the solution; it itself is not.
 pub type Exitance<'a> = &'a (dyn Fn(u32, bool, DVec3) -> Channels + Sync);
 
-/// How much shorter a ray to a triangle that emits is, so that it does not meet it.
+/// Length of a shadow ray to a triangle that emits, over the distance, so that it does not hit the triangle.
 const SHORT: f64 = 1.0 - 1e-7;
-/// Points of a light with a size, and directions to a sky, that are asked for at the least.
+/// Light samples of a light with a size, and directions to a sky, at the least.
 const LEAST_SAMPLES: u32 = 16;
 const LEAST_OF_SKY: u32 = 64;
-/// Points of a light and directions to a sky for elements that are not divided: neighbours make up for chance in one.
+/// Light samples of a light, and directions to a sky, for elements that are not divided: neighbours make up for chance
+/// in one.
 const FEW_SAMPLES: u32 = 4;
 const FEW_OF_SKY: u32 = 16;
 
-/// More of them where some are hidden and some are not.
+/// Times as many where some are hidden and some are not.
 const MORE: u32 = 4;
 /// How far points are from the corners and edges of an element, as a part of the way to its middle: on an edge may lie
 /// another surface.
 const INWARDS: f64 = 1e-3;
 
-/// What comes from elsewhere than other elements to a point of an element, W/m². In spectra, lanes are means over all
-/// wavelength sets.
+/// External light at a point of an element: what comes from elsewhere than other elements, W/m². In spectra, lanes are
+/// means over all wavelength sets.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct ExternalLight {
     /// Irradiance straight from lights.
@@ -44,14 +45,14 @@ pub(super) struct ExternalLight {
     pub(super) extra: Channels,
 }
 
-/// What comes to the three corners of an element; of one that may be divided also to the middles of the edges from each
-/// to the next. Nothing for clusters.
+/// External light at the three corners of an element; of one that may be divided also at the middles of the edges from
+/// each to the next. Nothing for clusters.
 pub(super) type CornerLight = Box<[ExternalLight]>;
 
 /// Which of them are the corners of each quarter.
 const OF_QUARTERS: [[usize; 3]; 4] = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [4, 5, 3]];
 
-/// What is known at the corners of the parts into which a node is divided.
+/// External light at the corners of the parts into which a node is divided.
 ///
 /// - `sliver`: as [`HierarchyNode::sliver`] has it.
 pub(super) fn of_parts(around: &CornerLight, sliver: Option<usize>) -> Vec<Option<[ExternalLight; 3]>> {
@@ -65,14 +66,14 @@ pub(super) fn of_parts(around: &CornerLight, sliver: Option<usize>) -> Vec<Optio
     }
 }
 
-/// A sum of what is known at some places, times a weight.
+/// A weighted sum of the external light at some places.
 fn sum(of: &[ExternalLight], weight: f64) -> ExternalLight {
     let sum =
         |part: fn(&ExternalLight) -> Channels| of.iter().fold(Channels::ZERO, |sum, lit| sum + part(lit)) * weight;
     ExternalLight { direct: sum(|lit| lit.direct), extra: sum(|lit| lit.extra) }
 }
 
-/// By how much it is off in the middle of an edge if it is taken for linear, W/m² at the most.
+/// Error in the middle of an edge if external light is taken for linear, W/m² at the most.
 pub(super) fn bend(around: &CornerLight) -> f64 {
     let Some((corners, middles)) = around.split_at_checked(3) else { return 0.0 };
     let off = |(i, middle): (usize, &ExternalLight)| {
@@ -86,8 +87,8 @@ pub(super) fn bend(around: &CornerLight) -> f64 {
 }
 
 impl VisibilityTester<'_> {
-    /// What comes to an element, and its mean, which is exact for what is quadratic over an element that may be
-    /// divided, and for what is linear over a part of one. A small patch is asked in its middle only.
+    /// External light of an element, and its mean, which is exact for what is quadratic over an element that may be
+    /// divided, and for what is linear over a part of one. A small patch is sampled in its middle only.
     ///
     /// - `corners`: what is known already. `may_be_divided`: whether it is longer than the finest.
     pub(super) fn external_light(
@@ -143,9 +144,9 @@ impl VisibilityTester<'_> {
         self.light_by(place, shadows, ([LEAST_SAMPLES, LEAST_OF_SKY], 0))
     }
 
-    /// The irradiance at a point of an element, by few points of lights.
+    /// The irradiance at a point of an element, by few light samples.
     ///
-    /// - `turn`: which points, beside those of other turns.
+    /// - `turn`: which of several sets of samples.
     pub(super) fn light_roughly(&self, place: [DVec3; 2], shadows: bool, turn: u32) -> Channels {
         self.light_by(place, shadows, ([FEW_SAMPLES, FEW_OF_SKY], turn))
     }

@@ -1,9 +1,9 @@
-//! What hangs together.
+//! Disjoint sets (union-find): which patches see each other, and which sets of them are lit.
 
 /// So many are asked at once whether they are lit.
 const ASKED: usize = 1024;
 
-/// Sets of what is joined.
+/// Disjoint sets of numbers, by union-find (Tarjan 1975).
 pub(super) struct DisjointSets(Vec<u32>);
 
 impl DisjointSets {
@@ -26,7 +26,7 @@ impl DisjointSets {
         self.0[high as usize] = low;
     }
 
-    /// Whether each is joined to one that is lit.
+    /// Whether each is in a set with one that is lit.
     ///
     /// - `are_lit`: tells of some whether they are lit. It is asked no more than needs be.
     pub(super) fn joined_to_lit(&mut self, are_lit: impl Fn(&[u32]) -> Vec<bool>) -> Vec<bool> {

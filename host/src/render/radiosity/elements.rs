@@ -1,4 +1,4 @@
-//! Elements with what they reflect, and the light that comes to them.
+//! Elements with their reflectance and external light.
 
 use super::direct::{CornerLight, Exitance, ExternalLight, bend, of_parts};
 use super::hierarchy::{Hierarchy, HierarchyNode, RadiosityPatch, normal_and_area};
@@ -14,14 +14,14 @@ const MOST_ELEMENTS: usize = 2_000_000;
 /// Nodes with what is known of them.
 pub(super) struct Elements<'a> {
     pub(super) hierarchy: Hierarchy,
-    /// Of each node: the part of light that it reflects, the irradiance by lights, and that by other elements.
+    /// Of each node: its reflectance, the irradiance by lights, and that by other elements.
     pub(super) reflectance: Vec<Channels>,
     pub(super) direct: Vec<Channels>,
     pub(super) indirect: Vec<Channels>,
     /// Radiosity from elsewhere, and all that a node sends, W/m².
     pub(super) extra: Vec<Channels>,
     pub(super) sent: Vec<Channels>,
-    /// Light of lights and radiosity from elsewhere at places of each node.
+    /// External light at places of each node.
     pub(super) corner_light: Vec<CornerLight>,
     /// Elements are divided that are twice as long or longer.
     finest: f64,
@@ -38,7 +38,7 @@ struct Known {
 }
 
 impl<'a> Elements<'a> {
-    /// Finds the light of all patches.
+    /// Finds the external light of all patches.
     ///
     /// - `finest`: a length; elements are divided that are twice as long or longer.
     pub(super) fn new(
@@ -64,7 +64,7 @@ impl<'a> Elements<'a> {
         elements
     }
 
-    /// Divides leaves, each once, and finds the light of what comes of them.
+    /// Divides leaves, each once, and finds the external light of what comes of them.
     pub(super) fn divide(&mut self, visibility: &VisibilityTester<'_>, nodes: impl IntoIterator<Item = u32>) {
         let first = self.hierarchy.nodes.len();
         let mut known: Vec<Option<[ExternalLight; 3]>> = Vec::new();
@@ -85,7 +85,7 @@ impl<'a> Elements<'a> {
         node.longest_edge() >= 2.0 * self.finest
     }
 
-    /// Divides leaves over which light from elsewhere is farther from linear than a bound, and those that are larger than a
+    /// Divides leaves over which external light is farther from linear than a bound, and those that are larger than a
     /// length.
     pub(super) fn divide_where_light_varies(&mut self, visibility: &VisibilityTester<'_>, bound: f64, coarsest: f64) {
         let mut from = 0;

@@ -1,7 +1,7 @@
 //! What elements exchange, as a symmetric operator over the hierarchy: each link is one number for both directions.
 //!
-//! Light that a node sends is the mean over its leaves, and what it receives is spread evenly over them: with P the matrix
-//! that takes means and G that of the links, leaves exchange M = Pᵀ G P, symmetric whatever the links are.
+//! Light that a node sends is the mean over its leaves, and what it receives is spread evenly over them: with P the
+//! matrix that takes means and G that of the links, leaves exchange M = Pᵀ G P, symmetric whatever the links are.
 
 use super::hierarchy::{Hierarchy, HierarchyNode, NONE, Summable};
 use rayon::prelude::*;
@@ -18,7 +18,8 @@ const MOST_FACTOR: f64 = 4.0;
 /// A row of which light is lost is not made more than so many times what it is, and not less than one over it.
 const MOST_CHANGE: f64 = 2.0;
 
-/// A goal that a row can be brought to; no more than all comes from elsewhere, however much too great the row of a sliver is.
+/// A goal that a row can be brought to; no more than all comes from elsewhere, however much too great the row of a
+/// sliver is.
 fn within(goal: f64, row: f64, area: f64) -> f64 {
     goal.clamp(row / MOST_CHANGE, row * MOST_CHANGE).min(area)
 }
@@ -26,12 +27,12 @@ fn within(goal: f64, row: f64, area: f64) -> f64 {
 /// As many rays tell how much light is lost in a neighbourhood.
 const NEIGHBOURING_RAYS: u64 = 2048;
 
-/// What leaves see in directions that are as dense as their cosine.
+/// Leaf visibility: what leaves see in directions that are as dense as their cosine.
 #[derive(Clone, Debug)]
 pub(super) struct LeafVisibility {
-    /// In how many directions each looks.
+    /// How many directions are traced from each leaf.
     pub(super) directions: u32,
-    /// For each leaf, in which part of them it sees something that exchanges light.
+    /// For each leaf, the part of them in which it sees something that exchanges light.
     pub(super) seen_part: Vec<f64>,
     /// For each leaf, the part of all that it sees from its middle that exchanges light.
     pub(super) row: Vec<f64>,
@@ -134,10 +135,10 @@ impl<'a> Exchange<'a> {
 
     /// Makes the rows add up to what they should, and stay symmetric.
     ///
-    /// Each row and its column are multiplied by the root of what is missing, again and again. What remains in the end the
-    /// leaf exchanges with itself.
+    /// Each row and its column are multiplied by the root of what is missing, again and again. What remains in the end
+    /// the leaf exchanges with itself.
     ///
-    /// - `looks`: what leaves see; without it rows are made no greater than 1.
+    /// - `leaf_visibility`: what leaves see; without it rows are made no greater than 1.
     /// - Returns what leaves exchange with themselves, as a part of their areas.
     ///
     /// # Source

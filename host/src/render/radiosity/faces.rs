@@ -1,4 +1,4 @@
-//! Light over face clusters: that of several of them that hang together, the more of each the nearer it is, so that no
+//! Light over face clusters: that of several of them that are connected, the more of each the nearer it is, so that no
 //! outline of one is seen.
 
 use super::corners::ElementCorners;
@@ -31,7 +31,8 @@ struct Fine {
     of: Vec<u32>,
 }
 
-/// Adds what comes to the corners of triangles that are part of face clusters, and tells for each patch where to find it.
+/// Adds what comes to the corners of triangles that are part of face clusters, and tells for each patch where to find
+/// it.
 ///
 /// - `lit`: the face clusters to which light comes, with what comes to each of them.
 /// - `values`: what comes to the corners of elements; where such a corner is one of a triangle, it has that value.
@@ -102,8 +103,8 @@ pub(super) fn spread(
     corners
 }
 
-/// Light at a place by what is known around it: as if it was linear there, the more by what is nearer. No more and no less
-/// than anything around. None if nothing is near.
+/// Light at a place by what is known around it: as if it was linear there, the more by what is nearer. No more and no
+/// less than anything around. None if nothing is near.
 ///
 /// # Source
 /// Lancaster and Salkauskas 1981, moving least squares; with a damped gradient.
@@ -159,7 +160,7 @@ mod tests {
             let exact = field(at);
             assert!((found[0].0[0] - exact[0].0[0]).abs() < 0.05 && (found[1].0[7] - 1.0).abs() < 1e-12, "{found:?}");
         }
-        // At the rim it does not go on rising.
+        // At the rim it does not continue to rise.
         let rim = linear(DVec3::new(4.0, -4.0, 0.0), DVec3::Z, 3.0, &near).expect("near");
         assert!(rim[0].max() <= 12.0, "{rim:?}");
         // What faces away, or is far, tells nothing.

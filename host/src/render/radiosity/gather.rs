@@ -1,10 +1,11 @@
-//! The light of other elements once more, as it differs from element to element below what a link is for.
+//! A final gathering pass: the light of other elements once more, as it differs from element to element below what a
+//! link is for.
 //!
-//! A link brings the same light to all of the node that receives it, which shows as steps; it takes light that differs over
-//! the node that sends it for the same, and knows only in the mean how much of it is hidden. Each corner of elements asks
-//! all links of what it is part of again, for the form factor from there and for what can be seen. Where no light is lost,
-//! what is missing is filled up: in hollows by the neighbourhood, which links pass over, elsewhere in proportion. Light that is
-//! the same everywhere stays so.
+//! A link brings the same light to all of the node that receives it, which shows as steps; it takes light that differs
+//! over the node that sends it for the same, and knows only in the mean how much of it is hidden. Each corner of
+//! elements asks all links of what it is part of again, for the form factor from there and for what can be seen. Where
+//! no light is lost, what is missing is filled up: in hollows by the neighbourhood, which links pass over, elsewhere in
+//! proportion. Light that is the same everywhere stays so.
 
 use super::corners::{ElementCorner, ElementCorners};
 use super::form_factor::{from_point, kernel};
@@ -15,7 +16,7 @@ use crate::color::Channels;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Light below this part of the error of a link is asked for with one ray instead of some.
+/// Light below this part of the error of a link is sampled with one ray instead of some.
 const LITTLE: f64 = 0.5;
 /// What parts of a node send may differ by so much of it.
 const UNEVEN: f64 = 0.1;
@@ -28,11 +29,11 @@ pub(super) struct Gatherer<'g, 'a> {
     pub(super) error: f64,
 }
 
-/// What each corner of leaves sees of nodes.
+/// Corner views: what each corner of leaves sees of nodes.
 pub(super) struct CornerViews<'g> {
     hierarchy: &'g Hierarchy,
     corners: &'g ElementCorners,
-    /// For each corner, the nodes and the part of all that is seen that each is.
+    /// For each corner, the nodes, and the part of all that it sees that each node is.
     of: Vec<Vec<(u32, f32)>>,
 }
 
@@ -175,7 +176,7 @@ impl<'g> Gatherer<'g, '_> {
     fn visible_part(&self, (number, from): (u32, [DVec3; 2]), other: u32, is_little: bool) -> f64 {
         let points = self.hierarchy.points(other);
         let (mut seen, mut all) = (0.0, 0.0);
-        // Which of them is asked differs from pair to pair.
+        // The point of it that is tested differs from pair to pair.
         let shift = (number.wrapping_mul(0x9e37_79b9) ^ other.wrapping_mul(0x85eb_ca6b)) as usize >> 7;
         for i in 0..POINTS {
             let to = points[(i + shift) % POINTS];

@@ -1,8 +1,8 @@
 //! The hierarchy that exchanges light: clusters of patches, patches, and elements into which patches are divided.
 //!
-//! A patch is one side of a triangle. Clusters hold patches that are near each other and face the same way, so that light
-//! that a cluster receives may be spread over all of it. A smooth piece of a surface of many small triangles is one
-//! element: a cluster that is not divided, a face cluster.
+//! A patch is one side of a triangle. Clusters hold patches that are near each other and face the same way, so that
+//! light that a cluster receives may be spread over all of it. A smooth piece of a surface of many small triangles is
+//! one element: a cluster that is not divided, a face cluster.
 
 use super::disjoint_sets::DisjointSets;
 use super::form_factor::Convex;
@@ -118,8 +118,8 @@ impl HierarchyNode {
         a.distance(b).max(b.distance(c)).max(c.distance(a))
     }
 
-    /// The longest edge, by the corner where it begins, if it is much longer than the triangle is wide: quarters would be
-    /// many and no less thin.
+    /// The longest edge, by the corner where it begins, if it is much longer than the triangle is wide: quarters would
+    /// be many and no less thin.
     pub(super) fn sliver(&self) -> Option<usize> {
         let length = |i: usize| self.corners[i].distance(self.corners[(i + 1) % 3]);
         let longest = (1..3).fold(0, |best, i| if length(i) > length(best) { i } else { best });
@@ -161,7 +161,8 @@ pub(super) struct Hierarchy {
     pub(super) patches: Vec<RadiosityPatch>,
     /// The node of each patch: its own, or that of the face cluster of which it is.
     pub(super) node_of: Vec<u32>,
-    /// The patches, those of a cluster side by side, and for each node that is not a part of a patch which of them it has.
+    /// The patches, those of a cluster side by side, and for each node that is not a part of a patch which of them it
+    /// has.
     order: Vec<u32>,
     ranges: Vec<Range<usize>>,
 }
@@ -303,8 +304,8 @@ impl Hierarchy {
         (0..self.nodes.len() as u32).filter(|node| is_leaf(&self.nodes[*node as usize])).collect()
     }
 
-    /// The leaf of a patch at a place of it, and the weights of the corners of the leaf there, or of those of the patch if
-    /// that is part of a face cluster.
+    /// The leaf of a patch at a place of it, and the weights of the corners of the leaf there, or of those of the patch
+    /// if that is part of a face cluster.
     pub(super) fn leaf_at(&self, patch: u32, mut weights: [f64; 3]) -> (u32, [f64; 3]) {
         let mut at = self.node_of[patch as usize];
         while !self.nodes[at as usize].is_leaf() {
@@ -365,7 +366,7 @@ fn halve(part: &mut [u32], own: &[HierarchyNode], scale: f64) {
     part.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)).then(a.cmp(b)));
 }
 
-/// Whether triangles hang together by their corners.
+/// Whether triangles are connected by their corners.
 fn is_one_piece(part: &[u32], own: &[HierarchyNode]) -> bool {
     let mut pieces = DisjointSets::new(part.len());
     let mut first: HashMap<[u64; 3], u32> = HashMap::default();
@@ -451,7 +452,7 @@ mod tests {
     }
 
     #[test]
-    fn triangles_make_one_element_if_they_are_small_alike_and_hang_together() {
+    fn triangles_make_one_element_if_they_are_small_alike_and_connected() {
         let at = |x: f64, y: f64| DVec3::new(x, y, 0.0);
         let row = |from: f64, gap: f64| {
             (0..4).flat_map(move |k| {

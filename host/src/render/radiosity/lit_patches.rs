@@ -1,4 +1,4 @@
-//! What sees what: which patches light can come to, and how much of what elements see exchanges light.
+//! Visibility between patches: which of them light can come to, and how much of what elements see exchanges light.
 
 use super::contact::Contacts;
 use super::direct::Exitance;
@@ -9,11 +9,12 @@ use super::hierarchy::{Hierarchy, HierarchyNode, NONE, RadiosityPatch};
 use super::visibility::{RayTarget, VisibilityTester};
 use glam::DVec3;
 
-/// Directions in which a patch looks around for each of its parts, and at the most.
+/// Directions that are traced from a patch for each of its parts, and at the most.
 const DIRECTIONS: u32 = 16;
 const MOST_DIRECTIONS: u32 = 1024;
 
-/// The hierarchy of the patches to which light comes, straight or from others; elements of them to which none comes are dark.
+/// The hierarchy of the patches to which light comes, straight or from others; elements of them to which none comes are
+/// dark.
 ///
 /// - `finest`, `coarsest`: lengths; patches are looked at in parts of the second.
 pub(super) fn lit_hierarchy(
@@ -129,7 +130,7 @@ fn element(hierarchy: &Hierarchy, patch_of: &[[u32; 2]], seen: RayTarget) -> u32
     }
 }
 
-/// What leaves see.
+/// Leaf visibility, by rays.
 ///
 /// - `row`: for each leaf, the part of all that it sees that exchanges light.
 pub(super) fn leaf_visibility(

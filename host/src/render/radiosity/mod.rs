@@ -1,19 +1,20 @@
 //! Radiosity: light that goes from diffuse surface to diffuse surface, any number of times, for all views at once.
 //!
-//! Each side of a triangle that reflects diffusely is a patch. Elements of patches end where surfaces touch, so that none is
-//! partly inside of something. They are divided where the light of lights bends, next to creases, and where what they
-//! exchange is not known well enough; above them, clusters exchange light that goes far. Form factors are those of
-//! unoccluded polygons, times what rays find to be visible; where no triangle is between two elements, no ray is asked. Rows
-//! of form factors are then balanced: where nothing escapes, they add up to 1, and stay symmetric. With the light that is
-//! then solved for, what comes to the corners of elements is found once more, each by its own view, a few times.
+//! Each side of a triangle that reflects diffusely is a patch. Elements of patches end where surfaces touch, so that
+//! none is partly inside of something. They are divided where external light is not linear, next to creases, and where
+//! the refinement oracle finds the error bound of their links too large (Hanrahan, Salzman and Aupperle 1991); above
+//! them, clusters exchange light that goes far. Form factors are those of unoccluded polygons, times what rays find to
+//! be visible; where no triangle is between two elements, no ray is traced. Rows of form factors are then balanced:
+//! where nothing escapes, they add up to 1, and stay symmetric. With the light that is then solved for, what comes to
+//! the corners of elements is gathered once more, each by its own view, a few times.
 //!
 //! What light cannot come to is left out first: rays join patches that see each other, and only what is joined to a lit
 //! one takes part. A closed dark room stays dark to the last bit.
 //!
-//! *Not modelled*: light that mirrors, glass and gloss pass on; what such surfaces take counts as escaped. Light through
-//! coloured surfaces loses as much in all bands as in the mean. What moves stands where it is in the middle of the time.
-//! Of spectra, eight bands are known, each 59 nm wide: within a band, light of other surfaces has the same strength
-//! everywhere.
+//! *Not modelled*: light that mirrors, glass and gloss pass on; what such surfaces take counts as escaped. Light
+//! through coloured surfaces loses as much in all bands as in the mean. What moves stands where it is in the middle of
+//! the time. Of spectra, eight bands are known, each 59 nm wide: within a band, light of other surfaces has the same
+//! strength everywhere.
 
 mod contact;
 mod corners;
@@ -56,9 +57,9 @@ use std::time::Instant;
 use surface::SurfaceLight;
 use visibility::VisibilityTester;
 
-/// How often links are looked at with the light that was found.
+/// How often links are assessed with the light that was found.
 const ROUNDS: u64 = 3;
-/// How often light is followed once more as each element sees it.
+/// How often light is gathered once more as each element sees it.
 const PASSES: usize = 4;
 /// The longest edge of an element, in shortest ones.
 const COARSEST: f64 = 16.0;
@@ -177,8 +178,8 @@ fn patches(prepared: &Prepared, plan: &Plan, visibility: &VisibilityTester<'_>) 
     (0..prepared.triangles.len() as u32).flat_map(sides).collect()
 }
 
-/// Solves for the light of the elements as they are, and keeps the books. Tells the irradiance of leaves by other elements,
-/// and the last time that at their corners.
+/// Solves for the light of the elements as they are, and keeps the books. Tells the irradiance of leaves by other
+/// elements, and the last time that at their corners.
 fn light(
     elements: &Elements<'_>,
     assessed: &[AssessedLink],

@@ -1,8 +1,9 @@
-//! Which nodes exchange light with which: links are divided until what each of them brings is known well enough.
+//! The refinement oracle: which nodes exchange light with which. Links are divided until the error bound of each is
+//! small enough.
 //!
 //! # Source
-//! Hanrahan, Salzman and Aupperle 1991, with the radiosity in the bound; clusters as Smits, Arvo and Greenberg 1994, here of
-//! patches that face alike as Willmott, Heckbert and Garland 1999.
+//! Hanrahan, Salzman and Aupperle 1991, with the radiosity in the bound; clusters as Smits, Arvo and Greenberg 1994,
+//! here of patches that face alike as Willmott, Heckbert and Garland 1999.
 
 use super::elements::Elements;
 use super::exchange::ExchangeLink;
@@ -14,25 +15,25 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Error of form factors, as a part of the smaller element.
 const FORM_FACTOR_ERROR: f64 = 1e-2;
-/// How uncertain the light is that a link brings, as a part of it: where rays disagree, where none comes through, where
-/// all do.
+/// Relative error bound of the visibility of a link, as a part of its light: where rays disagree, where none comes
+/// through, where all do.
 const PARTLY_VISIBLE: f64 = 0.5;
 const NOT_VISIBLE: f64 = 0.1;
 const ALL_VISIBLE: f64 = 0.02;
 /// Elements at the most; beyond them nothing is divided any more.
 const MOST_NODES: usize = 3_000_000;
 
-/// A link, and how uncertain it is.
+/// A link with its error bound.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct AssessedLink {
     pub(super) link: ExchangeLink,
-    /// The error of its exchange, square units.
+    /// The error bound of its exchange, square units.
     error_bound: f64,
-    /// Whether it is sure that nothing is between them.
+    /// Whether it is sure that nothing is between its nodes.
     pub(super) is_clear: bool,
 }
 
-/// What is to be done with two nodes.
+/// The next refinement step of two nodes.
 #[derive(Serialize, Deserialize)]
 enum RefinementStep {
     Keep(AssessedLink),
@@ -43,11 +44,11 @@ enum RefinementStep {
         other: u32,
         is_clear: bool,
     },
-    /// Looks at what is in a cluster.
+    /// Refines the links within a cluster.
     Within(u32),
 }
 
-/// How far links are divided.
+/// The bounds of refinement: how far links are divided.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RefinementBound {
     /// The greatest error of an irradiance by one link, W/m².
@@ -56,7 +57,7 @@ pub(super) struct RefinementBound {
     pub(super) finest: f64,
 }
 
-/// Goes through all links again and divides those that bring too uncertain light; at first, the root with itself.
+/// Assesses all links again and divides those whose error bound is too large; at first, the root with itself.
 pub(super) fn refine(
     visibility: &VisibilityTester<'_>,
     elements: &mut Elements<'_>,
@@ -112,7 +113,7 @@ pub(super) fn refine(
     }
 }
 
-/// The error of the irradiance of either by an error of their exchange, W/m².
+/// The error of the irradiance of either node by an error of their exchange, W/m².
 fn uncertainty(elements: &Elements<'_>, a: u32, b: u32, exchange: f64) -> f64 {
     let side =
         |to: u32, from: u32| elements.sent[from as usize].max() * exchange / elements.hierarchy.nodes[to as usize].area;
@@ -167,7 +168,7 @@ impl RefinementOracle<'_, '_> {
         let is_clear = is_clear || are_elements && self.visibility.is_clear(first, second);
         let rough = self.sampled(a, b).min(most);
         let variation = (0.5 * sizes / distance + first.spread + second.spread).min(1.0);
-        // Whatever rays tell, it is too uncertain.
+        // Whatever rays tell, visibility is less certain than that.
         let least = if is_clear { variation + ALL_VISIBLE } else { NOT_VISIBLE };
         if rough > 0.0
             && !self.is_fine(a, b, least * rough)
@@ -204,7 +205,7 @@ impl RefinementOracle<'_, '_> {
         })
     }
 
-    /// What a node exchanges with itself: an element nothing, a cluster little if it is nearly flat.
+    /// The refinement step of a node with itself: an element exchanges nothing, a cluster little if it is nearly flat.
     fn within(&self, at: u32, node: &HierarchyNode) -> RefinementStep {
         if !node.is_cluster() {
             return RefinementStep::Drop;
@@ -236,7 +237,7 @@ impl RefinementOracle<'_, '_> {
         if sum.is_finite() { sum * each } else { self.node(a).area.min(self.node(b).area) }
     }
 
-    /// The part of light that comes from points of one to points of the other.
+    /// The visible part of light from points of one to points of the other.
     ///
     /// - `is_clear`: nothing is between them. `roughly`: a few rays will do.
     fn visibility(&self, a: u32, b: u32, is_clear: bool, roughly: bool) -> f64 {
@@ -245,7 +246,7 @@ impl RefinementOracle<'_, '_> {
         }
         let hierarchy = &self.elements.hierarchy;
         let (from, to) = (hierarchy.points(a), hierarchy.points(b));
-        // Which go together differs from link to link.
+        // The pairs of points differ from link to link.
         let shift = (a.wrapping_mul(0x9e37_79b9) ^ b.wrapping_mul(0x85eb_ca6b)) as usize >> 7;
         let (mut seen, mut all) = (0.0, 0.0);
         let mut ask = |round: usize| {

@@ -71,7 +71,7 @@ impl SurfaceLight {
             let node = &hierarchy.nodes[*leaf as usize];
             corners[*leaf as usize] = *numbers;
             for ((number, corner), lit) in numbers.iter().zip(node.corners).zip(around[*leaf as usize].iter()) {
-                // The nearer the middle of an element, the more it tells.
+                // The nearer the middle of an element, the more it counts.
                 let weight = corner.distance(node.middle).recip();
                 let (sum, all) = &mut sums[*number as usize];
                 *sum += lit.direct * weight;

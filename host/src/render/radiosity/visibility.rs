@@ -1,4 +1,4 @@
-//! What elements see: whether something is between two points, and what is met in all directions.
+//! Visibility of elements by rays: whether something is between two points, and what is hit in all directions.
 
 use super::hierarchy::{HierarchyNode, RadiosityPatch};
 use crate::numeric::bounds::Bounds;
@@ -13,10 +13,10 @@ use serde::de::DeserializeOwned;
 
 /// Rounding errors, in units of the last place of the largest coordinate, that rays keep clear of.
 const CLEARANCE_ULPS: f64 = 64.0;
-/// Surfaces that let light straight through and that a ray is led through, at the most.
+/// Surfaces that let light straight through and that a ray passes, at the most.
 const MOST_PASSABLE: usize = 64;
 
-/// Asks rays.
+/// Tests visibility by rays.
 pub(super) struct VisibilityTester<'a> {
     pub(super) world: &'a World<'a>,
     pub(super) clearance: f64,
@@ -53,7 +53,7 @@ impl<'a> VisibilityTester<'a> {
         Memo::map(self.memo, items, f)
     }
 
-    /// The part of light that comes from one point to another, in the mean over what light carries, 0..=1.
+    /// Transmittance from one point to another, in the mean over the lanes, 0..=1.
     ///
     /// Each with its unit normal, on the sides that see each other.
     pub(super) fn transmittance(&self, [from, from_normal]: [DVec3; 2], [to, to_normal]: [DVec3; 2]) -> f64 {
@@ -67,7 +67,7 @@ impl<'a> VisibilityTester<'a> {
     /// Whether it is sure that nothing is between two elements.
     pub(super) fn is_clear(&self, one: &HierarchyNode, other: &HierarchyNode) -> bool {
         let prepared = self.world.appearance.prepared;
-        // What does not come out of the plane of an element is in no way to its front.
+        // What does not come out of the plane of an element does not occlude its front.
         let is_behind = |corners: &[DVec3; 3], node: &HierarchyNode| {
             corners.iter().all(|corner| (*corner - node.corners[0]).dot(node.normal) <= self.clearance)
         };
@@ -78,7 +78,7 @@ impl<'a> VisibilityTester<'a> {
         self.world.is_clear([one, other].map(|node| Bounds::of(node.corners)), counts)
     }
 
-    /// Looks from points of an element in directions that are as dense as their cosine.
+    /// Traces rays from points of an element in directions that are as dense as their cosine.
     ///
     /// - `place`: a point with its unit normal, told which one and a point of the unit square.
     /// - `number`: of the element: each has directions of its own. `count`: of directions.
@@ -97,7 +97,7 @@ impl<'a> VisibilityTester<'a> {
         (0..count).map(look).collect()
     }
 
-    /// What a ray meets first that light does not go straight through.
+    /// The first hit of a ray that light does not go straight through.
     fn trace(&self, ray: &Ray) -> RayTarget {
         let (world, prepared) = (self.world, self.world.appearance.prepared);
         let mut from = 0.0;

@@ -1,9 +1,9 @@
-//! What throws shadows: triangles that are turned towards a light, and the silhouettes where they end.
+//! Casters of shadows: triangles that are turned towards a light, and the silhouettes where they end.
 //!
-//! Every triangle counts, whichever side is lit: the volumes of all triangles, each turned towards the light, lie within one
-//! another, and how many of them a point is in is how many triangles stand between it and the light. Sides that turned
-//! neighbours share cancel out; of a closed body only its silhouette is left, counted twice. So open, badly oriented and
-//! branching meshes need no care of their own.
+//! Every triangle counts, whichever side is lit: the volumes of all triangles, each turned towards the light, lie
+//! within one another, and how many of them a point is in is how many triangles stand between it and the light. Sides
+//! that turned neighbours share cancel out; of a closed body only its silhouette is left, counted twice. So open, badly
+//! oriented and branching meshes need no care of their own.
 
 use super::lamp::LightPosition;
 use super::screen::Viewpoint;
@@ -45,8 +45,8 @@ pub(super) struct Casters<'a> {
 impl<'a> Casters<'a> {
     /// Finds what the triangles share.
     ///
-    /// - `groups`: for each triangle of the scene, 0 if it is opaque, or the number of what it lets through; empty if all are
-    ///   opaque.
+    /// - `groups`: for each triangle of the scene, 0 if it is opaque, or the number of what it lets through; empty if
+    ///   all are opaque.
     pub(super) fn new(prepared: &'a Prepared, triangles: Vec<u32>, groups: Vec<u8>) -> Casters<'a> {
         let mut casters = Casters { prepared, triangles, edges: Vec::new(), groups };
         casters.edges = casters.shared();
@@ -105,8 +105,8 @@ impl<'a> Casters<'a> {
         edges
     }
 
-    /// For each triangle of the scene, on which side of it a light is: 1 outside, -1 inside, 0 for one that is lit edge on
-    /// or throws no shadow.
+    /// For each triangle of the scene, on which side of it a light is: 1 outside, -1 inside, 0 for one that is lit edge
+    /// on or throws no shadow.
     pub(super) fn facing(&self, light: &LightPosition) -> Vec<i8> {
         let mut facing = vec![0i8; self.prepared.triangles.len()];
         let side = |triangle: usize| {
@@ -135,7 +135,7 @@ impl<'a> Casters<'a> {
         self.edges.par_iter().with_min_len(1 << 12).filter_map(silhouette).collect()
     }
 
-    /// The point from which samples are counted, if there is one: the eye itself, or far beyond everything.
+    /// The point from which samples are counted, if there is one: the viewpoint itself, or far beyond everything.
     pub(super) fn start(&self, light: &LightPosition, viewpoint: Viewpoint) -> Option<DVec3> {
         match (viewpoint, light) {
             (Viewpoint::At(eye), _) => Some(eye),

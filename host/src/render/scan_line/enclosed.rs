@@ -1,15 +1,15 @@
 //! Shadow volumes in the scene: in how many of them a point lies.
 //!
-//! From the point, a straight line goes along an axis to infinity. Each time it comes through the side of a volume or through
-//! a triangle, it leaves or enters; so many it was in. Which it meets is decided by one rule for each side in the plane
-//! across that axis, whose results cancel out between neighbours whatever the rounding, so that the sum is always a whole and
-//! consistent number.
+//! From the point, a straight line goes along an axis to infinity. Each time it comes through the side of a volume or
+//! through a triangle, it leaves or enters; so many it was in. One rule for each side, in the plane across that axis,
+//! decides which it intersects; the results cancel out between neighbours whatever the rounding, so that the sum is
+//! always a whole and consistent number.
 
 use super::casters::{Casters, Silhouette};
 use super::lamp::LightPosition;
 use glam::{DVec2, DVec3};
 
-/// Cells along each side of the grid in which what may be met is sorted, at the most.
+/// Cells along each side of the grid in which triangles and silhouettes are sorted, at the most.
 const MOST_CELLS: f64 = 192.0;
 
 /// The shadow volumes of one light.
@@ -25,7 +25,7 @@ pub(super) struct ShadowVolumes<'a> {
     grid: Option<Grid>,
 }
 
-/// What may be met from each square of the plane.
+/// Triangles and silhouettes that may be intersected from each square of the plane.
 struct Grid {
     least: DVec2,
     most: DVec2,
@@ -65,7 +65,7 @@ impl<'a> ShadowVolumes<'a> {
         enclosed
     }
 
-    /// Sorts what may be met, for many points.
+    /// Sorts triangles and silhouettes into the grid, for many points.
     pub(super) fn sorted(mut self) -> ShadowVolumes<'a> {
         self.grid = Some(self.sort());
         self
@@ -99,7 +99,8 @@ impl<'a> ShadowVolumes<'a> {
         counts
     }
 
-    /// How often the line up from a point leaves the volume of a triangle through the triangle: 1, 0, or -1 to enter it.
+    /// How often the line up from a point leaves the volume of a triangle through the triangle: 1, 0, or -1 to enter
+    /// it.
     fn through(&self, triangle: u32, point: DVec3) -> i32 {
         let facing = i32::from(self.facing[triangle as usize]);
         if facing == 0 {

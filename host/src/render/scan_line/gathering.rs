@@ -10,8 +10,8 @@ use crate::render::world::{BoundedRay, SurfaceElement};
 use crate::scene::footprint;
 use glam::DVec3;
 
-/// How far beyond a triangle its plane and its normals may stand for neighbours that are lit as one with it: the least weight
-/// of a corner.
+/// How far beyond a triangle its plane and its normals may stand for neighbours that are lit as one with it: the least
+/// weight of a corner.
 const BEYOND: f64 = -1.0;
 
 impl<'a> Shader<'a> {
@@ -111,7 +111,7 @@ impl<'a> Shader<'a> {
         let (triangle, least) = if surface.alone {
             (surface.triangle, 0.0)
         } else {
-            // The middle may lie in no triangle that a sample sees: the nearest then goes on up to there.
+            // The middle may lie in no triangle that a sample sees: the nearest is then extended up to there.
             let away = |at: [f64; 2]| (at[0] - middle[0]).powi(2) + (at[1] - middle[1]).powi(2);
             let places = parts.map(|part| (pixel.place(part.sample), part.triangle));
             (places.min_by(|(a, _), (b, _)| away(*a).total_cmp(&away(*b)))?.1, BEYOND)
@@ -131,7 +131,7 @@ impl<'a> Shader<'a> {
         Some(interactions.len() - 1)
     }
 
-    /// The element that a line of sight meets in a triangle.
+    /// The element that a line of sight hits in a triangle.
     ///
     /// - `least`: the least weight of a corner, 0 where the element must lie within the triangle.
     pub(super) fn element(&self, triangle: u32, bounded: &BoundedRay, least: f64) -> Option<PixelInteraction<'a>> {
@@ -173,7 +173,7 @@ impl<'a> Shader<'a> {
     }
 }
 
-/// Where a line of sight meets the plane of a triangle, moved towards its centroid until no weight is below the least.
+/// Where a line of sight hits the plane of a triangle, moved towards its centroid until no weight is below the least.
 fn plane_hit(ray: &Ray, [a, b, c]: [DVec3; 3], triangle: u32, least: f64) -> Option<Hit> {
     const THIRD: f64 = 1.0 / 3.0;
     let (across, up, from) = (b - a, c - a, ray.origin - a);

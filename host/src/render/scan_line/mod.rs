@@ -1,4 +1,4 @@
-//! Scan line: triangles to spans of samples, with Crow's shadow volumes.
+//! Scan line: triangles to spans of samples, with shadow volumes (Crow 1977).
 //!
 //! Each pixel has as many lines of samples as samples, one on each line and in each column of a grid (n rooks). A
 //! triangle covers spans of the lines; the nearest is seen, sample by sample, and passable ones before it are kept in
@@ -70,7 +70,7 @@ pub struct ScanLine<'a> {
     triangles: Vec<u32>,
     /// For each triangle of the scene, whether light goes straight through; empty if there is none such.
     passable: Vec<bool>,
-    /// What each group of casters lets through, set by set; the first is opaque.
+    /// Transmittance of each group of casters, by wavelength set; the first is opaque.
     group_transmittance: Vec<Vec<Channels>>,
     lamps: Vec<LampPoint>,
     /// None without a sky, and where a solution is shown.
@@ -93,7 +93,7 @@ struct PictureWork<'a> {
     rows: usize,
 }
 
-/// What one thread needs, band by band.
+/// Scratch of a thread, for one band after the other.
 #[derive(Default)]
 struct BandScratch<'a> {
     strip: Strip,
@@ -102,7 +102,7 @@ struct BandScratch<'a> {
 }
 
 impl<'a> ScanLine<'a> {
-    /// Makes materials and lights ready, and finds the neighbours of triangles that throw shadows.
+    /// Prepares materials and lights, and finds the neighbours of triangles that throw shadows.
     ///
     /// # Errors
     /// [`RenderError::Material`].
@@ -217,7 +217,7 @@ impl<'a> ScanLine<'a> {
         let size = [order.width, order.height];
         let eye = CameraRays::new(view, order.width, order.height, &prepared.bounds).ok_or(RenderError::View)?;
         let filter = prepared.settings.light.texture_filter.max(1e-3);
-        // Where the samples of a pixel are too many to be looked at together, the groups of them share it.
+        // Where the samples of a pixel are too many to be drawn together, the groups of them share it.
         let groups = (samples as usize).div_ceil(MOST_LINES) as f64;
         let eye = if self.plan.needs(Stage::Textures) { eye.with_cones(filter / groups.sqrt()) } else { eye };
         let screen = Screen::new(view, size, samples, &prepared.bounds).ok_or(RenderError::View)?;
@@ -319,7 +319,7 @@ fn passable_triangles(appearance: &Appearance<'_>, groups: &[u8]) -> Vec<bool> {
     if passable.contains(&true) { passable } else { Vec::new() }
 }
 
-/// For each triangle, which group of casters it is of, and what each group lets through; no groups where all are
+/// For each triangle, the group of casters that it is of, and the transmittance of each group; no groups where all are
 /// opaque.
 ///
 /// A polished body lets through what its two surfaces do at right angles, less what is absorbed on its mean chord.
@@ -369,7 +369,7 @@ fn groups(appearance: &Appearance<'_>) -> (Vec<u8>, Vec<Vec<Channels>>) {
     (groups, passing)
 }
 
-/// The mean length of straight ways through a closed object, four times its volume over its area.
+/// The mean length of straight lines through a closed object, four times its volume over its area.
 ///
 /// # Source
 /// Cauchy's formula for convex bodies.

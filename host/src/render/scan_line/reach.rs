@@ -1,4 +1,5 @@
-//! Where in the picture a shadow polygon can stand before something: what lies beyond all that is seen need not be drawn.
+//! Where in the picture a shadow polygon can stand before something: what lies beyond all that is seen need not be
+//! drawn.
 
 use super::screen::{Screen, Viewpoint, cut};
 use super::spans::PictureRegion;
@@ -35,10 +36,10 @@ impl<'a> Reach<'a> {
         Reach { screen, planes }
     }
 
-    /// The part of the picture in which the infinite strip behind a silhouette may stand before something; none if there is
-    /// no such part.
+    /// The part of the picture in which the infinite strip behind a silhouette may stand before something; none if
+    /// there is no such part.
     ///
-    /// - `away`: from each end the direction in which light goes on, of any length.
+    /// - `away`: from each end the direction in which light continues, of any length.
     pub(super) fn region(&self, ends: [DVec3; 2], away: [DVec3; 2]) -> Option<PictureRegion> {
         let mut polygon = [DVec4::ZERO; MOST_CORNERS];
         polygon[..4].copy_from_slice(&[

@@ -28,8 +28,8 @@ pub(super) struct ScreenPoint {
     pub(super) near: f64,
 }
 
-/// A point, or a direction, before the division: columns, lines, nearness, divisor, and how far it is behind the near and
-/// before the far plane.
+/// A point, or a direction, before the division: columns, lines, nearness, divisor, and how far it is behind the near
+/// and before the far plane.
 pub(super) type ClipCorner = [f64; 6];
 
 /// The eye, or the direction to it where lines of sight are parallel.
@@ -206,8 +206,8 @@ impl Screen {
     ///
     /// Two polygons that share a side keep sharing it, bit by bit.
     ///
-    /// - `depths`: 0 clips at the window and the eye only, 1 also what is before the near or behind the far plane, and -1
-    ///   what is behind the near plane.
+    /// - `depths`: 0 clips at the window and the eye only, 1 also what is before the near or behind the far plane, and
+    ///   -1 what is behind the near plane.
     pub(super) fn clip(&self, corners: &[ClipCorner], depths: i32) -> Option<ClippedPolygon> {
         let mut polygon = [[0.0; 6]; MOST_CORNERS];
         let mut count = corners.len();
@@ -243,7 +243,7 @@ impl Screen {
 
 /// The part of a convex polygon that is inside a plane, and how many corners it has; none if there is no room for them.
 ///
-/// - `heights`: of the corners, 0 and more inside. `between`: a point on the way from one corner to another.
+/// - `heights`: of the corners, 0 and more inside. `between`: a point between one corner and another.
 pub(super) fn cut<T: Copy + Default, const N: usize>(
     polygon: &[T],
     heights: &[f64; N],

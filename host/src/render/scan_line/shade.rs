@@ -1,4 +1,4 @@
-//! Light that comes from what samples see, once for each pixel and surface.
+//! Radiance of what samples see, once for each pixel and surface.
 
 use super::lamp::LampPoint;
 use super::shader::{LampContribution, PixelScratch, SampleSight, Shader};
@@ -194,8 +194,8 @@ impl<'a> Shader<'a> {
         })
     }
 
-    /// Whether two samples of a pixel, of which none glows, surely get the same light: they see the same surfaces in as many
-    /// volumes of shadow.
+    /// Whether two samples of a pixel, of which none sees light that is emitted, surely get the same light: they see
+    /// the same surfaces in as many shadow volumes.
     fn is_alike(&self, [a, b]: [&[SampleFragment]; 2], strip: &Strip, counts: &[Vec<i32>]) -> bool {
         let fragments = strip.fragments();
         let sees_sky = |parts: &[SampleFragment]| parts.last().is_none_or(|part| part.fragment >= strip.near.len());
@@ -210,7 +210,7 @@ impl<'a> Shader<'a> {
             })
     }
 
-    /// The light that comes to one sample.
+    /// The radiance of one sample.
     fn sample(
         &self,
         (surfaces, interactions, lit): (&[PixelSurface], &[PixelInteraction<'a>], &[LampContribution]),
@@ -221,7 +221,7 @@ impl<'a> Shader<'a> {
     ) -> Channels {
         let mut sum = Channels::ZERO;
         let mut transmittance = Channels::ONE;
-        // What the line of sight is in, and from where on.
+        // The medium of the line of sight, and where that begins.
         let mut inside: Option<(&InteriorMedium, f64)> = None;
         let SampleSight { before_light, .. } = samples[i];
         let at = pixel.place(i);
@@ -269,7 +269,7 @@ impl<'a> Shader<'a> {
         sum + transmittance * self.appearance.escaped_radiance(&ray, None, wavelength_set, |_, _| 1.0)
     }
 
-    /// In how many volumes of a group of casters a sample is.
+    /// Number of shadow volumes of a group of casters in which a sample is.
     fn volumes(
         &self,
         lit: &LampContribution,
@@ -287,7 +287,7 @@ impl<'a> Shader<'a> {
         lit.known.unwrap_or_else(|| self.volumes(lit, counts, sample, (triangle, 0)) > 0)
     }
 
-    /// The part of a lamp's light that comes to a sample.
+    /// Transmittance from a lamp to a sample.
     fn lamp_transmittance(
         &self,
         lit: &LampContribution,
@@ -309,8 +309,8 @@ impl<'a> Shader<'a> {
         part
     }
 
-    /// The nearest light that is a surface and no object in a line of sight: where, in lengths of its direction, and its
-    /// radiance.
+    /// The nearest light that is a surface and no object in a line of sight: where, in lengths of its direction, and
+    /// its radiance.
     fn nearest_light(&self, at: [f64; 2], wavelength_set: usize) -> Option<(f64, Channels)> {
         let BoundedRay { ray, t_min, t_max, .. } = self.eye.ray(at, [0.5; 2])?;
         self.appearance
@@ -318,7 +318,7 @@ impl<'a> Shader<'a> {
             .map(|(_, light_hit)| (light_hit.t, light_hit.radiance))
     }
 
-    /// How many of the parts of a line of sight are before the light that is met there; none if there is none, or something
+    /// How many of the parts of a line of sight are before the light that it hits; none if it hits none, or something
     /// opaque is before it.
     fn fragments_before_light<'p>(
         &self,
@@ -333,7 +333,7 @@ impl<'a> Shader<'a> {
         let ray = self.eye.ray(at, [0.5; 2])?.ray;
         let mut before = 0;
         for (part, interaction) in parts {
-            // What was found once for the pixel is met elsewhere by each sample: a lamp may be close before it.
+            // Each sample hits elsewhere what was found once for the pixel: a lamp may be close before it.
             let met = interaction.map_or(f64::INFINITY, |found| {
                 let SurfaceElement { position, face, .. } = found.element;
                 let met = (position - ray.origin).dot(face) / ray.direction.dot(face);
@@ -350,14 +350,14 @@ impl<'a> Shader<'a> {
         Some(before)
     }
 
-    /// Where an element is in the patterns of its material.
+    /// The footprint of an element in the textures of its material.
     fn footprint(&self, interaction: &PixelInteraction<'_>) -> TextureFootprint {
         self.appearance.prepared.texture_place(interaction.triangle, interaction.weights, interaction.sides)
     }
 
-    /// How an element is looked at.
+    /// The shading context of an element.
     ///
-    /// - `painted`: what the patterns of its material give.
+    /// - `texture_values`: of its material.
     fn context<'p>(
         &self,
         interaction: &PixelInteraction<'_>,
@@ -381,7 +381,7 @@ impl<'a> Shader<'a> {
         }
     }
 
-    /// What an element sends to the eye without lamps.
+    /// Radiance of an element towards the camera without lamps.
     fn unlit_radiance(&self, interaction: &PixelInteraction<'_>, context: &ShadingContext<'_>) -> Channels {
         let PixelInteraction { element, bsdf, .. } = interaction;
         let mut own = bsdf.emission.as_ref().map_or(Channels::ZERO, |emission| emission.of(context.wavelength_set));
@@ -405,14 +405,15 @@ impl<'a> Shader<'a> {
         own
     }
 
-    /// The lamps that an element answers, and how their shadows are counted; what they add is not yet known.
+    /// Contributions of the lamps that light an element, and how their shadows are counted; their radiance is not yet
+    /// known.
     fn lights(&self, interaction: &PixelInteraction<'a>) -> impl Iterator<Item = LampContribution> {
         let answers = self.solution.is_none() && interaction.bsdf.has_non_delta();
         let lamps = if answers { self.lamps } else { &[] };
         lamps.iter().enumerate().map(|(number, lamp)| self.between(number, lamp, interaction))
     }
 
-    /// What a lamp adds where nothing stands between.
+    /// The radiance that a lamp adds where nothing occludes it.
     fn lamp_radiance(
         &self,
         lit: &LampContribution,
@@ -459,7 +460,7 @@ fn straight_transmittance(interaction: &PixelInteraction<'_>, context: &ShadingC
     }
 }
 
-/// As an element of a transparent body is looked at from outside: what is not bent is never reflected totally.
+/// The shading context of an element of a transparent body from outside: what is not bent is never reflected totally.
 fn from_outside<'p>(interaction: &PixelInteraction<'_>, context: &ShadingContext<'p>) -> ShadingContext<'p> {
     match (interaction.element.outside, context.indices) {
         (true, _) => *context,

@@ -1,4 +1,4 @@
-//! What lights the samples of a picture, and what a thread keeps from pixel to pixel.
+//! Shading of the samples of a picture, and the scratch that a thread keeps from pixel to pixel.
 
 use super::casters::Casters;
 use super::enclosed::ShadowVolumes;
@@ -11,11 +11,11 @@ use crate::render::indirect::IndirectLight;
 use crate::render::world::{Appearance, CameraRays};
 use glam::DVec3;
 
-/// What a lamp adds.
+/// The contribution of a lamp.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LampContribution {
     pub(super) lamp: usize,
-    /// At the wavelengths that are looked at.
+    /// At the wavelengths of the shading context.
     pub(super) radiance: Channels,
     /// What to add to the count of the surface's own group: its light arrives on the other side.
     pub(super) turned: i32,
@@ -36,18 +36,18 @@ pub(super) struct SampleSight {
     pub(super) light: DVec3,
 }
 
-/// Lights the samples of a picture.
+/// Shades the samples of a picture.
 pub(super) struct Shader<'a> {
     pub(super) appearance: &'a Appearance<'a>,
     pub(super) casters: &'a Casters<'a>,
     pub(super) lamps: &'a [LampPoint],
     /// The light of skies, if there are some.
     pub(super) sky_light: Option<&'a SkyLight>,
-    /// The light of all surfaces, if lamps are not asked.
+    /// The light of all surfaces, if lamps are not sampled.
     pub(super) solution: Option<&'a dyn IndirectLight>,
     /// For each lamp with shadows.
     pub(super) enclosed: &'a [Option<ShadowVolumes<'a>>],
-    /// What each group of casters lets through, set by set.
+    /// Transmittance of each group of casters, by wavelength set.
     pub(super) group_transmittance: &'a [Vec<Channels>],
     pub(super) eye: &'a CameraRays,
     /// Whether every sample sees bands of light through nothing passable, and no light that is a surface.
@@ -62,15 +62,15 @@ pub(super) struct Shader<'a> {
     pub(super) background: Option<DVec3>,
 }
 
-/// What a thread keeps from pixel to pixel.
+/// Scratch that a thread keeps from pixel to pixel.
 #[derive(Default)]
 pub(super) struct PixelScratch<'a> {
     pub(super) surfaces: Vec<PixelSurface>,
     pub(super) parts: Vec<SampleFragment>,
-    /// Elements of the surfaces, and what their patterns are mixed of.
+    /// Elements of the surfaces, and their texture values.
     pub(super) interactions: Vec<PixelInteraction<'a>>,
     pub(super) mixtures: Vec<Option<TextureMixture<'a>>>,
-    /// What lamps add, surface by surface.
+    /// Contributions of lamps, surface by surface.
     pub(super) contributions: Vec<LampContribution>,
     /// For each sample of the pixel.
     pub(super) samples: Vec<SampleSight>,

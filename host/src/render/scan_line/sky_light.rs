@@ -1,4 +1,4 @@
-//! The light of skies on what is drawn without rays: from all around, and without shadows.
+//! Irradiance by skies for rendering without rays: from all around, and without shadows.
 
 use crate::color::Channels;
 use crate::illumination::light::LightSource;

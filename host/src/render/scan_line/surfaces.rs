@@ -78,8 +78,8 @@ pub(super) struct PixelSurface {
     pub(super) nearness: [f64; 2],
     /// Which of the elements that were found is its own.
     pub(super) interaction: Option<usize>,
-    /// At the wavelengths that are looked at, what it sends to the eye without lights, and the part of light that goes straight
-    /// through.
+    /// At the wavelengths of the shading context, its radiance towards the camera without lights, and the part of light
+    /// that goes straight through.
     pub(super) unlit_radiance: Channels,
     pub(super) transmittance: Channels,
     /// Which of the lights that were found are its own.
@@ -130,7 +130,7 @@ pub(super) struct PixelInteraction<'a> {
 }
 
 impl PixelInteraction<'_> {
-    /// Moves to where another line of sight meets a triangle, if it is the same, flat and without a texture.
+    /// Moves to where another line of sight hits a triangle, if it is the same, flat and without a texture.
     #[inline]
     pub(super) fn move_to(&mut self, triangle: u32, ray: &Ray) -> bool {
         if !self.is_flat || triangle != self.triangle {

@@ -104,8 +104,8 @@ fn scan(scene: &Scene, view: Option<View>, threads: usize) -> Rendering {
     scan.render(&view, &order(scene, threads), &Watch::NOBODY).expect("a picture")
 }
 
-/// Compares a scene with many rays: the mean difference, and the shares of pixels that differ by more than a tenth, and in
-/// what is known beside the light.
+/// Compares a scene with many rays: the mean difference, and the shares of pixels that differ by more than a tenth, and
+/// in what is known beside the light.
 fn compared(scene: &Scene, view: Option<View>) -> [f64; 3] {
     let prepared = Prepared::new(scene).unwrap_or_else(|e| panic!("{e}"));
     let view = view.unwrap_or(prepared.view());
@@ -352,7 +352,7 @@ fn mirrors_metals_and_glass_show_the_ambient_light() {
     let mirror = Classic { mirror: Paint::grey(0.8), ..diffuse(0.0) };
     let glass = Transparent { absorption: Color::grey(2.0), ..Transparent::clear(RefractiveIndex::Constant(1.5)) };
     let slab = Shape::from(Primitive::Box { size: DVec3::new(9.0, 9.0, 0.5) });
-    // Of each face of the glass 4 %, of the rest what a way of half a unit leaves.
+    // Of each face of the glass 4 %, of the rest what a length of half a unit leaves.
     let (reflected, left) = (0.04, 0.96 * (-1.0_f64).exp());
     for (shape, material, ambient, background) in [
         (Shape::Ground { size: 9.0 }, Material::from(mirror), 0.8, 0.0),
@@ -371,7 +371,8 @@ fn mirrors_metals_and_glass_show_the_ambient_light() {
 
 #[test]
 fn glass_that_bends_no_light_is_what_ray_tracing_sees() {
-    // A block and a ball in it that absorbs a little, and an eye that looks through both at the shadow of another block.
+    // A block and a ball in it that absorbs a little, and an eye that looks through both at the shadow of another
+    // block.
     let glass = |absorption: f64| {
         let (index, absorption) = (RefractiveIndex::Constant(1.0 + 1e-9), Color::grey(absorption));
         Material::from(MaterialKind::Transparent(Transparent { absorption, ..Transparent::clear(index) }))

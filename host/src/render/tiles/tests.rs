@@ -124,7 +124,7 @@ fn few_corners_are_had_by_coarser_colours_and_no_triangle_is_lost() {
 }
 
 #[test]
-fn what_glows_has_its_own_colour_and_is_not_divided() {
+fn what_emits_has_its_own_colour_and_is_not_divided() {
     let glow = Material::from(Classic { diffuse: Paint::grey(0.0), ..Classic::default() });
     let glow = Material { emission: Color::Bands(DVec3::new(0.5, 0.25, 2.0)), ..glow };
     let ball = solid(Primitive::Sphere { radius: 1.0 }, DVec3::ZERO, glow);
@@ -138,7 +138,7 @@ fn what_glows_has_its_own_colour_and_is_not_divided() {
 }
 
 #[test]
-fn lamps_glow_on_the_side_to_which_they_emit_and_are_black_behind() {
+fn lamps_are_bright_on_the_side_to_which_they_emit_and_black_behind() {
     let (_, tiling) = tiling(&room(), usize::MAX);
     let lamp = tiling.tiles.last().expect("tiles");
     let color = srgb::encoded(DVec3::new(1.0, 1.0, 0.25));

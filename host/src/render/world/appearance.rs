@@ -34,7 +34,7 @@ pub(in crate::render) struct Appearance<'a> {
     pub(in crate::render) exact: bool,
     /// Whether something lets light straight through.
     pub(in crate::render) has_passable: bool,
-    /// Whether light of lamps goes through polished bodies as if they did not bend it: where what they throw is left
+    /// Whether shadow rays go straight through polished bodies, as if these did not bend light: where caustics are left
     /// out.
     pub(in crate::render) has_clear_shadows: bool,
     /// The place of each object among all of them, the largest first; empty where less than two are transparent.
@@ -44,7 +44,7 @@ pub(in crate::render) struct Appearance<'a> {
 }
 
 impl<'a> Appearance<'a> {
-    /// Makes the materials and lights ready that the plan keeps.
+    /// Prepares the materials and lights that the plan keeps.
     ///
     /// # Errors
     /// [`RenderError::Material`].
@@ -99,7 +99,7 @@ impl<'a> Appearance<'a> {
                 }
                 let failed = |source| RenderError::Material { object: object.name.clone(), source };
                 let diffuse = match self.prepared.settings.light.interreflection {
-                    // What radiosity knows is not looked for again.
+                    // What radiosity solves is not estimated again.
                     _ if plan.needs(Stage::Radiosity) => Interreflection::Solved,
                     Interreflection::Followed => Interreflection::Followed,
                     _ => Interreflection::LeftOut,
@@ -157,7 +157,7 @@ impl<'a> Appearance<'a> {
     ///
     /// - `ray`: from where it is seen, of unit length.
     /// - `normal`: of the element from which it is seen, if there is one.
-    /// - `part`: how much a sky counts that would have drawn the direction with a density.
+    /// - `part`: MIS weight of a sky that would have sampled the direction with a pdf.
     pub(in crate::render) fn escaped_radiance(
         &self,
         ray: &Ray,

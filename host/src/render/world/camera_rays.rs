@@ -18,19 +18,19 @@ pub(in crate::render) struct BoundedRay {
     pub(in crate::render) ray: Ray,
     pub(in crate::render) t_min: f64,
     pub(in crate::render) t_max: f64,
-    /// What of the scene the ray stands for.
+    /// Its ray cone.
     pub(in crate::render) cone: RayCone,
 }
 
-/// How wide what a ray stands for is, scene units.
+/// The width of a ray cone, scene units.
 ///
 /// # Source
-/// Amanatides 1984, ray tracing with cones; as Akenine-Möller and others 2021 use it to filter textures.
+/// Amanatides 1984, ray tracing with cones; as Akenine-Möller and others 2021 use them to filter textures.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::render) struct RayCone {
     /// Where the ray begins.
     pub(in crate::render) width: f64,
-    /// How much wider it becomes in each unit of length.
+    /// Growth of the width in each unit of length.
     pub(in crate::render) growth: f64,
 }
 
@@ -48,7 +48,7 @@ pub(in crate::render) struct CameraRays {
     /// Clip coordinates a pixel to the right and a pixel down.
     step: [f64; 2],
     kind: Kind,
-    /// How much of a pixel a ray stands for, as a side of a square; 0 where no one asks for it.
+    /// Part of a pixel that a ray stands for, as a side of a square; 0 where no one asks for it.
     part: f64,
 }
 
@@ -170,7 +170,7 @@ fn line(rows: &[DVec4; 4], x: f64, y: f64, radius: f64, depth_clipping: bool) ->
     let direction = a.truncate().cross(b.truncate()).try_normalize()?;
     let w_slope = row_w.truncate().dot(direction);
     let (direction, origin) = if w_slope.abs() > f64::EPSILON * row_w.truncate().length() {
-        // Perspective: all lines meet where w = 0, and go on to where it is positive.
+        // Perspective: all lines meet where w = 0, and continue to where it is positive.
         let eye = plane_intersection(a, b, *row_w)?;
         (if w_slope > 0.0 { direction } else { -direction }, eye)
     } else {

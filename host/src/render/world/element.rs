@@ -77,12 +77,12 @@ impl SurfaceElement {
         Some(SurfaceElement { normal, leave_curved: bulge(position, corners, normals, weights) + clearance, ..flat })
     }
 
-    /// Moves it along the ray to the exact surface. Whether it did: not to where the ray is not yet, which begins `before`
-    /// the triangle.
+    /// Moves it along the ray to the exact surface. Whether it did: not to where the ray is not yet, which begins
+    /// `before` the triangle.
     ///
-    /// A surface before the triangle is on a part of the ray that meets nothing: rays may leave from there, and whatever
-    /// bulges as it does, does not stand in their way. Behind the triangle they would begin below other triangles, and
-    /// from there they go on from the triangle.
+    /// A surface before the triangle is on a part of the ray that hits nothing: rays may leave from there, and whatever
+    /// bulges as it does, does not occlude them. Behind the triangle they would begin below other triangles, and from
+    /// there they continue from the triangle.
     ///
     /// - `before`: in lengths of the direction.
     pub(in crate::render) fn settle(&mut self, direction: DVec3, before: f64, on: &SurfacePoint) -> bool {

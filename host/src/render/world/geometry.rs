@@ -1,4 +1,4 @@
-//! The geometry of a scene as rays meet it: triangles, in octrees of what stands still and of what moves.
+//! The geometry of a scene as rays intersect it: triangles, in octrees of what stands still and of what moves.
 
 use super::appearance::Appearance;
 use super::camera_rays::BoundedRay;
@@ -21,18 +21,18 @@ use std::time::Duration;
 /// Most surfaces of transparent bodies in one place.
 const MOST_COINCIDENT: usize = 8;
 
-/// A scene as rays meet it: geometry with its index, lights and materials. It knows no renderer.
+/// A scene as rays intersect it: geometry with its index, lights and materials. It knows no renderer.
 pub struct World<'a> {
     pub(in crate::render) appearance: Appearance<'a>,
     /// The octrees of what the plan keeps; empty if it needs none.
     acceleration: Arc<Acceleration>,
     light_buffer: Option<LightBuffer>,
-    /// Points that stand for what stands still, if rays are to meet these.
+    /// Points that stand for what stands still, if rays are to hit these.
     points: Option<SurfacePoints>,
 }
 
 impl<'a> World<'a> {
-    /// Builds the octree over the objects that the plan keeps, and makes materials and lights ready.
+    /// Builds the octree over the objects that the plan keeps, and prepares materials and lights.
     ///
     /// # Errors
     /// [`RenderError`].
@@ -55,7 +55,7 @@ impl<'a> World<'a> {
             let surface = |triangle: u32| {
                 let triangle = still.triangle(triangle);
                 let (object, material) = (prepared.object_of[triangle as usize], prepared.material_number(triangle));
-                // Rays go on straight through panes, and would meet them again.
+                // Rays continue straight through panes, and would hit them again.
                 (!appearance.bsdf(object, material).is_passable()).then_some((object, material))
             };
             SurfacePoints::new(&still.octree, settings.photons.point_depth.unwrap_or(0), surface, settings.image.seed)
@@ -91,7 +91,7 @@ impl<'a> World<'a> {
         !bsdf.is_passable() && bsdf.interior.is_none()
     }
 
-    /// What stands still between a point and a light, if the light buffer knows.
+    /// The occluders that stand still between a point and a light, if the light buffer knows them.
     pub(in crate::render) fn occluders(&self, from: DVec3, light: usize) -> Option<&Occluders> {
         self.light_buffer.as_ref()?.occluders(self.octree()?, from, light)
     }
@@ -119,12 +119,12 @@ impl<'a> World<'a> {
         first
     }
 
-    /// The first triangle that a ray meets in the middle of the time in which the shutter is open.
+    /// The first triangle that a ray hits in the middle of the time in which the shutter is open.
     pub(in crate::render) fn first_triangle(&self, ray: &Ray, t_min: f64) -> Option<(Hit, u32)> {
         self.first(ray, [t_min, f64::INFINITY], 0.0).map(|(hit, triangle, _)| (hit, triangle))
     }
 
-    /// What is first in sight at a time.
+    /// The first hit of a ray at a time.
     pub(in crate::render) fn intersect(&self, bounded: &BoundedRay, wavelength_set: usize, time: f64) -> RayHit<'_> {
         let first = self.first(&bounded.ray, [bounded.t_min, bounded.t_max], time);
         let t_max = first.map_or(bounded.t_max, |(hit, ..)| hit.t);
@@ -138,7 +138,7 @@ impl<'a> World<'a> {
         let contact =
             if moved.is_none() && self.points.is_none() { self.contact(&bounded.ray, triangle, &hit) } else { None };
         let (hit, triangle) = contact.unwrap_or((hit, triangle));
-        // What moves is looked at as if it stood still, up to the element.
+        // What moves is intersected as if it stood still, up to the element.
         let ray = match (moved, &self.points) {
             (Some(moved), _) => moved.still(&bounded.ray),
             (None, Some(_)) => through(&bounded.ray, &hit, prepared.corners(triangle)),
@@ -190,14 +190,14 @@ impl<'a> World<'a> {
         })
     }
 
-    /// Where a ray met an element: where a point stands for the surface, not all rays come to one place.
+    /// Where a ray hit an element: where a point stands for the surface, not all rays come to one place.
     pub(in crate::render) fn hit_position(&self, interaction: &SurfaceInteraction<'_>, ray: &Ray) -> DVec3 {
         self.points.as_ref().map_or(interaction.element.position, |_| ray.at(interaction.t))
     }
 
-    /// The light that an element emits, and how much of it counts.
+    /// The light that an element emits, and its MIS weight.
     ///
-    /// - `part`: how much a source counts that would have drawn the direction with a density.
+    /// - `part`: MIS weight of a source that would have sampled the direction with a pdf.
     pub(in crate::render) fn emitted(
         &self,
         interaction: &SurfaceInteraction<'_>,
@@ -214,8 +214,8 @@ impl<'a> World<'a> {
         Some((emission, index.map_or(1.0, counted)))
     }
 
-    /// What a transparent body stands on, where a ray meets its surface: something opaque in the same place, within the rounding
-    /// of its coordinates. There is no air between the two.
+    /// What a transparent body stands on, where a ray hits its surface: something opaque in the same place, within the
+    /// rounding of its coordinates. There is no air between the two.
     fn contact(&self, ray: &Ray, triangle: u32, hit: &Hit) -> Option<(Hit, u32)> {
         let prepared = self.appearance.prepared;
         let bsdf = |triangle: u32| {
@@ -239,9 +239,9 @@ impl<'a> World<'a> {
         contact
     }
 
-    /// Gives the other surfaces of transparent bodies that stand still and lie in the place of an element, within the rounding
-    /// of its coordinates: how far they are in lengths of the ray's direction, object, material, and whether the ray comes
-    /// from outside.
+    /// Gives the other surfaces of transparent bodies that stand still and lie in the place of an element, within the
+    /// rounding of its coordinates: how far they are in lengths of the ray's direction, object, material, and whether
+    /// the ray comes from outside.
     pub(in crate::render) fn coincident(
         &self,
         ray: &Ray,
@@ -273,7 +273,7 @@ impl<'a> World<'a> {
         });
     }
 
-    /// Whether any triangle that counts and stands still is met on the first length of a ray's direction.
+    /// Whether a ray hits any triangle that counts and stands still on the first length of its direction.
     pub(in crate::render) fn any_between(&self, ray: &Ray, counts: impl Fn(u32) -> bool) -> bool {
         self.still()
             .is_some_and(|still| still.octree.each_hit(ray, 0.0, 1.0, |hit| counts(still.triangle(hit.triangle))))
@@ -286,7 +286,7 @@ impl<'a> World<'a> {
         }
     }
 
-    /// Whether nothing that counts may be met on ways from one box to another; false where that is not known.
+    /// Whether nothing that counts may occlude lines from one box to another; false where that is not known.
     pub(in crate::render) fn is_clear(&self, [from, to]: [Bounds; 2], counts: impl Fn(u32) -> bool) -> bool {
         let is_clear =
             |still: &SceneOctree| still.octree.is_clear(from, to, |triangle| counts(still.triangle(triangle)));
@@ -300,11 +300,11 @@ impl<'a> World<'a> {
             && self.still().is_none_or(is_clear)
     }
 
-    /// The part of light that comes along a way: nothing, if something opaque is in between; and whether it went through
-    /// polished bodies that would have bent it.
+    /// Transmittance of a shadow ray: 0 if something opaque is in between; and whether it went through polished bodies
+    /// that would have bent it.
     ///
-    /// - `index`: of the light that the way leads to, which is not in the way of itself. `way`: what is known of what stands
-    ///   still there. `time`: when.
+    /// - `index`: of the light to which the ray leads, which does not occlude itself; with the occluders that stand
+    ///   still, if they are known. `time`: when.
     pub(in crate::render) fn transmittance(
         &self,
         ray: &Ray,
@@ -338,7 +338,7 @@ impl<'a> World<'a> {
         (part, is_cleared)
     }
 
-    /// The part of light that the triangles of an octree let pass, or those of a shaft.
+    /// Transmittance of the triangles of an octree, or of those of a shaft.
     fn octree_transmittance(
         &self,
         over: &SceneOctree,

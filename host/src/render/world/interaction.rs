@@ -1,4 +1,4 @@
-//! What a ray meets first: an element of an object, a surface that emits, or nothing.
+//! The first hit of a ray: a surface interaction, a surface that emits, or nothing.
 
 use super::element::SurfaceElement;
 use crate::color::Channels;
@@ -7,7 +7,7 @@ use crate::illumination::light::LightHit;
 use crate::illumination::optics::{Bsdf, TextureValues};
 use glam::DVec3;
 
-/// What a ray meets first.
+/// The first hit of a ray.
 pub(in crate::render) enum RayHit<'a> {
     /// An element of an object.
     Surface(SurfaceInteraction<'a>),
@@ -17,7 +17,7 @@ pub(in crate::render) enum RayHit<'a> {
     Nothing,
 }
 
-/// An element of an object.
+/// A surface interaction: an element of an object, with the material and its texture values there.
 pub(in crate::render) struct SurfaceInteraction<'a> {
     pub(in crate::render) element: SurfaceElement,
     pub(in crate::render) bsdf: &'a Bsdf,
@@ -31,26 +31,26 @@ pub(in crate::render) struct SurfaceInteraction<'a> {
     pub(in crate::render) depth: f64,
     /// From where the ray began to the exact surface, in lengths of the ray's direction.
     pub(in crate::render) t: f64,
-    /// What the patterns of the material give; nothing for a material that has none.
+    /// Texture values of the material; nothing for a material that has no textures.
     pub(super) texture_values: TextureValues,
     /// The direction in which its material is brushed.
     pub(in crate::render) brushed_along: Option<DVec3>,
 }
 
 impl SurfaceInteraction<'_> {
-    /// The frame in which its optics has directions.
+    /// The frame in which its BSDF has directions.
     pub(in crate::render) fn frame(&self) -> ShadingFrame {
         let normal = self.element.normal;
         self.brushed_along
             .map_or_else(|| ShadingFrame::from_normal(normal), |along| ShadingFrame::brushed(normal, along))
     }
 
-    /// Whether wavelengths part that go through it.
+    /// Whether wavelengths separate that are refracted into it.
     pub(in crate::render) fn disperses(&self) -> bool {
         self.bsdf.interior.as_ref().is_some_and(|interior| interior.disperses)
     }
 
-    /// What the patterns of the material give.
+    /// Texture values of the material.
     pub(in crate::render) fn texture_values(&self) -> &[Channels] {
         &self.texture_values
     }

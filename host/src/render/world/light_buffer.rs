@@ -1,14 +1,15 @@
-//! The light buffer: what stands between the voxels of the scene and its lights, for all views.
+//! The light buffer: occluders between the voxels of the scene and its lights, for all views.
 //!
-//! For each voxel and each light that is small beside it, or far away, it is found once, as soon as enough rays have asked,
-//! what rays from there to there may meet: a triangle that stands before all of the light, or a few triangles, which are then
-//! looked at without the rest of the scene. The answer is that of the octree to the bit: no picture depends on it.
+//! For each voxel and each light that is small beside it, or far away, it is found once, as soon as enough rays have
+//! asked, what rays from there to there may hit: a triangle that occludes all of the light, or a few triangles, which
+//! are then intersected without the rest of the scene. The answer is that of the octree to the bit: no picture depends
+//! on it.
 //!
-//! Large lights are left out: from most voxels they are partly hidden by more triangles than are soon looked at.
+//! Large lights are left out: from most voxels they are partly hidden by more triangles than are soon intersected.
 //!
 //! # Source
-//! Haines and Greenberg 1986, the light buffer: a shadow-testing accelerator, with voxels in the place of directions, so that
-//! lights may have a size.
+//! Haines and Greenberg 1986, the light buffer: a shadow-testing accelerator, with voxels in the place of directions,
+//! so that lights may have a size.
 
 use crate::illumination::light::{LightOrigin, LightSource};
 use crate::numeric::bounds::Bounds;
@@ -22,12 +23,12 @@ const VOXELS: usize = 128;
 const BRICK: usize = 8;
 /// Rays that ask before an answer is worth finding.
 const ASKED: u8 = 24;
-/// Triangles that are looked at one by one rather than in the octree.
+/// Triangles that are intersected one by one rather than in the octree.
 const FEW: usize = 24;
 /// Memory at the most, bytes.
 const MOST_BYTES: usize = 256 << 20;
 
-/// What stands between a voxel and a light.
+/// The occluders between a voxel and a light.
 #[derive(Debug)]
 pub(in crate::render) enum Occluders {
     /// Something opaque, before all of the light.
@@ -38,7 +39,7 @@ pub(in crate::render) enum Occluders {
     Many,
 }
 
-/// What is known of a way, and how many rays have asked.
+/// What is known of the lines between a voxel and a light, and how many rays have asked.
 #[derive(Default)]
 struct Entry {
     asked: AtomicU8,
@@ -52,7 +53,7 @@ struct BufferedLight {
     entry: usize,
 }
 
-/// The ways between voxels and lights.
+/// The occluders of all voxels and lights.
 pub(in crate::render) struct LightBuffer {
     /// Lowest corner, side of a voxel, and how many bricks along each axis.
     origin: DVec3,
@@ -99,7 +100,7 @@ impl LightBuffer {
         LightBuffer { origin, side, along, lights, entries, bricks, bytes: AtomicUsize::new(0), opaque }
     }
 
-    /// What stands between a point and a light, if that is known.
+    /// The occluders between a point and a light, if they are known.
     pub(in crate::render) fn occluders(&self, octree: &Octree, from: DVec3, light: usize) -> Option<&Occluders> {
         let place = self.lights[light].as_ref()?;
         let at = (from - self.origin) / self.side;
@@ -134,7 +135,7 @@ impl LightBuffer {
         Some(entry.occluders.get_or_init(|| self.find(octree, voxel, place)))
     }
 
-    /// Finds what stands between a voxel and a light.
+    /// Finds the occluders between a voxel and a light.
     fn find(&self, octree: &Octree, voxel: [usize; 3], light: &BufferedLight) -> Occluders {
         let low = self.origin + DVec3::from_array(voxel.map(|i| i as f64)) * self.side;
         let from = Bounds { min: low, max: low + DVec3::splat(self.side) };

@@ -1,4 +1,4 @@
-//! What a ray goes through: transparent bodies, some of them in one place.
+//! Media along a ray: transparent bodies, some of them in one place.
 
 use super::camera_rays::{BoundedRay, RayCone};
 use super::geometry::World;
@@ -8,7 +8,7 @@ use crate::illumination::optics::{InterfaceIndices, InteriorMedium};
 use crate::numeric::ray::Ray;
 use glam::DVec3;
 
-/// Most bodies in one place that a ray keeps in mind.
+/// Most bodies in one place that a ray keeps track of.
 const MOST: usize = 8;
 
 /// A transparent body: its object, and which of its materials.
@@ -30,8 +30,8 @@ impl MediumId {
 
 /// The transparent bodies that a ray is in.
 ///
-/// Where there are several, that of the greatest priority is there, and of several with the same the smallest: a bubble in
-/// water, and water in a glass into which it reaches a little.
+/// Where there are several, that of the greatest priority is there, and of several with the same the smallest: a bubble
+/// in water, and water in a glass into which it reaches a little.
 ///
 /// # Source
 /// Schmidt and Budge 2002, simple nested dielectrics in ray traced images.
@@ -41,14 +41,14 @@ pub(in crate::render) struct Media {
     count: usize,
 }
 
-/// What becomes of what a ray is in at an element.
+/// The medium interface at an element: what a ray is in before and behind it.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::render) struct MediumInterface {
     /// The body before it.
     before: Option<MediumId>,
     /// The body behind it.
     behind: Option<MediumId>,
-    /// What a ray is in that goes through.
+    /// The media of a ray that goes through.
     pub(in crate::render) media: Media,
     /// The last of the surfaces that lie in the same place, in lengths of the ray's direction.
     pub(in crate::render) last: f64,
@@ -61,7 +61,8 @@ pub(in crate::render) struct MediumInterface {
 impl Media {
     /// The bodies around a point in the middle of the time in which the shutter is open.
     ///
-    /// What two rays from there that go opposite ways leave without having come into it: one would also leave an open surface.
+    /// What two rays from there that go opposite ways leave without having come into it: one would also leave an open
+    /// surface.
     pub(in crate::render) fn around(world: &World<'_>, point: DVec3) -> Media {
         // Not along anything that a scene is likely to have.
         let direction = DVec3::new(0.3517, 0.8731, 0.3379);
@@ -110,7 +111,7 @@ impl Media {
         self.bodies().iter().max_by_key(rank).copied()
     }
 
-    /// The part of light that comes through a length of what is here.
+    /// Transmittance of a length of what is here (Bouguer's law).
     pub(in crate::render) fn transmittance(&self, world: &World<'_>, length: f64, wavelength_set: usize) -> Channels {
         match self.present(world).and_then(|body| body.interior(world)) {
             Some(interior) if interior.absorption.max() > 0.0 => {
@@ -120,9 +121,9 @@ impl Media {
         }
     }
 
-    /// What becomes of it at an element, and at the other surfaces of bodies that lie in the same place.
+    /// The medium interface at an element, with the other surfaces of bodies that lie in the same place.
     ///
-    /// - `ray`: that met the element.
+    /// - `ray`: that hit the element.
     pub(in crate::render) fn crossing(
         &self,
         world: &World<'_>,
@@ -141,7 +142,7 @@ impl Media {
                 is_interface: true,
             };
         }
-        // The eye or a lamp may have been in the body from the beginning.
+        // The camera or a lamp may have been in the body from the beginning.
         inside.notice(interaction);
         let mut behind = inside;
         behind.pass(interaction);
@@ -164,7 +165,7 @@ impl Media {
         if interaction.element.outside { self.enter(MediumId::of(interaction)) } else { self.leave(interaction.object) }
     }
 
-    /// Takes note of the body of an element that is met from inside, if light began there.
+    /// Takes note of the body of an element that is hit from inside, if light began there.
     pub(in crate::render) fn notice(&mut self, interaction: &SurfaceInteraction<'_>) {
         let is_inner = interaction.bsdf.interior.is_some() && !interaction.element.outside;
         if is_inner && !self.holds(interaction.object) {

@@ -1,4 +1,4 @@
-//! The world: a prepared scene prepared for renderers, with its index for rays, lights, materials and eye. It knows no
+//! The world: a scene prepared for renderers, with its index for rays, lights, materials and camera. It knows no
 //! renderer.
 
 mod appearance;

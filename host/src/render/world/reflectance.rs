@@ -1,11 +1,11 @@
-//! How much of light materials reflect diffusely.
+//! Diffuse albedo of materials.
 
 use crate::color::Channels;
 use crate::illumination::optics::{Bsdf, InterfaceIndices, ShadingContext};
 use crate::illumination::texture::TextureFootprint;
 use glam::DVec3;
 
-/// The part of light that a material reflects diffusely at a place, in the mean over all wavelength sets.
+/// The part of light that a material reflects diffusely at a footprint, in the mean over all wavelength sets.
 pub(in crate::render) fn mean_diffuse_albedo(
     bsdf: &Bsdf,
     footprint: Option<&TextureFootprint>,
