@@ -1,4 +1,4 @@
-//! What air, haze and ozone do to light, and how strong the sun is above them.
+//! The optical properties of air, haze and ozone, and the irradiance by the sun above them.
 
 use std::f64::consts::PI;
 
@@ -44,8 +44,8 @@ const ASYMMETRY: f64 = 0.8;
 /// The part of what haze scatters that goes straight on, as the delta-Eddington approximation has it.
 const STRAIGHT: f64 = ASYMMETRY * ASYMMETRY;
 
-/// What of air there is along a way or at a height: air, haze and ozone, as if it were so many kilometres at sea level or in
-/// the middle of the layer.
+/// Amounts of air, haze and ozone along a line or at a height, as if it were so many kilometres at sea level or in the
+/// middle of the layer.
 pub(super) type Amounts = [f64; 3];
 
 /// Amounts in a kilometre at a height over the ground, km.
@@ -81,7 +81,7 @@ impl Air {
     pub(super) const TURNED: f64 = 1.0 - STRAIGHT;
 }
 
-/// Extinction by so much air: in a kilometre, 1/km, or along a way, its optical depth.
+/// Extinction by so much air: in a kilometre, 1/km, or along a line, its optical depth.
 ///
 /// - `coefficients`: by air, haze and ozone, 1/km.
 pub(super) fn extinction(coefficients: &[Spectral; 3], amounts: &Amounts, node: usize) -> f64 {
@@ -90,7 +90,7 @@ pub(super) fn extinction(coefficients: &[Spectral; 3], amounts: &Amounts, node: 
 
 /// Phase functions of air and of haze, 1/sr.
 ///
-/// - `cosine`: of the angle by which light turns.
+/// - `cosine`: of the angle by which light is scattered.
 ///
 /// # Source
 /// Rayleigh; Cornette and Shanks 1992.

@@ -21,13 +21,13 @@ pub(super) fn to_top(radius: f64, cosine: f64) -> f64 {
     (inside.max(0.0).sqrt() - radius * cosine).max(0.0)
 }
 
-/// Distance to the ground, km; none if the ray does not meet it.
+/// Distance to the ground, km; none if the ray does not hit it.
 pub(super) fn to_ground(radius: f64, cosine: f64) -> Option<f64> {
     let inside = radius * radius * (cosine * cosine - 1.0) + GROUND * GROUND;
     (cosine < 0.0 && inside >= 0.0).then(|| (-radius * cosine - inside.sqrt()).max(0.0))
 }
 
-/// The table of rays that do not meet the ground, with the coordinates of Bruneton and Neyret 2008.
+/// The table of rays that do not hit the ground, with the coordinates of Bruneton and Neyret 2008.
 pub(super) struct Columns(Vec<Amounts>);
 
 impl Columns {
@@ -49,7 +49,7 @@ impl Columns {
         Columns((0..HEIGHTS * DIRECTIONS).map(of).collect())
     }
 
-    /// Amounts up to the end of the atmosphere along a ray that does not meet the ground.
+    /// Amounts up to the end of the atmosphere along a ray that does not hit the ground.
     pub(super) fn to_top(&self, radius: f64, cosine: f64) -> Amounts {
         let level = (TOP * TOP - GROUND * GROUND).sqrt();
         let from_horizon = (radius * radius - GROUND * GROUND).max(0.0).sqrt();

@@ -13,7 +13,7 @@ const SIDE: usize = 32;
 const DIRECTIONS: [usize; 2] = [16, 4];
 /// Steps along a line of further scattering, and along one of sight.
 const STEPS: [usize; 2] = [20, 48];
-/// Lines of sight that meet the ground before so many kilometres take so many steps.
+/// Lines of sight that hit the ground before so many kilometres take so many steps.
 const NEAR: (f64, usize) = (20.0, 8);
 
 /// Light in the air under a sun of irradiance 1 at all wavelengths.
@@ -29,9 +29,9 @@ impl<'a> Scattering<'a> {
     /// Finds further scattering.
     ///
     /// # Source
-    /// Hillaire 2020, section 5.5: scattering of the second order from all around, and a geometric series for all beyond.
-    /// What haze scatters straight on counts as not scattered at all, but for the single scattering towards the eye: Joseph,
-    /// Wiscombe and Weinman 1976, delta-Eddington; Nakajima and Tanaka 1988.
+    /// Hillaire 2020, section 5.5: scattering of the second order from all around, and a geometric series for all
+    /// beyond. What haze scatters straight on counts as not scattered at all, but for the single scattering towards the
+    /// eye: Joseph, Wiscombe and Weinman 1976, delta-Eddington; Nakajima and Tanaka 1988.
     pub(super) fn new(air: &'a Air, columns: &'a Columns, albedo: f64) -> Scattering<'a> {
         let mut scattering = Scattering { air, columns, albedo, further: Vec::new() };
         let of = |index: usize| {
@@ -56,7 +56,7 @@ impl<'a> Scattering<'a> {
             let sine = (1.0 - cosine * cosine).sqrt();
             let view = DVec3::new(sine * turn.cos(), cosine, sine * turn.sin());
             self.along(radius, view, sun, STEPS[0], |node, part, scattered, _, lit| {
-                // Light turns as if every direction were the same.
+                // Light is scattered as if every direction were the same.
                 second[node] += part * scattered[0] * lit / (4.0 * PI);
                 again[node] += part * scattered[0];
             });
@@ -68,7 +68,8 @@ impl<'a> Scattering<'a> {
         std::array::from_fn(|node| mean(second[node]) / (1.0 - mean(again[node])).max(1e-3))
     }
 
-    /// Radiance of the ground by the sun alone that comes through the air along a line; none if the line does not meet it.
+    /// Radiance of the ground by the sun alone that comes through the air along a line; none if the line does not hit
+    /// it.
     fn ground(&self, radius: f64, view: DVec3, sun: DVec3) -> Option<Spectral> {
         let distance = to_ground(radius, view.y)?;
         let up = (DVec3::Y * radius + view * distance).normalize();
@@ -80,8 +81,9 @@ impl<'a> Scattering<'a> {
 
     /// Goes along a line of sight to the ground or the end of the air.
     ///
-    /// - `tell`: for each node and step: how much of what is scattered there arrives, km; the coefficients of scattering of
-    ///   both together, without what goes straight on, and of each; radiance by further scattering; and the part of the sun that arrives there.
+    /// - `tell`: for each node and step: how much of what is scattered there arrives, km; the coefficients of
+    ///   scattering of both together, without what goes straight on, and of each; radiance by further scattering; and
+    ///   the part of the sun that arrives there.
     fn along(
         &self,
         radius: f64,

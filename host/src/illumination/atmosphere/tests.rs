@@ -46,14 +46,15 @@ fn the_table_of_columns_is_that_of_its_integrals() {
     );
 }
 
-/// A way through the air: where it is, where it goes, and what of the light is left.
+/// A path through the air: where it is, where it goes, and its throughput.
 struct Way {
     at: DVec3,
     towards: DVec3,
     left: f64,
 }
 
-/// Radiance by a random walk with collisions drawn against the densest air, at one node, under a sun of irradiance 1.
+/// Radiance by a random walk with collisions sampled against the densest air (delta tracking), at one node, under a sun
+/// of irradiance 1.
 fn walked(air: &Air, (eye, view, sun): (f64, DVec3, DVec3), albedo: f64, count: u32) -> f64 {
     let columns = Columns::new();
     let mut stream = RandomStream::new(7, 11);
@@ -106,7 +107,7 @@ fn walked(air: &Air, (eye, view, sun): (f64, DVec3, DVec3), albedo: f64, count: 
                 }
                 (None, None) => break,
             }
-            // Faint ways end by chance.
+            // Russian roulette of faint paths.
             let [u, _] = stream.point();
             let kept = way.left.clamp(0.05, 1.0);
             if u >= kept {

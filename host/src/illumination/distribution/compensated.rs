@@ -22,8 +22,8 @@ const LEAST_COSINE: f64 = 1e-9;
 /// Beckmann's or GGX's facets, exactly normalised at every incidence: D + (1 − E_L)(1 − E_V)(N·V) / (π (1 − E)).
 ///
 /// E_L is the integral of D for the light's direction, E its mean over the hemisphere, weighted with the cosine. The
-/// second term is reciprocal, and its integral is what D lost, 1 − E_L, to 1e-4 for roughness up to 1, and to 2e-4 up to
-/// 10; never more. It says where the light goes only roughly: over the whole hemisphere. In a metal each further
+/// second term is reciprocal, and its integral is what D lost, 1 − E_L, to 1e-4 for roughness up to 1, and to 2e-4 up
+/// to 10; never more. It says where the light goes only roughly: over the whole hemisphere. In a metal each further
 /// reflection has its own K: then the two terms are needed apart, see [`Compensated::parts`].
 ///
 /// # Source
@@ -36,15 +36,15 @@ pub struct Compensated {
     /// 1 − E over the incidence, at even steps of [`Compensated::place`].
     lost: Vec<f64>,
     mean_lost: f64,
-    /// The density, over the place in the table, of what is emitted again.
+    /// The pdf, over the place in the table, of what is emitted again.
     emitted: Vec<f64>,
     /// Its integral up to the end of each interval; empty if nothing is lost.
     below: Vec<f64>,
 }
 
 impl Compensated {
-    /// With a roughness m, 1e-8..=1000, the same along x and y. Its table takes some tenths of a second on two cores: keep
-    /// what is made.
+    /// With a roughness m, 1e-8..=1000, the same along x and y. Its table takes some tenths of a second on two cores:
+    /// keep what is made.
     ///
     /// # Errors
     /// [`DistributionError::Roughness`].
@@ -132,14 +132,14 @@ impl Compensated {
         let step = self.below.partition_point(|below| *below <= uniform).min(STEPS - 1);
         let before = if step == 0 { 0.0 } else { self.below[step - 1] };
         let (from, to) = (self.emitted[step], self.emitted[step + 1]);
-        // The density is linear in the interval: from x + (to − from) x² / 2 is what is left.
+        // The pdf is linear in the interval: from x + (to − from) x² / 2 is what is left.
         let left = ((uniform - before) * STEPS as f64).max(0.0);
         let root = (from * from + 2.0 * (to - from) * left).max(0.0).sqrt();
         let part = if from + root > 0.0 { (2.0 * left / (from + root)).min(1.0) } else { 0.0 };
         self.cosine((step as f64 + part) / STEPS as f64)
     }
 
-    /// The density of [`Compensated::further`], 1/sr.
+    /// The pdf of [`Compensated::further`], 1/sr.
     fn further_pdf(&self, cosine: f64) -> f64 {
         let place = self.place(cosine).clamp(0.0, 1.0);
         let step = ((place * STEPS as f64) as usize).min(STEPS - 1);
@@ -168,12 +168,12 @@ impl Compensated {
         self.mean_lost
     }
 
-    /// The chance that a sample is drawn from the second term.
+    /// The chance that a sample is of the second term.
     fn chance(&self, light: DVec3) -> f64 {
         if self.below.is_empty() { 0.0 } else { self.lost(light.z).min(MOST_CHANCE) }
     }
 
-    /// The density of what is reflected once, and of what is reflected more often, 1/sr; each may have its own K.
+    /// D of what is reflected once, and of what is reflected more often, 1/sr; each may have its own K.
     pub fn parts(&self, light: DVec3, view: DVec3) -> [f64; 2] {
         let further = if self.mean_lost > 0.0 {
             self.lost(light.z) * self.lost(view.z) * view.z * FRAC_1_PI / self.mean_lost

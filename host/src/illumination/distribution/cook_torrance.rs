@@ -7,7 +7,7 @@ use super::{Distribution, DistributionError, SlopeDistribution, checked_roughnes
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
-/// A direction to the viewer by a facet whose normal is drawn with a density of area times cosine.
+/// A direction to the viewer by a facet whose normal is sampled in proportion to area times cosine.
 pub(super) fn sample(light: DVec3, roughness: f64, point: [f64; 2]) -> Option<DVec3> {
     let slope = roughness * (-(-point[0]).ln_1p()).sqrt();
     let (sin, cos) = (TAU * point[1]).sin_cos();
@@ -15,7 +15,7 @@ pub(super) fn sample(light: DVec3, roughness: f64, point: [f64; 2]) -> Option<DV
     (normal * (2.0 * normal.dot(light)) - light).try_normalize().filter(|view| view.z > 0.0)
 }
 
-/// The density of [`sample`].
+/// The pdf of [`sample`].
 pub(super) fn pdf(light: DVec3, view: DVec3, roughness: f64) -> f64 {
     let half = light + view;
     // L·H is half the length of L + V.

@@ -1,11 +1,13 @@
-//! Any distribution of facets: a function of the angle between facet and surface, sampled to a table with a stated error.
+//! Any distribution of facets: a function of the angle between facet and surface, sampled to a table with a stated
+//! error.
 
 use super::{Distribution, DistributionError};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Intervals that a function is sampled in before any is halved: what is narrower and away from the normal may be missed.
+/// Intervals that a function is sampled in before any is halved: what is narrower and away from the normal may be
+/// missed.
 const FIRST: usize = 256;
 /// Most intervals.
 const MOST: usize = 8192;
@@ -26,8 +28,8 @@ const GAUSS: [(f64, f64); 3] =
 /// How well a table stands for its function, at points between those that it holds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TableError {
-    /// Greatest error there, as a part of the value of the function there, or of a millionth of its greatest value where it
-    /// is less than that.
+    /// Greatest error there, as a part of the value of the function there, or of a millionth of its greatest value
+    /// where it is less than that.
     pub greatest: f64,
     /// The area of all facets that are misplaced, as a part of the area of all.
     pub mean: f64,
@@ -61,13 +63,13 @@ pub enum FacetError<E> {
 
 /// D = area(α) G₂ / (4 (N·L)) of facets whose normals have any distribution over the angle α from the surface's normal.
 ///
-/// Between the angles of the table the area is linear. It is scaled so that the area times cos α integrates to 1 over the
-/// hemisphere, as it must for any surface. Masking is Smith's, with correlated heights, found of the table by integration:
-/// D is reciprocal, and integrates to 1 but for what strikes a second facet.
+/// Between the angles of the table the area is linear. It is scaled so that the area times cos α integrates to 1 over
+/// the hemisphere, as it must for any surface. Masking is Smith's, with correlated heights, found of the table by
+/// integration: D is reciprocal, and integrates to 1 but for what strikes a second facet.
 ///
 /// # Source
-/// Those of [`super::Microfacet`]; Smith's masking for any isotropic distribution after Ashikhmin, Premože and Shirley 2000,
-/// with the area that facets show to a direction.
+/// Those of [`super::Microfacet`]; Smith's masking for any isotropic distribution after Ashikhmin, Premože and Shirley
+/// 2000, with the area that facets show to a direction.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Plain", into = "Plain")]
 pub struct FacetTable {
@@ -270,7 +272,7 @@ impl Distribution for FacetTable {
     fn sample(&self, light: DVec3, point: [f64; 2]) -> Option<DVec3> {
         let k = self.below.partition_point(|below| *below <= point[0]).saturating_sub(1).min(self.below.len() - 2);
         let inside = ((point[0] - self.below[k]) / (self.below[k + 1] - self.below[k])).clamp(0.0, 1.0);
-        // Even in the square of the sine is a density with the cosine.
+        // Even in the square of the sine is a pdf with the cosine.
         let [from, to] = [k, k + 1].map(|k| self.area.places[k].sin().powi(2));
         let square = (from + (to - from) * inside).clamp(0.0, 1.0);
         let (sin, cos) = (TAU * point[1]).sin_cos();

@@ -20,8 +20,8 @@ const GAUSSIAN: f64 = 0.282_094_791_773_878_14;
 impl SlopeDistribution {
     /// Area of the facets with a normal per unit surface area and solid angle, 1/sr.
     ///
-    /// Beckmann: exp(−t²) / (π mₓ m_y cos⁴); GGX: 1 / (π mₓ m_y cos⁴ (1 + t²)²); t² = (x/mₓ)² + (y/m_y)² with the slopes
-    /// x, y of the facet. In both the area times the cosine integrates to 1.
+    /// Beckmann: exp(−t²) / (π mₓ m_y cos⁴); GGX: 1 / (π mₓ m_y cos⁴ (1 + t²)²); t² = (x/mₓ)² + (y/m_y)² with the
+    /// slopes x, y of the facet. In both the area times the cosine integrates to 1.
     ///
     /// - `half`: along the normal, any length; z above 0, else the area is 0.
     /// - `roughness`: m along x and y.
@@ -66,7 +66,8 @@ impl SlopeDistribution {
         }
     }
 
-    /// The normal of a facet, with a density of (L·H) times its area over [`SlopeDistribution::projected`]: as `towards` sees them.
+    /// The normal of a facet as `towards` sees it: its pdf is (L·H) times its area over
+    /// [`SlopeDistribution::projected`].
     ///
     /// - `towards`: unit length, z above 0. `point`: of the unit square.
     ///

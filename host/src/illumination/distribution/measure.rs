@@ -14,7 +14,7 @@ pub fn light_at(incidence: f64) -> DVec3 {
 /// The share of the flux density that is emitted: the integral of D over the outgoing hemisphere.
 ///
 /// The directions are those of [`Distribution::sample`], so that a narrow lobe is as easy as a wide one: the integral
-/// is the mean of density over sampling density over the unit square.
+/// is the mean of density over pdf over the unit square.
 ///
 /// - `tolerance`: the error to stop at. `most`: evaluations to stop at, some 1e3..1e7.
 pub fn emitted_share(distribution: &dyn Distribution, light: DVec3, tolerance: f64, most: u32) -> Integral {
@@ -28,8 +28,9 @@ pub fn emitted_share(distribution: &dyn Distribution, light: DVec3, tolerance: f
     unit_square(weight, tolerance, most)
 }
 
-/// The share of the light of an even sky that a viewer sees: what a surface of this distribution shows in a picture where
-/// light of the same radiance comes from everywhere, the integral of D(light, viewer) (N·L) / (N·V) over all lights.
+/// The share of the light of an even sky that a viewer sees: what a surface of this distribution shows in a picture
+/// where light of the same radiance comes from everywhere, the integral of D(light, viewer) (N·L) / (N·V) over all
+/// lights.
 ///
 /// A reciprocal distribution has the same integrals with light and viewer exchanged, and this is its [`emitted_share`].
 ///

@@ -37,8 +37,8 @@ impl Microfacet {
         Microfacet { correlated: false, ..self }
     }
 
-    /// The part of what a drawn facet reflects to a viewer that no other facet masks: the density over that of the
-    /// sample, 0..=1.
+    /// The part of what a sampled facet reflects to a viewer that no other facet masks: the density over the pdf,
+    /// 0..=1.
     pub(in crate::illumination) fn weight(&self, light: DVec3, view: DVec3) -> f64 {
         let [l, v] = [light, view].map(|towards| self.facets.projected(towards, self.roughness));
         if self.correlated { view.z * l / (view.z * l + light.z * (v - view.z)) } else { view.z / v }

@@ -40,8 +40,8 @@ use glam::{DVec2, DVec3};
 /// A distribution D of emitted flux over the outgoing hemisphere; the luminance is D K E / (N·V).
 ///
 /// Light and viewer are above the horizon: z above 0. Where the quotient D / (N·V) is the same for light and viewer
-/// exchanged, the distribution is reciprocal, and the two may be exchanged in [`Distribution::sample`] too: a tracer
-/// that comes from the eye gives the viewer and gets the light.
+/// exchanged, the distribution is reciprocal, and the two may be exchanged in [`Distribution::sample`], too: a tracer
+/// of paths from the camera gives the viewer and gets the light.
 ///
 /// Any type that has these four functions is a member. It is measured as those that ship are, and becomes a material by
 /// way of a table:
@@ -50,7 +50,7 @@ use glam::{DVec2, DVec3};
 /// use glam::DVec3;
 /// use host::illumination::distribution::measure::{check, emitted_share, light_at};
 /// use host::illumination::distribution::{Distribution, Tabulated};
-/// use host::illumination::material::Form;
+/// use host::illumination::material::DistributionForm;
 /// use std::f64::consts::{PI, TAU};
 ///
 /// /// Brighter along the normal than Lambert's: D = 3 cos²θ / 2π.
@@ -69,7 +69,7 @@ use glam::{DVec2, DVec3};
 ///         let sine = (1.0 - cosine * cosine).sqrt();
 ///         Some(DVec3::new(sine * cos, sine * sin, cosine))
 ///     }
-///     fn sample_density(&self, light: DVec3, view: DVec3) -> f64 {
+///     fn pdf(&self, light: DVec3, view: DVec3) -> f64 {
 ///         self.density(light, view)
 ///     }
 /// }
@@ -79,7 +79,7 @@ use glam::{DVec2, DVec3};
 /// assert!((share.value - 1.0).abs() < 1e-6);
 /// let table = Tabulated::new("squared", 32, |light, view| Squared.density(light, view)).expect("a table");
 /// assert!(table.accuracy().rms < 0.01);
-/// let form = Form::Table(table);
+/// let form = DistributionForm::Table(table);
 /// # let _ = form;
 /// ```
 pub trait Distribution: std::fmt::Debug + Send + Sync {
@@ -89,13 +89,13 @@ pub trait Distribution: std::fmt::Debug + Send + Sync {
     /// Emitted share per solid angle, 1/sr.
     fn density(&self, light: DVec3, view: DVec3) -> f64;
 
-    /// A direction to the viewer, drawn about as the density is, from a point of the unit square.
+    /// A direction to the viewer, sampled about in proportion to the density, from a point of the unit square.
     ///
-    /// None where what is drawn lies below the horizon: nothing is emitted then.
+    /// None where the sample lies below the horizon: nothing is emitted then.
     fn sample(&self, light: DVec3, point: [f64; 2]) -> Option<DVec3>;
 
-    /// The density with which [`Distribution::sample`] draws a direction, 1/sr; it integrates to the part of the unit
-    /// square that gives one. Above 0 wherever D is.
+    /// The pdf of a direction by [`Distribution::sample`], 1/sr; it integrates to the part of the unit square that
+    /// gives one. Above 0 wherever D is.
     fn pdf(&self, light: DVec3, view: DVec3) -> f64;
 }
 

@@ -23,7 +23,7 @@ pub(super) fn power_of_cosine(square_of_sine: f64, exponent: f64) -> f64 {
     if exponent == 0.0 { 1.0 } else { (0.5 * exponent * (-square_of_sine.min(1.0)).ln_1p()).exp() }
 }
 
-/// A direction around z with a density (n + 1) / (2 pi) cosⁿ, from a point of the unit square.
+/// A direction around z with the pdf (n + 1) / (2 pi) cosⁿ, from a point of the unit square.
 pub(super) fn lobe(point: [f64; 2], exponent: f64) -> DVec3 {
     let logarithm = (-point[0]).ln_1p() / (exponent + 1.0);
     let sine = (-(2.0 * logarithm).exp_m1()).max(0.0).sqrt();

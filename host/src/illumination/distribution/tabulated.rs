@@ -232,7 +232,7 @@ impl Distribution for Tabulated {
         let inside = ((uniform - before) / (below[cell] - before)).clamp(0.0, 1.0);
         let (ring, sector) = (cell / (2 * self.steps), cell % (2 * self.steps));
         let square = |edge: usize| (FRAC_PI_2 * edge as f64 / self.steps as f64).sin().powi(2);
-        // Even in the square of the sine is a density with the cosine.
+        // Even in the square of the sine is a pdf with the cosine.
         let sine = (square(ring) + (square(ring + 1) - square(ring)) * inside).clamp(0.0, 1.0);
         let azimuth = (sector as f64 + point[1]) / self.steps as f64 * PI + light.y.atan2(light.x);
         let (sin, cos) = azimuth.sin_cos();

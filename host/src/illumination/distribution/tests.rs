@@ -59,7 +59,7 @@ fn a_sampled_integral_is_that_of_the_midpoint_rule() {
 }
 
 #[test]
-fn samples_follow_their_density() {
+fn samples_follow_their_pdf() {
     const COUNT: u32 = 40_000;
     // Rings and sectors of about the same projected area.
     let cell = |view: DVec3| {

@@ -72,7 +72,7 @@ impl Dielectric {
         Polarised { perpendicular: 4.0 * c * q / (c + q).powi(2), parallel: 4.0 * dense * q / (dense + q).powi(2) }
     }
 
-    /// The direction in which light goes on behind the interface, unit length; none for total reflection.
+    /// The direction in which refracted light continues behind the interface, unit length; none for total reflection.
     ///
     /// - `towards`: from the interface to where the light comes from, unit length, on the side of the normal.
     /// - `normal`: unit length, towards the medium outside.

@@ -126,7 +126,7 @@ fn a_conductor_that_does_not_absorb_is_a_dielectric() {
 }
 
 #[test]
-fn refraction_follows_snell_and_the_way_back_is_the_same() {
+fn refraction_follows_snell_and_is_the_same_on_the_way_back() {
     for (ratio, cosine) in RATIOS.into_iter().flat_map(|ratio| cosines().map(move |cosine| (ratio, cosine))) {
         let interface = Dielectric::new(1.0, ratio).expect("an index");
         let sine = (1.0 - cosine * cosine).sqrt();

@@ -78,7 +78,7 @@ impl Emitter for AreaLight {
     }
 }
 
-/// A point of a patch, drawn evenly by area, and the normal on the side that emits.
+/// A point of a patch, sampled evenly by area, and the normal on the side that emits.
 fn emission_point(patch: &LightShape, uniform: [f64; 2]) -> Option<(DVec3, DVec3)> {
     match *patch {
         LightShape::Rectangle { corner, across, up } => {

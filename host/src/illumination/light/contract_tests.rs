@@ -51,7 +51,7 @@ fn there_is_a_light_of_every_kind() {
     assert_eq!(kinds, LightSource::KINDS.iter().copied().collect());
 }
 
-/// Irradiance of a surface that faces up, by the beams of a light.
+/// Irradiance of a surface that faces up, by samples of a light.
 fn sampled(source: &LightSource) -> f64 {
     let term = |uniform| {
         let light_sample = source.sample_incident(POINT, Some(DVec3::Y), uniform, 0);
@@ -60,7 +60,7 @@ fn sampled(source: &LightSource) -> f64 {
     unit_square(term, 1e-6, 100_000).value
 }
 
-/// The radiance that comes from a direction, and the density with which beams are drawn there.
+/// The radiance that comes from a direction, and the pdf of samples there.
 fn seen(source: &LightSource, towards: DVec3) -> (f64, f64) {
     let ray = Ray { origin: POINT, direction: towards };
     let light_hit =
@@ -68,7 +68,7 @@ fn seen(source: &LightSource, towards: DVec3) -> (f64, f64) {
     if let Some(light_hit) = light_hit {
         return (light_hit.radiance.0[0], light_hit.pdf);
     }
-    // A triangle is met by whoever knows it.
+    // Of a triangle, whoever intersects it knows that it was hit.
     let [a, b, c] = TRIANGLE;
     let normal = (b - a).cross(c - a).normalize();
     let distance = (a - POINT).dot(normal) / towards.dot(normal);
@@ -89,17 +89,17 @@ fn sampled_irradiance_is_that_of_all_that_is_seen() {
         for index in 0..count {
             let (radiance, _) = seen(source, cosine_hemisphere(sequence.point(index, 0), DVec3::Y));
             irradiance += radiance * PI / f64::from(count);
-            // The density of all directions: over the one with which they are drawn here, the sphere's is flat.
+            // The pdf of all directions: over that with which they are sampled here, the sphere's is flat.
             pdf += seen(source, sphere(sequence.point(index, 1))).1 * 2.0 * TAU / f64::from(count);
         }
         let found = sampled(source);
         assert!((found / irradiance - 1.0).abs() < 5e-3, "{}: {found} {irradiance}", source.kind());
-        assert!((pdf - 1.0).abs() < 2e-2, "{}: the density of its beams integrates to {pdf}", source.kind());
+        assert!((pdf - 1.0).abs() < 2e-2, "{}: the pdf of its samples integrates to {pdf}", source.kind());
     }
 }
 
 #[test]
-fn beams_have_the_densities_that_are_told_and_come_from_where_lights_are() {
+fn samples_have_the_pdf_that_is_told_and_come_from_where_lights_are() {
     let mut stream = RandomStream::new(1, 2);
     for source in sources() {
         for _ in 0..200 {

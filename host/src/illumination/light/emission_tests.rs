@@ -7,7 +7,7 @@ use crate::numeric::sequence::SobolSequence;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// What leaves a source in all directions, by samples.
+/// The flux that leaves a source in all directions, by samples.
 fn sampled(source: &LightSource) -> f64 {
     let sequence = SobolSequence::new(1, 1);
     let count = 1 << 14;

@@ -1,13 +1,13 @@
-//! What every light tells: what arrives at a point, what leaves it, where it is.
+//! The interface of every light: light samples at a point, emission samples, its origin.
 
 use super::light_sample::{EmissionSample, LightHit, LightOrigin, LightPoint, LightSample};
 use crate::color::Channels;
 use crate::numeric::ray::Ray;
 use glam::DVec3;
 
-/// A light of one kind, ready for rendering. [`LightSource`](super::LightSource) says what each function gives.
+/// A light of one kind, prepared for rendering. [`LightSource`](super::LightSource) says what each function gives.
 pub(super) trait Emitter {
-    /// Light that arrives at a point if nothing stands between.
+    /// A light sample at a point, if nothing stands between.
     fn sample_incident(
         &self,
         point: DVec3,
@@ -19,16 +19,16 @@ pub(super) trait Emitter {
     /// A few points that stand for it.
     fn points(&self, count: u32) -> Vec<LightPoint>;
 
-    /// Light that arrives from one of its points.
+    /// The light sample at a point from one of its points.
     fn incident_from(&self, _: &LightPoint, point: DVec3, wavelength_set: usize) -> Option<LightSample> {
         // What has no size is its only point, and the middle of a disc in the sky stands for it.
         self.sample_incident(point, None, [0.0; 2], wavelength_set)
     }
 
-    /// Where its light comes from.
+    /// The origin of its light.
     fn origin(&self) -> LightOrigin;
 
-    /// Where light leaves it.
+    /// An emission sample: where light leaves it.
     fn sample_emission(&self, uniform: [f64; 2], wavelength_set: usize) -> Option<EmissionSample>;
 
     /// Flux in each solid angle that leaves such a place.
@@ -37,22 +37,22 @@ pub(super) trait Emitter {
     /// All flux that it sends out.
     fn power(&self, radius: f64, wavelength_set: usize) -> Channels;
 
-    /// Whether its light comes from one direction only at every point.
+    /// Whether it is a delta light: its light comes from one direction only at every point.
     fn is_delta(&self) -> bool {
         true
     }
 
-    /// Whether it is a surface of its own, which rays meet.
+    /// Whether it is a surface of its own, which rays hit.
     fn is_surface(&self) -> bool {
         false
     }
 
-    /// Whether its light is worth being followed.
+    /// Whether it is worth sampling with photons.
     fn emits_photons(&self) -> bool {
         true
     }
 
-    /// Whether it is seen where rays meet nothing.
+    /// Whether it is an infinite light, which is seen where rays hit nothing.
     fn is_infinite(&self) -> bool {
         false
     }
@@ -62,22 +62,22 @@ pub(super) trait Emitter {
         false
     }
 
-    /// What a ray sees of a surface of its own.
+    /// The light hit of a ray with a surface of its own.
     fn intersect(&self, _: &Ray, _: f64, _: f64, _: usize) -> Option<LightHit> {
         None
     }
 
-    /// What is seen of a sky.
+    /// The light hit of a sky.
     fn sky_radiance(&self, _: &Ray, _: Option<DVec3>, _: usize) -> Option<LightHit> {
         None
     }
 
-    /// The density with which a direction is drawn in which its triangles are met.
+    /// The pdf of a direction in which its triangles are hit.
     fn pdf_on_triangle(&self, _: f64, _: f64) -> f64 {
         0.0
     }
 
-    /// The cone out of which nothing is sent.
+    /// The cone outside of which nothing is sent.
     fn cone(&self) -> Option<(DVec3, DVec3, f64)> {
         None
     }

@@ -1,32 +1,32 @@
-//! Light on its way: as it arrives at a point, as rays see it, as it leaves a light.
+//! Light samples at a point, light hits of rays, and emission samples at a light.
 
 use crate::color::Channels;
 use crate::numeric::bounds::Bounds;
 use crate::numeric::sequence::SobolSequence;
 use glam::DVec3;
 
-/// Light that arrives at a point from one direction.
+/// A light sample: light that arrives at a point from one direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSample {
     /// From the point towards the light, unit length.
     pub towards: DVec3,
     /// From the point to the light; infinite for light from infinitely far away.
     pub distance: f64,
-    /// Irradiance of a surface that faces the light, W/m²: of all the light where it comes from one direction only, else
-    /// its radiance over the density with which this direction was drawn.
+    /// Irradiance of a surface that faces the light, W/m²: of a delta light all, else its radiance over the pdf of this
+    /// direction.
     pub irradiance: Channels,
-    /// That density, 1/sr; none where light comes from one direction only.
+    /// The pdf of the direction, 1/sr; none of a delta light.
     pub pdf: Option<f64>,
 }
 
-/// What a ray sees of a light.
+/// A light hit: a light that a ray hits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightHit {
     /// How far, in lengths of the ray's direction; infinite for the sky.
     pub t: f64,
     /// Its radiance there, W/(m² sr); 0 on the dark side.
     pub radiance: Channels,
-    /// The density with which [`LightSource::sample_incident`](super::LightSource::sample_incident) would have drawn this direction, 1/sr.
+    /// The pdf of this direction by [`LightSource::sample_incident`](super::LightSource::sample_incident), 1/sr.
     pub pdf: f64,
 }
 
@@ -37,8 +37,8 @@ pub struct LightPoint {
     pub at: Option<DVec3>,
     /// Towards the light that is infinitely far away, unit length; 0 otherwise.
     pub towards: DVec3,
-    /// The part of an emitting surface that it stands for, square units, and its normal; no normal where it is seen alike from
-    /// everywhere. None for a light without size.
+    /// The part of an emitting surface that it stands for, square units, and its normal; no normal where it is seen
+    /// alike from everywhere. None for a light without size.
     pub(super) surface: Option<(f64, Option<DVec3>, EmittingSides)>,
 }
 
@@ -49,7 +49,7 @@ pub(super) enum EmittingSides {
     Both,
 }
 
-/// Where light leaves a source.
+/// An emission sample: where light leaves a source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EmissionSample {
     /// From a place, in many directions.
@@ -65,12 +65,12 @@ pub enum EmissionSample {
     Parallel {
         /// Where it goes, unit length.
         direction: DVec3,
-        /// Irradiance of a surface that faces it, W/m², over the density with which the direction was drawn.
+        /// Irradiance of a surface that faces it, W/m², over the pdf of the direction.
         irradiance: Channels,
     },
 }
 
-/// Where the light of a source comes from.
+/// The origin of the light of a source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightOrigin {
     /// From within a box, which is a point for a light without size.

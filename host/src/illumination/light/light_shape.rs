@@ -42,19 +42,19 @@ pub enum LightShape {
     },
 }
 
-/// A point of a patch, drawn for a point that it lights.
+/// A point of a light shape, sampled for a point that it lights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ShapeSample {
     /// From the lit point towards it, unit length.
     pub(super) towards: DVec3,
     /// From the lit point to it.
     pub(super) distance: f64,
-    /// The density of the direction, 1/sr.
+    /// The pdf of the direction, 1/sr.
     pub(super) pdf: f64,
 }
 
 impl LightShape {
-    /// What it is, in words.
+    /// Words for what it is.
     pub fn words(&self) -> &'static str {
         match self {
             LightShape::Rectangle { .. } => "a rectangular light",
@@ -161,9 +161,9 @@ impl LightShape {
         }
     }
 
-    /// Draws a point that lights a point; none where it does not light it.
+    /// Samples a point that lights a point; none where it does not light it.
     ///
-    /// A sphere and a rectangle are drawn evenly by solid angle, a disc by its area.
+    /// A sphere and a rectangle are sampled evenly by solid angle, a disc by its area.
     pub(super) fn sample(&self, point: DVec3, uniform: [f64; 2]) -> Option<ShapeSample> {
         match *self {
             LightShape::Rectangle { corner, across, up } => {
@@ -189,7 +189,7 @@ impl LightShape {
         }
     }
 
-    /// A point of it, drawn evenly by area, and its normal if it has one.
+    /// A point of it, sampled evenly by area, and its normal if it has one.
     ///
     /// - `middle`: its middle instead.
     pub(super) fn sample_area(&self, uniform: [f64; 2], middle: bool) -> (DVec3, Option<DVec3>) {
@@ -239,7 +239,7 @@ impl LightShape {
         SphericalRectangle::new(corner - point, across, up).filter(|seen| seen.solid_angle() > SMALL)
     }
 
-    /// The density with which [`LightShape::sample`] draws a direction in which the patch is met at a distance, 1/sr.
+    /// The pdf of a direction by [`LightShape::sample`] in which the shape is hit at a distance, 1/sr.
     pub(super) fn pdf(&self, point: DVec3, towards: DVec3, distance: f64) -> f64 {
         match *self {
             LightShape::Sphere { center, radius } => {
@@ -256,7 +256,7 @@ impl LightShape {
         }
     }
 
-    /// Where a ray meets it, in lengths of the direction, and whether on the side that emits.
+    /// Where a ray hits it, in lengths of the direction, and whether on the side that emits.
     pub(super) fn intersect(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<(f64, bool)> {
         let Ray { origin, direction } = *ray;
         let within = |t: &f64| t_min < *t && *t < t_max;

@@ -7,7 +7,7 @@ use crate::numeric::bounds::Bounds;
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// Triangles that emit on both sides, drawn evenly by area.
+/// Triangles that emit on both sides, sampled evenly by area.
 #[derive(Clone, Debug)]
 pub(super) struct MeshLight {
     /// Radiance, W/(m² sr).
@@ -34,7 +34,7 @@ impl MeshLight {
         Some(MeshLight { strength, corners, below, area })
     }
 
-    /// A point, drawn evenly by area, and the normal there.
+    /// A point, sampled evenly by area, and the normal there.
     fn point(&self, [x, y]: [f64; 2]) -> (DVec3, DVec3) {
         let index = self.below.partition_point(|part| *part <= x).min(self.below.len() - 1);
         let from = if index == 0 { 0.0 } else { self.below[index - 1] };

@@ -1,4 +1,4 @@
-//! Sources of light: what a scene says of them, and what of their light arrives at a point.
+//! Sources of light: what a scene says of them, and their samples in rendering.
 
 mod light_sample;
 mod emitter;
@@ -194,7 +194,7 @@ impl Light {
         }
     }
 
-    /// Where its light comes from.
+    /// The origin of its light.
     pub fn origin(&self) -> LightOrigin {
         match self {
             Light::Point { at, .. } | Light::Spot { at, .. } | Light::Luminaire { at, .. } => LightOrigin::point(*at),
@@ -212,7 +212,7 @@ impl Light {
         }
     }
 
-    /// Whether it sends shadows of soft edges: it is a surface, or a sky.
+    /// Whether its shadows have soft edges: it is a surface, or a sky.
     pub fn has_size(&self) -> bool {
         matches!(self, Light::Area { .. } | Light::Sky { .. })
     }

@@ -1,21 +1,21 @@
-//! Openings through which the light of skies comes in: what is drawn there is not lost on walls.
+//! Portals: openings through which skies are sampled, so that fewer samples are lost on walls.
 
 use super::LightShape;
 use super::light_shape::ShapeSample;
 use crate::numeric::ray::Ray;
 use glam::DVec3;
 
-/// The part of the directions to a sky that are drawn through portals, where a point is on their inner side. The others are
-/// drawn over the whole sky: what comes in elsewhere, or is seen by a mirror, stays right, and no direction counts more
-/// than 1 / (1 - this part) times what it did.
+/// The part of the directions to a sky that are sampled through portals, where a point is on their inner side. The
+/// others are sampled over the whole sky: what comes in elsewhere, or is seen by a mirror, stays right, and no
+/// direction counts more than 1 / (1 - this part) times what it did.
 const PART: f64 = 0.8;
 
-/// Rectangles through which points on their inner sides are lit by a sky: directions are drawn towards them, whatever else of
-/// the sky is bright.
+/// Rectangles through which points on their inner sides are lit by a sky: directions are sampled towards them, whatever
+/// else of the sky is bright.
 ///
 /// # Source
-/// After Bitterli, Novák and Jarosz 2015, "Portal-masked environment map sampling", with rectangles drawn evenly by solid
-/// angle in the place of the map that is rectified for each portal.
+/// After Bitterli, Novák and Jarosz 2015, "Portal-masked environment map sampling", with rectangles sampled evenly by
+/// solid angle in the place of the map that is rectified for each portal.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Portals(Vec<LightShape>);
 
@@ -25,8 +25,8 @@ impl Portals {
         Portals(rectangles.to_vec())
     }
 
-    /// A direction, and whether it goes through a portal: then drawn as evenly as the rectangle fills the view of the point;
-    /// otherwise the two numbers are to choose another direction.
+    /// A direction, and whether it goes through a portal: then sampled as evenly as the rectangle fills the view of the
+    /// point; otherwise the two numbers are to choose another direction.
     ///
     /// - `uniform`: a point of the unit square.
     pub(super) fn sample(&self, point: DVec3, [x, y]: [f64; 2]) -> PortalChoice {
@@ -43,9 +43,9 @@ impl Portals {
         }
     }
 
-    /// The density of a direction, 1/sr.
+    /// The pdf of a direction, 1/sr.
     ///
-    /// - `anywhere`: with which the direction is drawn over the whole sky, 1/sr.
+    /// - `anywhere`: its pdf over the whole sky, 1/sr.
     pub(super) fn pdf(&self, point: DVec3, towards: DVec3, anywhere: f64) -> f64 {
         let ray = Ray { origin: point, direction: towards };
         let (mut count, mut sum) = (0, 0.0);

@@ -16,7 +16,7 @@ const MOST_SINGLE: usize = 1 << 20;
 /// Cells along a side of a block of a larger picture.
 const BLOCK: usize = 8;
 
-/// Light from all around, ready for rendering.
+/// Light from all around, prepared for rendering.
 #[derive(Clone, Debug)]
 pub struct Sky {
     factor: SpectralTable,
@@ -27,10 +27,10 @@ pub struct Sky {
     portals: Portals,
 }
 
-/// A picture of the sky, from which directions are drawn as bright as they are.
+/// A picture of the sky, of which directions are sampled in proportion to their brightness.
 ///
-/// It is divided into cells between four pixels, in which its radiance is bilinear, and these into blocks. A block is drawn by
-/// a table, and a cell in it by looking at all of them: of a large picture the table is small.
+/// It is divided into cells between four pixels, in which its radiance is bilinear, and these into blocks. A block is
+/// sampled by a table, and a cell in it by going through all of them: of a large picture the table is small.
 #[derive(Clone, Debug)]
 struct Map {
     panorama: Arc<Panorama>,
@@ -72,15 +72,17 @@ impl Sky {
         }
     }
 
-    /// The sky, of which directions are drawn through portals from where these are; a disc of it is small enough without.
+    /// The sky, of which directions are sampled through portals from where these are; a disc of it is small enough
+    /// without.
     pub(super) fn with_portals(self, portals: &[LightShape]) -> Sky {
         let portals = if self.disc.is_some() { Portals::default() } else { Portals::new(portals) };
         Sky { portals, ..self }
     }
 
-    /// A direction to light a point from, and its density, 1/sr.
+    /// A direction to light a point from, and its pdf, 1/sr.
     ///
-    /// - `normal`: of the element that is lit, unit length; a sky of one radiance is then drawn by its cosine above it.
+    /// - `normal`: of the element that is lit, unit length; a sky of one radiance is then sampled by its cosine above
+    ///   it.
     /// - `uniform`: a point of the unit square.
     pub(super) fn sample(&self, point: DVec3, normal: Option<DVec3>, uniform: [f64; 2]) -> Option<(DVec3, f64)> {
         let towards = match self.portals.sample(point, uniform) {
@@ -91,12 +93,12 @@ impl Sky {
         Some((towards, self.pdf(point, towards, normal))).filter(|(_, pdf)| *pdf > 0.0)
     }
 
-    /// The density with which [`Sky::sample`] draws a direction, 1/sr.
+    /// The pdf of a direction by [`Sky::sample`], 1/sr.
     pub(super) fn pdf(&self, point: DVec3, towards: DVec3, normal: Option<DVec3>) -> f64 {
         self.portals.pdf(point, towards, self.pdf_anywhere(towards, normal))
     }
 
-    /// A direction, about as bright as it is; the normal as in [`Sky::sample`].
+    /// A direction, sampled about in proportion to its brightness; the normal as in [`Sky::sample`].
     fn sample_anywhere(&self, normal: Option<DVec3>, uniform: [f64; 2]) -> Option<DVec3> {
         match (&self.disc, &self.map, normal) {
             (Some(disc), ..) => Some(self.forth(disc.sample(uniform))),
@@ -106,7 +108,7 @@ impl Sky {
         }
     }
 
-    /// The density with which [`Sky::sample_anywhere`] draws a direction, 1/sr.
+    /// The pdf of a direction by [`Sky::sample_anywhere`], 1/sr.
     fn pdf_anywhere(&self, towards: DVec3, normal: Option<DVec3>) -> f64 {
         if let Some(disc) = &self.disc {
             return if self.is_beside(towards) { 0.0 } else { disc.pdf };
@@ -119,7 +121,7 @@ impl Sky {
         if sine > 0.0 { map.pdf(place(back)) / (sine * PI * TAU) } else { 0.0 }
     }
 
-    /// A direction from which light sets out into the scene, about as bright as it is, and its density, 1/sr.
+    /// A direction from which light enters the scene, sampled about in proportion to its brightness, and its pdf, 1/sr.
     pub(super) fn sample_emission(&self, uniform: [f64; 2]) -> Option<(DVec3, f64)> {
         let towards = self.sample_anywhere(None, uniform)?;
         Some((towards, self.pdf_anywhere(towards, None))).filter(|(_, pdf)| *pdf > 0.0)
@@ -193,7 +195,7 @@ impl Disc {
         (direction - self.towards).length_squared() <= 2.0 * self.rise
     }
 
-    /// A direction in it, drawn evenly.
+    /// A direction in it, sampled evenly.
     fn sample(&self, [x, y]: [f64; 2]) -> DVec3 {
         let rise = x * self.rise;
         let sine = (rise * (2.0 - rise)).sqrt();
@@ -314,7 +316,7 @@ impl Map {
         pixels.map(|[x, y]| self.panorama.texel(x, y).y).sum::<f64>() / (width * height) as f64
     }
 
-    /// A place, about as bright as it is.
+    /// A place, sampled about in proportion to its brightness.
     fn sample(&self, [x, y]: [f64; 2]) -> Option<DVec2> {
         if self.all <= 0.0 {
             return None;
@@ -369,7 +371,7 @@ impl Map {
         ([columns.start + column, rows.start + row], [aside, down])
     }
 
-    /// The density of a place in the map.
+    /// The pdf of a place in the map.
     fn pdf(&self, place: DVec2) -> f64 {
         if self.all <= 0.0 {
             return 0.0;
@@ -390,7 +392,7 @@ fn add_up(numbers: &mut [f64]) {
     }
 }
 
-/// A number, 0..=1, drawn from a density that goes from `a` to `b`.
+/// A number, 0..=1, sampled by a pdf that goes from `a` to `b`.
 ///
 /// # Source
 /// Pharr, Jakob and Humphreys 2023, section 2.3.2.
@@ -416,7 +418,7 @@ mod tests {
     use crate::numeric::sampling::RandomStream;
 
     #[test]
-    fn blocks_draw_the_same_directions_as_single_cells_do() {
+    fn blocks_sample_the_same_directions_as_single_cells_do() {
         let radiance = |x: u32, y: u32| {
             DVec3::splat(f64::from((x * 7 + y * 13) % 11) + if x == 5 && y == 9 { 300.0 } else { 0.0 })
         };
@@ -438,7 +440,7 @@ mod tests {
         }
         let [a, b] = sums.map(|sum| sum / f64::from(count));
         assert!((a - b).abs().max_element() < 0.01 && near[0].abs_diff(near[1]) < count / 50, "{a} {b} {near:?}");
-        // The mean of one over the density is the area of the map.
+        // The mean of one over the pdf is the area of the map.
         assert!((seen / f64::from(count) - 1.0).abs() < 0.03, "{seen}");
     }
 }

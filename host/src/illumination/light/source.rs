@@ -1,4 +1,5 @@
-//! Lights prepared for rendering, a row for each kind. A new light is a file, a row, and what scenes say of it.
+//! Light sources: lights prepared for rendering, a row for each kind. A new light is a file, a row, and what scenes say
+//! of it.
 
 use super::area::AreaLight;
 use super::directional::DirectionalLight;
@@ -15,7 +16,7 @@ use crate::numeric::ray::Ray;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Makes an enumeration of lights, each of which answers for itself.
+/// Makes an enumeration of lights, each of which calls its own functions.
 macro_rules! lights {
     ($($kind:ident($light:ty),)*) => {
         #[derive(Clone, Debug)]
@@ -57,12 +58,12 @@ lights! {
     Sky(EnvironmentLight),
 }
 
-/// A light ready for rendering.
+/// A light source: a light prepared for rendering.
 #[derive(Clone, Debug)]
 pub struct LightSource(Kind);
 
 impl LightSource {
-    /// A light, ready. It should have been checked before.
+    /// A light, prepared. It should have been checked before.
     pub fn new(light: &Light, wavelengths: &WavelengthSets) -> LightSource {
         let strength = wavelengths.light(light.strength().1);
         LightSource(match light {
@@ -88,7 +89,7 @@ impl LightSource {
         })
     }
 
-    /// The light; of one that is a sky, directions are then drawn through portals from where these are.
+    /// The light; of one that is a sky, directions are then sampled through portals from where these are.
     ///
     /// - `portals`: rectangles whose normals, across x up, point inwards.
     pub fn with_portals(self, portals: &[LightShape]) -> LightSource {
@@ -105,9 +106,10 @@ impl LightSource {
         Some(LightSource(Kind::Mesh(MeshLight::new(corners, radiance)?)))
     }
 
-    /// Light that arrives at a point if nothing stands between; none where there is none, and at the light itself.
+    /// A light sample at a point if nothing stands between; none where no light comes, and at the light itself.
     ///
-    /// - `normal`: of the element at the point, unit length, if there is one: directions above it are drawn more often.
+    /// - `normal`: of the element at the point, unit length, if there is one: directions above it are sampled more
+    ///   often.
     /// - `uniform`: a point of the unit square, which chooses the point of a light that has a size.
     #[inline]
     pub fn sample_incident(
@@ -127,26 +129,26 @@ impl LightSource {
         self.0.emitter().points(count.max(1))
     }
 
-    /// Light that arrives from one of [`LightSource::points`] if nothing stands between.
+    /// The light sample from one of [`LightSource::points`] if nothing stands between.
     #[inline]
     pub fn incident_from(&self, from: &LightPoint, point: DVec3, wavelength_set: usize) -> Option<LightSample> {
         self.0.emitter().incident_from(from, point, wavelength_set)
     }
 
-    /// Where its light comes from.
+    /// The origin of its light.
     pub fn origin(&self) -> LightOrigin {
         self.0.emitter().origin()
     }
 
-    /// Draws where light leaves the source; none where there is none.
+    /// An emission sample: where light leaves the source; none where there is none.
     ///
     /// - `uniform`: a point of the unit square.
     pub fn sample_emission(&self, uniform: [f64; 2], wavelength_set: usize) -> Option<EmissionSample> {
         self.0.emitter().sample_emission(uniform, wavelength_set)
     }
 
-    /// Flux in each solid angle that leaves a place of [`LightSource::sample_emission`] in a direction, over the
-    /// density of the place, W/sr.
+    /// Flux in each solid angle that leaves a place of [`LightSource::sample_emission`] in a direction, over the pdf of
+    /// the place, W/sr.
     ///
     /// - `normal`: of the surface there, if it is one. `direction`: where it goes, unit length.
     pub fn intensity(&self, normal: Option<DVec3>, direction: DVec3, wavelength_set: usize) -> Channels {
@@ -158,13 +160,13 @@ impl LightSource {
         self.0.emitter().power(radius, wavelength_set)
     }
 
-    /// What a ray sees of a light that is a surface of its own.
+    /// The light hit of a ray with a light that is a surface of its own.
     #[inline]
     pub fn intersect(&self, ray: &Ray, t_min: f64, t_max: f64, wavelength_set: usize) -> Option<LightHit> {
         self.0.emitter().intersect(ray, t_min, t_max, wavelength_set)
     }
 
-    /// What is seen of a sky; none of another light, and beside a disc.
+    /// The light hit of a sky; none of another light, and beside a disc.
     ///
     /// - `ray`: of unit length, from the point from which it is seen.
     /// - `normal`: of the element from which it is seen, as in [`LightSource::sample_incident`].
@@ -173,38 +175,37 @@ impl LightSource {
         self.0.emitter().sky_radiance(ray, normal, wavelength_set)
     }
 
-    /// The density with which [`LightSource::sample_incident`] draws a direction in which emitting triangles are met,
-    /// 1/sr.
+    /// The pdf of a direction by [`LightSource::sample_incident`] in which emitting triangles are hit, 1/sr.
     ///
     /// - `cosine`: between the direction and the normal of the triangle, any sign.
     pub fn pdf_on_triangle(&self, distance: f64, cosine: f64) -> f64 {
         self.0.emitter().pdf_on_triangle(distance, cosine)
     }
 
-    /// Whether its light comes from one direction only at every point.
+    /// Whether it is a delta light: its light comes from one direction only at every point.
     pub fn is_delta(&self) -> bool {
         self.0.emitter().is_delta()
     }
 
-    /// Whether it is a surface of its own, which rays meet.
+    /// Whether it is a surface of its own, which rays hit.
     #[inline]
     pub fn is_surface(&self) -> bool {
         self.0.emitter().is_surface()
     }
 
-    /// Whether its light is worth being followed: a sky of one radiance is found from everywhere.
+    /// Whether it is worth sampling with photons: camera paths find a sky of one radiance everywhere.
     #[inline]
     pub fn emits_photons(&self) -> bool {
         self.0.emitter().emits_photons()
     }
 
-    /// The cone out of which nothing is sent: its tip, its axis, unit length, and the cosine of its half angle; none if
-    /// light goes everywhere.
+    /// The cone outside of which nothing is sent: its tip, its axis, unit length, and the cosine of its half angle;
+    /// none if light goes everywhere.
     pub fn cone(&self) -> Option<(DVec3, DVec3, f64)> {
         self.0.emitter().cone()
     }
 
-    /// Whether it is seen where rays meet nothing: a sky, or a disc in it.
+    /// Whether it is an infinite light, which is seen where rays hit nothing: a sky, or a disc in it.
     #[inline]
     pub fn is_infinite(&self) -> bool {
         self.0.emitter().is_infinite()

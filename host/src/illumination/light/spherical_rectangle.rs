@@ -1,9 +1,9 @@
-//! Rectangles as a point sees them.
+//! Rectangles as a point sees them, sampled evenly by solid angle.
 
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// A rectangle as a point at the origin sees it, of which directions are drawn evenly.
+/// A rectangle as a point at the origin sees it, of which directions are sampled evenly.
 ///
 /// # Source
 /// Ureña, Fajardo and King 2013, "An area-preserving parametrization for spherical rectangles".
@@ -39,7 +39,8 @@ impl SphericalRectangle {
         let [x, y] = [[left, left + across.length()], [low, low + up.length()]];
         let scale = x.into_iter().chain(y).fold(-z, |most, at| most.max(at.abs()));
         let ([x, y], z) = ([x, y].map(|at| at.map(|at| at / scale)), z / scale);
-        // Of the normals of the planes through the point and a side two coordinates are not 0, of neighbours the last only.
+        // Of the normals of the planes through the point and a side two coordinates are not 0, of neighbours the last
+        // only.
         let normal = |at: f64| at / (z * z + at * at).sqrt();
         let normals = [normal(-y[0]), normal(x[1]), normal(y[1]), normal(-x[0])];
         let angle = |i: usize| (-normals[i] * normals[(i + 1) % 4]).clamp(-1.0, 1.0).acos();

@@ -1,4 +1,4 @@
-//! Facts about lights: closed forms of irradiance, and densities.
+//! Facts about lights: closed forms of irradiance, and pdfs.
 
 use super::*;
 use crate::color::WavelengthSets;
@@ -114,7 +114,7 @@ fn triangles_emit_as_the_rectangle_that_they_make() {
 }
 
 #[test]
-fn densities_are_those_of_the_drawn_directions() {
+fn pdfs_are_those_of_the_sampled_directions() {
     let patches = [
         LightShape::Sphere { center: DVec3::new(1.0, 3.0, 0.0), radius: 0.7 },
         LightShape::Disc { center: DVec3::new(1.0, 3.0, 0.0), normal: DVec3::new(-0.3, -1.0, 0.2), radius: 0.7 },
@@ -231,9 +231,9 @@ fn a_sky_of_one_radiance_lights_a_plane_with_pi_times_it() {
 }
 
 #[test]
-fn a_map_is_seen_where_its_directions_are_and_drawn_as_bright_as_it_is() {
+fn a_map_is_seen_where_its_directions_are_and_sampled_as_bright_as_it_is() {
     let sky = source(Light::Sky { map: Some(map()), radiance: Color::grey(1.0), turned: 30.0 });
-    // Irradiance by drawn directions, and by directions spread evenly.
+    // Irradiance by sampled directions, and by directions spread evenly.
     let drawn = irradiance(&sky, DVec3::ZERO, DVec3::new(0.6, 0.8, 0.0));
     let term = |uniform| {
         let towards = sphere(uniform);
@@ -242,7 +242,7 @@ fn a_map_is_seen_where_its_directions_are_and_drawn_as_bright_as_it_is() {
     };
     let even = 4.0 * PI * unit_square(term, 1e-4, 400_000).value;
     assert!((drawn / even - 1.0).abs() < 2e-3, "{drawn} {even}");
-    // The density integrates to 1.
+    // The pdf integrates to 1.
     let all = 4.0
         * PI
         * unit_square(
@@ -276,7 +276,7 @@ fn a_map_is_seen_where_its_directions_are_and_drawn_as_bright_as_it_is() {
 }
 
 #[test]
-fn a_disc_in_the_sky_is_drawn_evenly_and_seen_where_it_is() {
+fn a_disc_in_the_sky_is_sampled_evenly_and_seen_where_it_is() {
     let disc = SkyDisc { towards: DVec3::new(0.6, 0.8, 0.0), radius: 0.004_653 };
     let map = SkyMap { file: String::new(), panorama: None, disc: Some(disc) };
     let sun = source(Light::Sky { map: Some(map), radiance: Color::grey(2.0 / disc.solid_angle()), turned: 0.0 });
@@ -316,7 +316,7 @@ fn polygons_of_a_patch_lie_on_it_and_turn_counter_clockwise_about_where_it_emits
             let normal = (b - a).cross(c - a).normalize();
             let middle = polygon.iter().sum::<DVec3>() / polygon.len() as f64;
             let before = Ray { origin: middle + normal * 5.0, direction: -normal };
-            let light_hit = area_hit(&patch, &before).expect("it is met");
+            let light_hit = area_hit(&patch, &before).expect("it is hit");
             assert!((light_hit.t - 5.0).abs() < 0.01 && light_hit.radiance.0[0] == 1.0, "{patch:?}: {light_hit:?}");
             let twice: DVec3 = polygon.windows(2).map(|pair| (pair[0] - a).cross(pair[1] - a)).sum();
             assert!(polygon.len() >= 3 && twice.dot(normal) > 0.0);
@@ -349,7 +349,7 @@ fn portals_change_where_a_sky_is_looked_for_and_not_how_much_it_lights() {
     for map in [Some(map()), None] {
         let sky = source(Light::Sky { map, radiance: Color::grey(1.0), turned: 30.0 });
         let seen = sky.clone().with_portals(&portals);
-        // Drawn with the normal, and without.
+        // Sampled with the normal, and without.
         for known in [Some(normal), None] {
             let mean = |source: &LightSource| {
                 let term = |uniform| {

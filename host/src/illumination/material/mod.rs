@@ -1,4 +1,4 @@
-//! Of what a surface is: what a scene says of it, before it is prepared for rendering.
+//! Materials: of what a surface is, as a scene says it, before it is prepared for rendering.
 
 mod principled;
 
@@ -202,7 +202,7 @@ impl Material {
     /// The greatest priority of a transparent body, and the least with the other sign.
     pub const MOST_PRIORITY: i32 = 1000;
 
-    /// Whether it may pass on as a beam some of the light that comes to it.
+    /// Whether it may cast caustics: some narrow lobe reflects or transmits light that comes to it.
     pub fn may_cast_caustics(&self) -> bool {
         match &self.body {
             MaterialKind::Classic(Classic { mirror, specular, .. }) => !mirror.is_black() || !specular.is_black(),
@@ -334,7 +334,7 @@ impl Material {
             || self.numbers().into_iter().any(NumberTexture::is_varying)
     }
 
-    /// Whether parameters of the surface are needed to tell what it is like at a place.
+    /// Whether parameters of the surface are needed to tell what it is like at a footprint.
     pub fn needs_parameters(&self) -> bool {
         self.relief.as_ref().is_some_and(Relief::needs_parameters)
             || self.paints().into_iter().any(Paint::needs_parameters)

@@ -1,4 +1,4 @@
-//! A material prepared for rendering: a sum of lobes, and which of them carry rays on.
+//! A BSDF: a material prepared for rendering, a sum of lobes, some of which continue paths.
 
 use super::context::{BsdfSample, InterfaceIndices, ShadingContext};
 use super::lobe::{Flags, Lobe};
@@ -11,25 +11,25 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Most lobes of a material.
+/// Most lobes of a BSDF.
 const MOST_LOBES: usize = 4;
 
-/// What the patterns of a material give at a place, one after the other; a number is in all lanes.
+/// The texture values of a material at a footprint, one after the other; a number is in all lanes.
 pub type TextureValues = Vec<Channels>;
 
-/// What patterns are mixed of at a place.
+/// The texture values of a material at a footprint, for any wavelengths.
 #[derive(Clone, Debug, Default)]
 pub struct TextureMixture<'a> {
     /// How many patterns there are.
     count: usize,
-    /// Which pattern it is, a color in it, and how much there is of it.
+    /// The texture that it belongs to, a color in it, and how much there is of it.
     parts: Vec<(usize, &'a SpectralTable, f64)>,
-    /// Which pattern it is, and the number that it tells.
+    /// The texture that it belongs to, and its number.
     numbers: Vec<(usize, f64)>,
 }
 
 impl TextureMixture<'_> {
-    /// What the patterns give at the wavelengths of a wavelength set.
+    /// The texture values at the wavelengths of a wavelength set.
     pub fn at(&self, wavelength_set: usize) -> TextureValues {
         let mut texture_values = vec![Channels::ZERO; self.count];
         for (pattern, curve, amount) in &self.parts {
@@ -42,37 +42,39 @@ impl TextureMixture<'_> {
     }
 }
 
-/// One of the lobes of a surface.
+/// The class of a lobe of a surface.
 ///
-/// The first two carry rays from the eye on. A light path may be told by them: each of its turns is by a broad lobe or
-/// by a narrow one.
+/// The first two continue paths from the camera. Light path expressions (Heckbert 1990) tell light paths apart by them:
+/// each scattering event is by a broad lobe or by a narrow one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LobeClass {
-    /// Those that spread light so far that it is seen from about everywhere.
+    /// Broad lobes scatter light about everywhere: class D (diffuse) of light path expressions, and glossy lobes whose
+    /// pdf stays below 1.5/sr.
     Broad,
-    /// Those that pass it on as a beam: mirrors, smooth interfaces, and rough ones of narrow highlights.
+    /// Narrow lobes concentrate light: classes S (specular) and G (glossy) of light path expressions, as mirrors,
+    /// smooth interfaces, and rough ones with narrow highlights.
     Narrow,
-    /// Those that spread light about everywhere, where a radiosity solution tells what comes from other surfaces: rays
-    /// from the eye end at them, and light that is followed from lamps goes on.
+    /// Broad lobes where a radiosity solution has the light of other surfaces: paths from the camera end at them, and
+    /// photons are scattered on.
     Radiosity,
-    /// Those that answer lights only.
+    /// Lobes that reflect light of lights only, and continue no path.
     LightsOnly,
 }
 
-/// What becomes of light that goes from one diffuse surface to another.
+/// How diffuse interreflection is found: light that goes from one diffuse surface to another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Interreflection {
-    /// It counts nothing.
+    /// It is left out.
     #[default]
     LeftOut,
-    /// Rays from the eye follow it.
+    /// By paths from the camera.
     Followed,
-    /// A radiosity solution tells of it.
+    /// By a radiosity solution.
     Solved,
 }
 
 impl Interreflection {
-    /// Lets it count, by rays from the eye unless it counts already.
+    /// Lets it count, by paths from the camera unless it counts already.
     pub fn count(&mut self) {
         if *self == Interreflection::LeftOut {
             *self = Interreflection::Followed;
@@ -81,20 +83,20 @@ impl Interreflection {
 }
 
 impl LobeClass {
-    /// Those that carry rays from the eye on.
+    /// The classes that continue paths from the camera.
     pub const CONTINUING: [LobeClass; 2] = [LobeClass::Broad, LobeClass::Narrow];
 }
 
-/// Among which lobes a direction is drawn.
+/// A selection of lobes among which a direction is sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LobeSelection {
-    /// All that carry rays from the eye on.
+    /// All that continue paths from the camera.
     All,
-    /// Those whose directions are not all known: [`Bsdf::specular_samples`] gives the others.
+    /// Those that are not delta: [`Bsdf::specular_samples`] gives the others.
     NonDelta,
     /// The narrow ones.
     Narrow,
-    /// The broad ones, solved or not.
+    /// The broad ones, solved by radiosity or not.
     Broad,
 }
 
@@ -109,16 +111,16 @@ impl LobeSelection {
     }
 }
 
-/// A lobe of a material.
+/// A lobe of a BSDF.
 #[derive(Clone, Debug)]
 struct Member {
     class: LobeClass,
-    /// What the lobe says of itself.
+    /// The flags of the lobe.
     flags: Flags,
     lobe: AnyLobe,
 }
 
-/// A material prepared for rendering.
+/// A BSDF: a material prepared for rendering.
 #[derive(Clone, Debug)]
 pub struct Bsdf {
     lobes: Vec<Member>,
@@ -126,9 +128,9 @@ pub struct Bsdf {
     stores_photons: bool,
     transmits_straight: bool,
     continues_non_delta: bool,
-    /// What the ambient term reflects; none if it is what is reflected alike to everywhere.
+    /// Reflectance of the ambient term; none if it is the diffuse albedo.
     pub(super) ambient: Option<PreparedPaint>,
-    /// What changes from place to place.
+    /// Textures: what changes from place to place.
     pub(super) patterns: Vec<PreparedTexture>,
     pub(super) relief: Option<Relief>,
     /// The part of light that goes straight through; none if none does.
@@ -175,7 +177,7 @@ pub struct InteriorMedium {
 impl Bsdf {
     /// A material without lobes.
     ///
-    /// - `ambient`: what the ambient term reflects. `emission`: radiance.
+    /// - `ambient`: reflectance of the ambient term. `emission`: radiance.
     pub(super) fn new(ambient: PreparedPaint, relief: Option<Relief>, emission: Option<SpectralTable>) -> Bsdf {
         Bsdf {
             lobes: Vec::new(),
@@ -195,41 +197,41 @@ impl Bsdf {
 
     /// Radiance towards the viewer for each unit of flux density that arrives from a light, 1/sr: D K / (N·V).
     ///
-    /// Of directions that only a mirror or a smooth interface would reach nothing is known here.
+    /// Delta lobes count nothing here.
     pub fn value(&self, class: LobeClass, context: &ShadingContext, light: DVec3) -> Channels {
         self.of_class(class).fold(Channels::ZERO, |sum, lobe| sum + lobe.value(context, light))
     }
 
-    /// Radiance towards the viewer for each unit of flux density that arrives from a light, 1/sr, by the lobes that are
-    /// `among`; nothing of what only a mirror or a smooth interface would reach.
+    /// Radiance towards the viewer for each unit of flux density that arrives from a light, 1/sr, by the lobes of a
+    /// `selection`; delta lobes count nothing.
     pub fn value_among(&self, selection: LobeSelection, context: &ShadingContext, light: DVec3) -> Channels {
         let members = self.lobes.iter().filter(|member| selection.has(member.class, member.flags));
         members.fold(Channels::ZERO, |sum, member| sum + member.lobe.value(context, light))
     }
 
-    /// Radiance towards the viewer for each unit of flux density that arrives from a light, 1/sr, by all lobes; nothing
-    /// of what only a mirror or a smooth interface would reach.
+    /// Radiance towards the viewer for each unit of flux density that arrives from a light, 1/sr, by all lobes; delta
+    /// lobes count nothing.
     #[inline]
     pub fn total_value(&self, context: &ShadingContext, light: DVec3) -> Channels {
         self.lobes.iter().fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.value(context, light))
     }
 
-    /// The density with which [`Bsdf::sample`] draws a direction by broad or by narrow lobes, 1/sr.
+    /// The pdf of a direction by [`Bsdf::sample`], by broad or by narrow lobes, 1/sr.
     ///
-    /// - `among`: as there.
+    /// - `selection`: as there.
     pub fn pdf(&self, class: LobeClass, context: &ShadingContext, light: DVec3, selection: LobeSelection) -> f64 {
         let shares = self.shares(context, selection);
         let members = self.lobes.iter().zip(&shares).filter(|(member, _)| member.class == class);
         members.map(|(member, share)| share * member.lobe.pdf(context, light)).sum()
     }
 
-    /// The density with which [`Bsdf::sample`] draws a direction among lobes, 1/sr.
+    /// The pdf of a direction by [`Bsdf::sample`] among lobes, 1/sr.
     pub fn pdf_among(&self, selection: LobeSelection, context: &ShadingContext, light: DVec3) -> f64 {
         let members = self.lobes.iter().zip(self.shares(context, selection)).filter(|(_, share)| *share > 0.0);
         members.map(|(member, share)| share * member.lobe.pdf(context, light)).sum()
     }
 
-    /// The directions of mirrors and smooth interfaces, all of them.
+    /// Specular samples: the directions of mirrors and smooth interfaces, all of them.
     pub fn specular_samples(&self, context: &ShadingContext) -> impl Iterator<Item = BsdfSample> {
         let narrow = |member: &&Member| member.class == LobeClass::Narrow && member.flags.has(Flags::DELTA);
         let members = self.lobes.iter().filter(narrow);
@@ -239,16 +241,17 @@ impl Bsdf {
             .filter(|sample| sample.weight.max() > 0.0)
     }
 
-    /// What goes straight through, if anything does.
+    /// The BSDF sample that goes straight through, if anything does.
     pub fn straight_sample(&self, context: &ShadingContext) -> Option<BsdfSample> {
         let weight = self.straight_transmission.as_ref()?.of(context);
         Some(BsdfSample { light: -context.view, weight, pdf: None, is_straight: true, is_broad: false })
     }
 
-    /// One direction, drawn about as what comes from there counts; none where what is drawn counts nothing.
+    /// A BSDF sample: one direction, sampled about in proportion to what comes from there; none where that counts
+    /// nothing.
     ///
     /// - `choice`: uniform in 0..1, chooses among lobes. `point`: uniform in the unit square.
-    /// - `among`: which lobes it is drawn among.
+    /// - `selection`: the lobes among which it is sampled.
     pub fn sample(
         &self,
         context: &ShadingContext,
@@ -263,7 +266,7 @@ impl Bsdf {
         if drawn.pdf.is_none() {
             return Some(BsdfSample { weight: drawn.weight * shares[index].recip(), ..drawn });
         }
-        // What all lobes of the kind give there, over the density with which all of them draw it.
+        // The value of all lobes of the class there, over the pdf by all of them.
         let light = drawn.light;
         let (mut value, mut pdf) = (Channels::ZERO, 0.0);
         let is_broad = *class != LobeClass::Narrow;
@@ -282,19 +285,19 @@ impl Bsdf {
         self.ambient.as_ref().map_or_else(|| self.diffuse_albedo(context), |ambient| ambient.of(context))
     }
 
-    /// About what ambient light adds by what mirrors, metals, coats and glass reflect, where that is not followed.
+    /// Glossy albedo: about what ambient light adds by what mirrors, metals, coats and glass reflect, where paths do
+    /// not continue.
     pub fn glossy_albedo(&self, context: &ShadingContext) -> Channels {
         self.lobes.iter().fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.glossy_albedo(context))
     }
 
-    /// The part of light from all around that is reflected alike to everywhere: Lambert's term, and what a ground under
-    /// a coat gives in the mean.
+    /// Diffuse albedo: the part of light from all around that is reflected alike to everywhere, Lambert's term, and the
+    /// mean of a ground under a coat.
     pub fn diffuse_albedo(&self, context: &ShadingContext) -> Channels {
         self.lobes.iter().fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.diffuse_albedo(context))
     }
 
-    /// About the part of light from all around that is reflected to the viewer, but for what a mirror or a smooth
-    /// interface passes on.
+    /// Albedo of the lobes that are not delta: about the part of light from all around that they reflect to the viewer.
     pub fn non_delta_albedo(&self, context: &ShadingContext) -> Channels {
         let spread = self.lobes.iter().filter(|member| !member.flags.has(Flags::DELTA));
         spread.fold(Channels::ZERO, |sum, Member { lobe, .. }| {
@@ -312,7 +315,7 @@ impl Bsdf {
         !self.patterns.is_empty() || self.relief.is_some()
     }
 
-    /// What its patterns are mixed of in the mean over a place, for any wavelengths.
+    /// Its texture values in the mean over a footprint, for any wavelengths.
     pub fn texture_mixture(&self, footprint: &TextureFootprint) -> TextureMixture<'_> {
         let mut mixture = TextureMixture { count: self.patterns.len(), ..TextureMixture::default() };
         for (index, pattern) in self.patterns.iter().enumerate() {
@@ -326,7 +329,7 @@ impl Bsdf {
         mixture
     }
 
-    /// What its patterns give in the mean over a place.
+    /// Its texture values in the mean over a footprint.
     pub fn texture_values(&self, footprint: &TextureFootprint, wavelength_set: usize) -> TextureValues {
         self.patterns.iter().map(|pattern| pattern.at(footprint, wavelength_set)).collect()
     }
@@ -343,10 +346,10 @@ impl Bsdf {
         self.transmits_straight
     }
 
-    /// The part of light that goes straight through.
+    /// Transmittance of light that goes straight through.
     ///
-    /// - `cosine`: of the angle between light and normal, 0..=1. `place`: asked for only if a pattern has to be looked
-    ///   up.
+    /// - `cosine`: of the angle between light and normal, 0..=1. `place`: the footprint, asked for only if there are
+    ///   textures.
     pub fn straight_transmittance(
         &self,
         wavelength_set: usize,
@@ -375,10 +378,10 @@ impl Bsdf {
         self.interior.is_some() && self.lobes.iter().any(is_clear)
     }
 
-    /// The part of light that a polished interface lets through, as if it were not bent.
+    /// Transmittance of a polished interface, as if it did not bend light.
     ///
-    /// - `cosine`: of the angle between light and normal, 0..=1. `place`: asked for only if a pattern has to be looked
-    ///   up.
+    /// - `cosine`: of the angle between light and normal, 0..=1. `place`: the footprint, asked for only if there are
+    ///   textures.
     pub fn clear_transmittance(
         &self,
         wavelength_set: usize,
@@ -397,22 +400,22 @@ impl Bsdf {
         self.of_class(LobeClass::Narrow).fold(Channels::ZERO, |sum, lobe| sum + lobe.clear_transmittance(&context))
     }
 
-    /// Whether some lobe of a kind answers lights.
+    /// Whether some lobe is not delta, so that lights are sampled.
     pub fn has_non_delta(&self) -> bool {
         self.lobes.iter().any(|member| !member.flags.has(Flags::DELTA))
     }
 
-    /// Whether rays are carried on.
+    /// Whether some lobe continues paths.
     pub fn continues_paths(&self) -> bool {
         self.lobes.iter().any(|member| LobeClass::CONTINUING.contains(&member.class))
     }
 
-    /// Whether some lobe passes light on as a beam, other than straight.
+    /// Whether some narrow lobe casts caustics: other than straight through.
     pub fn casts_caustics(&self) -> bool {
         self.casts_caustics
     }
 
-    /// Whether some lobe spreads the light that comes to it.
+    /// Whether some lobe that is not narrow takes light: photons are stored there.
     pub fn stores_photons(&self) -> bool {
         self.stores_photons
     }
@@ -432,21 +435,21 @@ impl Bsdf {
         })
     }
 
-    /// Whether light that is followed from lamps goes on from it about everywhere.
+    /// Whether photons are scattered broadly by some lobe.
     pub fn is_broad(&self) -> bool {
         let goes_on =
             |member: &Member| LobeSelection::Broad.has(member.class, member.flags) && !member.flags.has(Flags::BLACK);
         self.lobes.iter().any(goes_on)
     }
 
-    /// Whether some lobe that carries rays on does so in more than single directions.
+    /// Whether some lobe that is not delta continues paths.
     pub fn continues_non_delta(&self) -> bool {
         self.continues_non_delta
     }
 
     /// Adds a lobe.
     ///
-    /// - `carried`: how it carries on diffuse light, as far as it does.
+    /// - `interreflection`: how the lobe gets diffuse light of other surfaces, if it does.
     pub(super) fn add(&mut self, lobe: AnyLobe, interreflection: Interreflection) {
         let flags = lobe.flags();
         let class = match interreflection {
@@ -471,7 +474,7 @@ impl Bsdf {
         self.lobes.push(Member { class, flags, lobe });
     }
 
-    /// Takes in a number that changes from place to place.
+    /// Adds a texture of a number that changes from place to place.
     pub(super) fn varying(&mut self, number: &NumberTexture) -> PreparedNumber {
         self.patterns.push(PreparedTexture::Number(number.clone()));
         PreparedNumber::Varying(self.patterns.len() - 1)

@@ -1,4 +1,4 @@
-//! Makes materials ready, and keeps what several of them share.
+//! Prepares materials for rendering as BSDFs, and keeps what several of them share.
 
 use super::bsdf::{Bsdf, InteriorMedium, Interreflection, StraightTransmission};
 use super::coat::{CoatReflection, CoatedDiffuse};
@@ -24,7 +24,7 @@ use crate::illumination::texture::{NumberTexture, Paint};
 use glam::DVec2;
 use std::sync::Arc;
 
-/// Makes materials ready for the wavelengths that rays carry. Tables that take long are made once for all materials.
+/// Prepares materials for the wavelengths that rays carry. Tables that take long are made once for all materials.
 #[derive(Debug)]
 pub struct BsdfBuilder<'a> {
     wavelengths: &'a WavelengthSets,
@@ -42,9 +42,9 @@ impl<'a> BsdfBuilder<'a> {
         BsdfBuilder { wavelengths, everything, forms: Vec::new(), coats: Vec::new() }
     }
 
-    /// A material, ready.
+    /// A material, prepared.
     ///
-    /// - `diffuse`: what becomes of light that diffuse surfaces send each other.
+    /// - `diffuse`: how diffuse interreflection is found.
     ///
     /// # Errors
     /// [`MaterialError`].
@@ -300,7 +300,7 @@ impl<'a> BsdfBuilder<'a> {
         Ok(coat)
     }
 
-    /// A fraction of light; its pattern goes to the others of the material.
+    /// A fraction of light, prepared; its texture is added to those of the material.
     fn prepared_paint(&self, paint: &Paint, bsdf: &mut Bsdf) -> PreparedPaint {
         match paint {
             Paint::Plain(color) => PreparedPaint::Plain(self.wavelengths.reflectance(color)),
@@ -311,7 +311,7 @@ impl<'a> BsdfBuilder<'a> {
         }
     }
 
-    /// A fraction of light; none if it is 0 and may be left out.
+    /// A fraction of light, prepared; none if it is 0 and may be left out.
     fn needed_paint(&self, paint: &Paint, bsdf: &mut Bsdf) -> Option<PreparedPaint> {
         match paint {
             Paint::Plain(color) if !self.everything && self.wavelengths.reflectance(color).max() <= 0.0 => None,

@@ -129,11 +129,11 @@ impl Lobe for CoatReflection {
     }
 }
 
-/// What a diffuse ground under a coat reflects: light passes the coat twice, and what the coat reflects back down meets
-/// the ground again, any number of times.
+/// A diffuse ground under a coat: light passes the coat twice, and what the coat reflects back down reaches the ground
+/// again, any number of times.
 ///
-/// D = T(N·L) T(N·V) (N·V) K (1 − R) / (π T̄ (1 − K R)), with T what the coat lets through, T̄ its mean, and R the part of
-/// diffuse light from below that it reflects back, 1 − T̄/η². All that enters leaves again if K = 1.
+/// D = T(N·L) T(N·V) (N·V) K (1 − R) / (π T̄ (1 − K R)), with T what the coat lets through, T̄ its mean, and R the part
+/// of diffuse light from below that it reflects back, 1 − T̄/η². All that enters leaves again if K = 1.
 ///
 /// # Source
 /// The geometric series of a coat over a Lambertian ground.
@@ -154,7 +154,8 @@ enum Fraction {
 }
 
 impl CoatedDiffuse {
-    /// - `index`: of the coat over that of what is above. `reflectance`: of the ground. `combs`: how many there are.
+    /// - `index`: of the coat over that of what is above. `reflectance`: of the ground. `sets`: how many wavelength
+    ///   sets there are.
     pub(super) fn new(
         coat: Arc<CoatReflection>,
         index: f64,

@@ -1,4 +1,4 @@
-//! How an element is seen, and where rays go on from it.
+//! The shading context: how an interaction is seen; and the BSDF samples that continue a path from it.
 
 use crate::color::Channels;
 use glam::DVec3;
@@ -19,23 +19,24 @@ impl InterfaceIndices {
     pub const AIR: InterfaceIndices = InterfaceIndices { before: Channels::ONE, behind: Channels::ONE, inside: false };
 }
 
-/// How an element is seen, and what is on its two sides.
+/// The shading context: direction to the viewer, wavelength set, indices and texture values of an interaction.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadingContext<'a> {
     /// Towards the viewer.
     pub view: DVec3,
-    /// The number of the set of wavelengths that are carried.
+    /// The number of the wavelength set.
     pub wavelength_set: usize,
     /// The refractive index on the side of the viewer and behind.
     pub indices: InterfaceIndices,
-    /// For which lane refracted directions are drawn.
+    /// The lane for which refracted directions are sampled.
     pub lane: usize,
-    /// What the patterns give at the place, as [`Bsdf::texture_values`](super::Bsdf::texture_values) tells; nothing for a material that has none.
+    /// Texture values at the footprint, as [`Bsdf::texture_values`](super::Bsdf::texture_values) tells; nothing for a
+    /// material that has none.
     pub texture_values: &'a [Channels],
 }
 
 impl ShadingContext<'_> {
-    /// The direction in which a mirror would see.
+    /// The direction that a mirror would reflect to the viewer.
     pub(super) fn mirror_direction(&self) -> DVec3 {
         DVec3::new(-self.view.x, -self.view.y, self.view.z)
     }
@@ -47,28 +48,28 @@ impl ShadingContext<'_> {
     }
 }
 
-/// Where a ray goes on, backwards to where its light comes from.
+/// A BSDF sample: a direction to light, its weight and its pdf.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BsdfSample {
     /// Towards the light.
     pub light: DVec3,
-    /// What of the radiance from there comes to the viewer, over the density with which the direction was drawn.
+    /// Radiance to the viewer for a radiance of 1 from there, over the pdf.
     pub weight: Channels,
-    /// That density, 1/sr; none for the one direction of a mirror or a smooth interface.
+    /// The pdf of the direction, 1/sr; none for a delta lobe: a mirror or a smooth interface.
     pub pdf: Option<f64>,
-    /// Whether it goes straight on, as if nothing was there.
+    /// Whether it goes straight through, as if nothing was there.
     pub is_straight: bool,
-    /// Whether a broad lobe carries it on, and not a narrow one.
+    /// Whether a broad lobe scatters there, and not a narrow one.
     pub is_broad: bool,
 }
 
 impl BsdfSample {
-    /// The one direction of a mirror or a smooth interface.
+    /// The sample of a delta lobe: a mirror or a smooth interface.
     pub(super) fn specular(light: DVec3, weight: Channels) -> BsdfSample {
         BsdfSample { light, weight, pdf: None, is_straight: false, is_broad: false }
     }
 
-    /// A direction of many: its weight is found when all lobes that could have drawn it were asked.
+    /// A sample of a lobe with a pdf: its weight is found when the values and pdfs of all lobes are known.
     pub(super) fn unweighted(light: DVec3) -> BsdfSample {
         BsdfSample { light, weight: Channels::ZERO, pdf: Some(0.0), is_straight: false, is_broad: true }
     }

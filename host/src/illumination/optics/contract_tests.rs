@@ -1,4 +1,4 @@
-//! What every lobe keeps: samples as its density says (chi-squared), light to and fro, no more light than comes, flags.
+//! What every lobe keeps: samples follow their pdf (chi-squared), reciprocity, no more light than comes, flags.
 
 use super::lobe::{Flags, Lobe};
 use super::lobes::AnyLobe;
@@ -23,7 +23,7 @@ const SAMPLES: usize = 12_000;
 const DOUBT: f64 = 5.0;
 /// Bins of the chi-squared test: of the cosine from below to above, and of the azimuth.
 const BINS: [usize; 2] = [16, 12];
-/// The lanes of two patterns: of a lobe that varies.
+/// The lanes of two texture values: of a lobe that varies.
 const TEXTURE_VALUES: [Channels; 2] = [Channels([0.25; crate::color::LANES]); 2];
 
 fn varying() -> NumberTexture {
@@ -135,15 +135,15 @@ fn there_is_a_lobe_of_every_kind() {
     assert_eq!(kinds, AnyLobe::KINDS.iter().copied().collect());
 }
 
-/// By how many standard deviations samples depart from a density: a chi-squared test.
+/// By how many standard deviations samples depart from a pdf: a chi-squared test.
 ///
-/// - `sample`: draws a direction, or none. `density`: 1/sr.
+/// - `sample`: samples a direction, or none. `pdf`: 1/sr.
 fn deviations(
     mut sample: impl FnMut(&mut RandomStream) -> Option<DVec3>,
     pdf: impl Fn(DVec3) -> f64,
 ) -> Result<f64, String> {
     let mut stream = RandomStream::new(11, 7);
-    // What is drawn in vain counts, too.
+    // Samples without a direction count, too.
     let mut found = vec![0.0; BINS[0] * BINS[1] + 1];
     for _ in 0..SAMPLES {
         let bin = sample(&mut stream).map_or(found.len() - 1, |light| {
@@ -163,7 +163,7 @@ fn deviations(
         .collect();
     let all: f64 = expected.iter().sum();
     if all > SAMPLES as f64 * 1.002 {
-        return Err(format!("the density integrates to {}", all / SAMPLES as f64));
+        return Err(format!("the pdf integrates to {}", all / SAMPLES as f64));
     }
     expected.push((SAMPLES as f64 - all).max(0.0));
     // Bins of few samples are taken together.
@@ -183,7 +183,7 @@ fn deviations(
 }
 
 #[test]
-fn samples_are_drawn_as_densities_say() {
+fn samples_follow_their_pdf() {
     let spread: Vec<AnyLobe> = lobes().into_iter().filter(|lobe| !lobe.flags().has(Flags::DELTA)).collect();
     spread.par_iter().for_each(|lobe| {
         for context in contexts() {
@@ -218,7 +218,8 @@ fn light_goes_to_and_fro_alike() {
                 let [x, y] = stream.point();
                 let light = direction(2.0 * x - 1.0, y);
                 let value = lobe.value(&context, light).0[0];
-                // Through the surface, the other side is seen in a frame of its own, and radiance is per square of the index.
+                // Through the surface, the other side is seen in a frame of its own, and radiance is per square of the
+                // index.
                 let flip = |way: DVec3| DVec3::new(way.x, way.y, way.z.abs() * if light.z > 0.0 { 1.0 } else { -1.0 });
                 let InterfaceIndices { before, behind, inside } = context.indices;
                 let (back, squares) = match light.z > 0.0 {
@@ -263,7 +264,7 @@ fn flags_tell_what_lobes_do() {
     for lobe in lobes() {
         let (flags, kind) = (lobe.flags(), lobe.kind());
         assert!(!flags.has(Flags::BLACK), "{kind}");
-        assert!(!flags.has(Flags::DELTA | Flags::BROAD), "{kind}: single directions are no broad ones");
+        assert!(!flags.has(Flags::DELTA | Flags::BROAD), "{kind}: a delta lobe is not broad");
         for context in contexts() {
             let lights = [0; 20].map(|_| stream.point()).map(|[x, y]| direction(2.0 * x - 1.0, y));
             let sample = lobe.sample(&context, stream.uniform(), stream.point());

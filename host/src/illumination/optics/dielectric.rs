@@ -1,7 +1,7 @@
 //! Interfaces between transparent media: what is reflected, and what goes through.
 //!
-//! Indices may differ from lane to lane. A direction that one lane is refracted to is then not that of the others: where
-//! it is drawn, it is drawn for the lane of the [`ShadingContext`], and a renderer keeps that lane alone.
+//! Indices may differ from lane to lane. A direction that one lane is refracted to is then not that of the others: it
+//! is sampled for the lane of the [`ShadingContext`], and a renderer keeps that lane alone.
 
 use super::context::{BsdfSample, ShadingContext};
 use super::lobe::{Flags, Lobe};
@@ -26,7 +26,7 @@ pub(super) struct RoughDielectric {
     pub(super) roughness: DVec2,
 }
 
-/// The chance that what is reflected is followed and not what goes through.
+/// The chance that reflection is sampled and not transmission.
 ///
 /// Neither is left to chances too small for what it may bring, unless there is next to nothing of it.
 ///

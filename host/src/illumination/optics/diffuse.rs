@@ -17,7 +17,7 @@ pub(super) fn cosine_sample(point: [f64; 2]) -> Option<BsdfSample> {
     Some(cosine_hemisphere(point, DVec3::Z)).filter(|light| light.z > 0.0).map(BsdfSample::unweighted)
 }
 
-/// The density of [`cosine_sample`], 1/sr.
+/// The pdf of [`cosine_sample`], 1/sr.
 #[inline]
 pub(super) fn cosine_pdf(context: &ShadingContext, light: DVec3) -> f64 {
     if context.is_behind(light) { 0.0 } else { light.z * FRAC_1_PI }

@@ -15,7 +15,7 @@ pub(super) struct DistributedLobe<D> {
     pub(super) distribution: D,
 }
 
-/// What a lobe holds a distribution by.
+/// Whatever holds the distribution of a lobe.
 pub(super) trait HasDistribution {
     /// The distribution.
     fn distribution(&self) -> &dyn Distribution;

@@ -1,23 +1,23 @@
-//! What every lobe of a surface tells: its value, its samples with their density, its flags.
+//! The interface of every lobe of a surface: its value, its samples with their pdf, its flags.
 
 use super::context::{BsdfSample, ShadingContext};
 use crate::color::Channels;
 use glam::DVec3;
 use std::ops::BitOr;
 
-/// A lobe that is drawn with a greater density from straight above, 1/sr, is narrow: a diffuse one has 1/π.
+/// A lobe whose pdf is greater than this straight above, 1/sr, is narrow: that of a diffuse one is 1/π.
 pub(super) const NARROW: f64 = 1.5;
 
-/// What is known of a lobe for all directions.
+/// Properties of a lobe that hold for all directions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Flags(u8);
 
 impl Flags {
     /// Nothing of all.
     pub(super) const NONE: Flags = Flags(0);
-    /// It knows single directions only, as a mirror or a smooth interface does.
+    /// It is a delta lobe: it scatters to single directions only, as a mirror or a smooth interface does.
     pub(super) const DELTA: Flags = Flags(1);
-    /// It spreads light about everywhere, and does not pass it on as a beam.
+    /// It is broad: it scatters light about everywhere.
     pub(super) const BROAD: Flags = Flags(2);
     /// It reflects light alike to everywhere.
     pub(super) const DIFFUSE: Flags = Flags(4);
@@ -43,7 +43,7 @@ impl Flags {
         if holds { self } else { Flags::NONE }
     }
 
-    /// Of a lobe that is drawn with a density from straight above, 1/sr, whether it is broad.
+    /// Whether a lobe of a pdf straight above, 1/sr, is broad.
     pub(super) fn of_pdf(pdf: f64) -> Flags {
         Flags::BROAD.when(pdf < NARROW)
     }
@@ -57,23 +57,23 @@ impl BitOr for Flags {
     }
 }
 
-/// A part of what a surface scatters: a term of its BSDF with a way to draw directions of light. What is not written for a
-/// kind is that of a delta lobe, which knows single directions only.
+/// A lobe: a term of a BSDF, with its own sampling. What a kind does not write is that of a delta lobe, which knows single
+/// directions only.
 pub(super) trait Lobe {
-    /// What is known of it for all directions.
+    /// Its properties for all directions.
     fn flags(&self) -> Flags;
 
-    /// Radiance towards the viewer for a unit of flux density, 1/sr: D K / (N·V); 0 for what only knows single directions.
+    /// Radiance towards the viewer for a unit of flux density, 1/sr: D K / (N·V); 0 of a delta lobe.
     fn value(&self, _: &ShadingContext, _: DVec3) -> Channels {
         Channels::ZERO
     }
 
-    /// The density of its samples, 1/sr.
+    /// The pdf of its samples, 1/sr.
     fn pdf(&self, _: &ShadingContext, _: DVec3) -> f64 {
         0.0
     }
 
-    /// Draws a direction to light; its weight is right for single directions only, the others have a density.
+    /// Samples a direction to light; its weight is right for delta lobes only, all others have a pdf.
     ///
     /// - `choice`: uniform in 0..1. `point`: uniform in the unit square.
     fn sample(&self, context: &ShadingContext, _choice: f64, _point: [f64; 2]) -> Option<BsdfSample> {
@@ -83,23 +83,23 @@ pub(super) trait Lobe {
     /// About what it reflects to the viewer of all the light; more than 0 where it reflects anything.
     fn strength(&self, context: &ShadingContext) -> f64;
 
-    /// Its single directions.
+    /// Its specular samples: those of a delta lobe.
     fn specular_samples(&self, _: &ShadingContext) -> [Option<BsdfSample>; 2] {
         [None, None]
     }
 
-    /// The part of light from all around that it reflects alike to everywhere.
+    /// Diffuse albedo: the part of light from all around that it reflects alike to everywhere.
     fn diffuse_albedo(&self, _: &ShadingContext) -> Channels {
         Channels::ZERO
     }
 
-    /// About the part of light from all around that it reflects to the viewer, where it is one that shows what is around;
-    /// nothing of others.
+    /// Glossy albedo: about the part of light from all around that it reflects to the viewer, where it shows what is
+    /// around; nothing of others.
     fn glossy_albedo(&self, _: &ShadingContext) -> Channels {
         Channels::ZERO
     }
 
-    /// The part of light that goes through a polished interface.
+    /// Transmittance of a polished interface.
     fn clear_transmittance(&self, _: &ShadingContext) -> Channels {
         Channels::ZERO
     }

@@ -18,8 +18,8 @@ use crate::illumination::distribution::{Distribution, Phong};
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Makes an enumeration of lobes, each of which answers for itself: rays ask for lobes so often that a table of functions
-/// would cost more than a choice.
+/// Makes an enumeration of lobes, each of which calls its own functions: lobes are called so often that a table of
+/// functions would cost more than a choice.
 macro_rules! lobes {
     ($($(#[$doc:meta])* $kind:ident($lobe:ty),)*) => {
         /// A lobe of any kind.
@@ -96,7 +96,7 @@ lobes! {
     Phong(DistributedLobe<Phong>),
     /// A mirror.
     Mirror(MirrorLobe),
-    /// What goes straight through.
+    /// Transmission straight through.
     Straight(StraightLobe),
     /// A fraction, distributed by a D.
     Shaped(DistributedLobe<Arc<dyn Distribution>>),
@@ -104,9 +104,9 @@ lobes! {
     Polished(SmoothConductor),
     /// A metal of facets.
     Metallic(RoughConductor),
-    /// What a transparent coat reflects.
+    /// The reflection of a transparent coat.
     Coat(Arc<CoatReflection>),
-    /// What a diffuse ground under a coat reflects.
+    /// A diffuse ground under a transparent coat.
     Ground(CoatedDiffuse),
     /// A smooth interface between transparent media.
     Smooth(SmoothDielectric),

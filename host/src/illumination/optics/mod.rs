@@ -3,8 +3,8 @@
 //! Directions are unit vectors in the frame of the surface element: z is its normal on the side of the viewer. Light
 //! may come from above, or from below where a surface lets it through.
 //!
-//! An [`Bsdf`] is a sum of lobes. Some end a ray's way: they answer lights and ambient light only, as Lambert's and
-//! Phong's terms do where diffuse interreflection is left out. The others carry it on.
+//! A [`Bsdf`] is a sum of lobes. Some end a path: they reflect light of lights and ambient light only, as Lambert's and
+//! Phong's terms do where diffuse interreflection is left out. The others continue it.
 
 mod context;
 mod prepared_textures;

@@ -4,32 +4,32 @@ use super::context::ShadingContext;
 use crate::color::{Channels, SpectralTable, WavelengthSets};
 use crate::illumination::texture::{NumberTexture, Paint, Pattern, TextureFootprint};
 
-/// A fraction of light, ready.
+/// A fraction of light, prepared.
 #[derive(Clone, Debug)]
 pub(super) enum PreparedPaint {
     /// One curve, everywhere.
     Plain(SpectralTable),
-    /// What the pattern of a number gives at the place that is looked at.
+    /// The texture value of a number, at the footprint.
     Textured(usize),
 }
 
-/// A number, ready.
+/// A number, prepared.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum PreparedNumber {
     /// One, everywhere.
     Constant(f64),
-    /// What the pattern of a number gives at the place that is looked at.
+    /// The texture value of a number, at the footprint.
     Varying(usize),
 }
 
-/// What changes from place to place: a fraction of light, or a number.
+/// A texture, prepared: of a fraction of light, or of a number.
 #[derive(Clone, Debug)]
 pub(super) enum PreparedTexture {
     Paint(PreparedPattern),
     Number(NumberTexture),
 }
 
-/// A pattern, ready.
+/// A pattern, prepared.
 #[derive(Clone, Debug)]
 pub(super) struct PreparedPattern {
     pattern: Pattern,
@@ -58,14 +58,14 @@ impl PreparedPattern {
         PreparedPattern { pattern: Pattern { paints: Vec::new(), ..pattern.clone() }, parts }
     }
 
-    /// The mean over a place.
+    /// The mean over a footprint.
     pub(super) fn at(&self, footprint: &TextureFootprint, wavelength_set: usize) -> Channels {
         let mut sum = Channels::ZERO;
         self.each(footprint, 1.0, &mut |curve, amount| sum += curve.of(wavelength_set) * amount);
         sum
     }
 
-    /// Gives what it is mixed of in the mean over a place, and how much of each.
+    /// Gives the curves of which it is mixed in the mean over a footprint, and how much of each.
     pub(super) fn each<'a>(
         &'a self,
         footprint: &TextureFootprint,
@@ -83,7 +83,7 @@ impl PreparedPattern {
 }
 
 impl PreparedTexture {
-    /// The mean over a place; a number is in all lanes.
+    /// The mean over a footprint; a number is in all lanes.
     pub(super) fn at(&self, footprint: &TextureFootprint, wavelength_set: usize) -> Channels {
         match self {
             PreparedTexture::Paint(pattern) => pattern.at(footprint, wavelength_set),
@@ -93,7 +93,7 @@ impl PreparedTexture {
 }
 
 impl PreparedNumber {
-    /// The number at the place that is looked at.
+    /// The number at the footprint of a shading context.
     #[inline]
     pub(super) fn of(self, context: &ShadingContext<'_>) -> f64 {
         match self {
@@ -104,12 +104,12 @@ impl PreparedNumber {
 }
 
 impl PreparedPaint {
-    /// Whether it is nothing, wherever.
+    /// Whether it is 0 everywhere.
     pub(super) fn is_black(&self) -> bool {
         matches!(self, PreparedPaint::Plain(curve) if curve.max() <= 0.0)
     }
 
-    /// The fraction at the place and the wavelengths that are looked at.
+    /// The fraction at the footprint and the wavelengths of a shading context.
     #[inline]
     pub(super) fn of(&self, context: &ShadingContext<'_>) -> Channels {
         match self {

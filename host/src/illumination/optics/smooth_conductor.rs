@@ -9,7 +9,7 @@ use std::sync::Arc;
 /// Reflects Fresnel's part of light in one direction.
 #[derive(Clone, Debug)]
 pub(super) struct SmoothConductor {
-    /// For each set of wavelengths, lane by lane.
+    /// For each wavelength set, lane by lane.
     pub(super) conductors: Arc<Vec<[Conductor; LANES]>>,
 }
 

@@ -1,4 +1,4 @@
-//! What goes straight through, as if nothing was there.
+//! Transmission straight through, as if nothing was there.
 
 use super::context::{BsdfSample, ShadingContext};
 use super::lobe::{Flags, Lobe};

@@ -1,4 +1,4 @@
-//! Facts about what surfaces scatter: white furnaces, closed forms, and samples against densities.
+//! Facts about what surfaces scatter: white furnaces, closed forms, and samples against pdfs.
 
 use super::*;
 use crate::color::Channels;
@@ -187,7 +187,7 @@ fn a_metal_may_be_brushed_as_patterns_tell() {
 }
 
 #[test]
-fn densities_are_those_with_which_directions_are_drawn() {
+fn pdfs_are_those_of_the_sampled_directions() {
     let wavelengths = WavelengthSets::bands();
     let rough_glass = Transparent { roughness: 0.4.into(), ..Transparent::clear(RefractiveIndex::Constant(1.5)) };
     let materials = [
@@ -288,7 +288,7 @@ fn copper_under_white_light_has_the_color_of_its_reflectance() {
 }
 
 #[test]
-fn straight_light_goes_on_and_impossible_materials_are_errors() {
+fn light_goes_straight_through_and_impossible_materials_are_errors() {
     let wavelengths = WavelengthSets::bands();
     let curtain = Classic { transparency: Paint::grey(0.25), ..Classic::default() };
     let bsdf = ready(&curtain.into(), &wavelengths);

@@ -12,10 +12,11 @@ const RATIO: f64 = 1.2;
 /// Most nodes: some take tenths of a second to be made.
 const MOST_NODES: usize = 24;
 
-/// Lobes for some values of a number, of which the two about the value at a place are mixed.
+/// Lobes for some values of a number, of which the two about the value at a footprint are mixed.
 ///
-/// A mixture of two lobes keeps their energy, is reciprocal if they are, and is drawn as exactly as they are. Of lobes
-/// whose roughness is in a ratio of 1.2 it differs from that of the roughness between them by at most 2 % of its peak.
+/// A mixture of two lobes keeps their energy, is reciprocal if they are, and is sampled as exactly as they are. Of
+/// lobes whose roughness is in a ratio of 1.2 it differs from that of the roughness between them by at most 2 % of its
+/// peak.
 #[derive(Clone, Debug)]
 pub(super) struct VaryingLobe<L> {
     quantity: PreparedNumber,
@@ -41,7 +42,7 @@ impl<L: Lobe> VaryingLobe<L> {
         VaryingLobe { quantity, nodes }
     }
 
-    /// The two lobes about the value at a place, and how much there is of each; they are the same at the ends.
+    /// The two lobes about the value at a footprint, and how much there is of each; they are the same at the ends.
     fn parts(&self, context: &ShadingContext<'_>) -> [(&L, f64); 2] {
         let value = self.quantity.of(context);
         let above = self.nodes.partition_point(|(node, _)| *node <= value).min(self.nodes.len() - 1);
@@ -51,18 +52,18 @@ impl<L: Lobe> VaryingLobe<L> {
         [(&self.nodes[below].1, 1.0 - part), (&self.nodes[above].1, part)]
     }
 
-    /// The lobe that stands for all of them where no place is known: that in the middle.
+    /// The lobe that stands for all of them where no footprint is known: that in the middle.
     fn typical(&self) -> &L {
         &self.nodes[self.nodes.len() / 2].1
     }
 
-    /// The mixture of what lobes tell.
+    /// The mixture of quantities of lobes.
     fn mixed(&self, context: &ShadingContext<'_>, of: impl Fn(&L) -> Channels) -> Channels {
         let [(a, less), (b, more)] = self.parts(context);
         if less == 0.0 { of(b) } else { of(a) * less + of(b) * more }
     }
 
-    /// The mixture of a number that lobes tell.
+    /// The mixture of numbers of lobes.
     fn mixed_number(&self, context: &ShadingContext<'_>, of: impl Fn(&L) -> f64) -> f64 {
         let [(a, less), (b, more)] = self.parts(context);
         if less == 0.0 { of(b) } else { of(a) * less + of(b) * more }
@@ -82,7 +83,7 @@ impl<L: Lobe> Lobe for VaryingLobe<L> {
         self.mixed_number(context, |lobe| lobe.pdf(context, light))
     }
 
-    /// Draws a direction from one of the two lobes.
+    /// Samples a direction from one of the two lobes.
     fn sample(&self, context: &ShadingContext<'_>, choice: f64, point: [f64; 2]) -> Option<BsdfSample> {
         let [(a, less), (b, more)] = self.parts(context);
         let rest = |below: f64, part: f64| ((choice - below) / part).clamp(0.0, 1.0_f64.next_down());
@@ -97,7 +98,7 @@ impl<L: Lobe> Lobe for VaryingLobe<L> {
         self.mixed_number(context, |lobe| lobe.strength(context))
     }
 
-    /// The single directions of lobes that are polished alike, and differ in what lies on them.
+    /// The specular samples of lobes that are polished alike, and differ in what lies on them.
     fn specular_samples(&self, context: &ShadingContext<'_>) -> [Option<BsdfSample>; 2] {
         let [(a, less), (b, more)] = self.parts(context);
         let [one, other] = [a, b].map(|lobe| lobe.specular_samples(context));

@@ -12,15 +12,15 @@ use std::fmt;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
-/// Most looks at an image for one mean, side by side along the longer side of the part.
+/// Most lookups in an image for one mean, side by side along the longer side of the part.
 const MOST_PROBES: f64 = 16.0;
 
 /// An image of fractions, 0..=1 in three bands, row 0 at the top (v = 1).
 ///
-/// Bytes of a file are held as they are; other fractions are rounded to 1/65535, those of images with three bands of more
-/// than eight bits and more than 1024 x 1024 pixels to a thousandth of what they are. There are copies of half the size, of a
-/// quarter, and so on to one pixel, all with the same mean. With them a pixel takes 5 bytes, 2.7 where it is grey, 8 where
-/// three bands have sixteen bits, and 5.3 in the large ones.
+/// Bytes of a file are held as they are; other fractions are rounded to 1/65535, those of images with three bands of
+/// more than eight bits and more than 1024 x 1024 pixels to a thousandth of what they are. There are copies of half the
+/// size, of a quarter, and so on to one pixel, all with the same mean. With them a pixel takes 5 bytes, 2.7 where it is
+/// grey, 8 where three bands have sixteen bits, and 5.3 in the large ones.
 #[derive(Clone)]
 pub struct Image {
     name: String,
@@ -66,8 +66,8 @@ impl Image {
     /// Reads a PNG or EXR file. What is below 0 or above 1 is cut off; coverage is not heeded.
     ///
     /// # Errors
-    /// [`PictureError`], also for a file with a number that is not finite, and where the image would take more memory than
-    /// there is.
+    /// [`PictureError`], also for a file with a number that is not finite, and where the image would take more memory
+    /// than there is.
     pub fn read(path: &Path, content: ImageContent) -> Result<Image, PictureError> {
         let source = PictureReader::open(path)?;
         let [width, height] = source.size();
@@ -178,11 +178,11 @@ impl Image {
 
     /// The mean over a part; the image repeats in both directions.
     ///
-    /// Along the longer side of the part several looks are taken, each of which is about as wide as the shorter side and
-    /// goes between two of the copies.
+    /// Along the longer side of the part several lookups are taken, each of which is about as wide as the shorter side
+    /// and goes between two of the copies.
     ///
     /// # Source
-    /// Williams 1983, pyramidal parametrics; McCormack and others 1999, Feline: several looks along the longer axis.
+    /// Williams 1983, pyramidal parametrics; McCormack and others 1999, Feline: several lookups along the longer axis.
     pub fn at(&self, footprint: &TextureFootprint) -> DVec3 {
         let [width, height] = self.size().map(|n| n as f64);
         let texels = DVec2::new(width, height);
@@ -336,7 +336,7 @@ mod tests {
     }
 
     #[test]
-    fn pixels_are_met_in_their_middles_and_the_first_row_is_on_top() {
+    fn pixels_are_found_in_their_middles_and_the_first_row_is_on_top() {
         let image = ramp(8, 4);
         for y in 0..4 {
             for x in 0..8 {
@@ -353,7 +353,7 @@ mod tests {
     fn the_mean_over_a_part_is_that_of_its_pixels() {
         let image = Image::new("stripes".into(), 256, 256, |x, _| DVec3::splat(f64::from(x / 64 % 2)));
         let mean = |uv: DVec2, across: f64, up: f64| image.at(&part(uv, DVec2::X * across, DVec2::Y * up)).x;
-        // Whole periods of the stripes, whichever way they lie.
+        // Whole periods of the stripes, in whichever direction they lie.
         assert!((mean(DVec2::splat(0.3), 0.5, 0.01) - 0.5).abs() < 0.01);
         assert!((mean(DVec2::splat(0.3), 1.0, 1.0) - 0.5).abs() < 1e-4);
         // Along the stripes the part may be long.

@@ -1,8 +1,8 @@
 //! Textures: fractions of light and heights that change from place to place.
 //!
-//! A [`Paint`] is a color, or a [`Pattern`] of other paints: at each place the pattern tells how much of each there is. What
-//! is painted may thus be measured spectra, and patterns of patterns. Each pattern gives its mean over the part of the
-//! surface that a ray stands for, so that what is far away does not shimmer.
+//! A [`Paint`] is a color, or a [`Pattern`] of other paints: at each place the pattern tells how much of each there is.
+//! What is painted may thus be measured spectra, and patterns of patterns. Each pattern gives its mean over the part of
+//! the surface that a ray stands for, so that what is far away does not shimmer.
 
 mod image;
 mod motif;
@@ -68,12 +68,12 @@ fn nested<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Paint>, D::E
     paints
 }
 
-/// How a pattern lies.
+/// Texture mapping: how a pattern lies.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct TextureMapping {
-    /// Whether it goes through the body, in the coordinates of the object. If not, it lies on the surface, in parameters
-    /// (u, v), of which z is 0.
+    /// Whether it goes through the body, in the coordinates of the object. If not, it lies on the surface, in
+    /// parameters (u, v), of which z is 0.
     pub solid: bool,
     /// Size of one repetition.
     pub size: DVec3,
@@ -94,7 +94,8 @@ pub enum Relief {
         /// Height of 1, scene units; below 0 it is deep.
         height: f64,
     },
-    /// Normals from an image: red, green and blue from 0 to 1 are its components along u, along v and outwards, −1 to 1.
+    /// Normals from an image: red, green and blue from 0 to 1 are its components along u, along v and outwards, −1 to
+    /// 1.
     Normals {
         /// The image.
         image: Image,
@@ -147,7 +148,7 @@ impl Default for TextureMapping {
 }
 
 impl TextureMapping {
-    /// A place of the surface as the pattern counts it.
+    /// The footprint in the coordinates of the pattern.
     fn mapped(&self, footprint: &TextureFootprint) -> TextureFootprint {
         let turn = self.turned();
         let lay = |uv: DVec2, own: DVec3| {
@@ -265,7 +266,7 @@ impl Paint {
 }
 
 impl Pattern {
-    /// How much there is of each paint, in the mean over a place: fractions; of the bands of an image, three.
+    /// How much there is of each paint, in the mean over a footprint: fractions; of the bands of an image, three.
     pub fn parts(&self, footprint: &TextureFootprint) -> [f64; MOST_PAINTS] {
         self.motif.parts(&self.laying.mapped(footprint), self.laying.solid)
     }
@@ -275,7 +276,7 @@ impl Pattern {
         matches!(self.motif, Motif::Image { .. })
     }
 
-    /// How high a place is, 0..=1.
+    /// The height at a footprint, 0..=1.
     fn height(&self, footprint: &TextureFootprint) -> f64 {
         let [a, b, c] = self.parts(footprint);
         if self.is_image() { (a + b + c) / 3.0 } else { b }
@@ -316,7 +317,7 @@ impl Relief {
         }
     }
 
-    /// The normal that the relief gives a place of a surface.
+    /// The normal that the relief gives a surface at a footprint.
     ///
     /// - `normal`: of the surface, unit length, outwards.
     ///

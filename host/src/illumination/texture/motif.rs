@@ -82,7 +82,7 @@ impl Motif {
         }
     }
 
-    /// How much there is of each paint in the mean over a place, in the coordinates of the pattern.
+    /// How much there is of each paint in the mean over a footprint, in the coordinates of the pattern.
     pub(super) fn parts(&self, footprint: &TextureFootprint, solid: bool) -> [f64; MOST_PAINTS] {
         let [a, b] = footprint.sides.map(|side| side.own);
         let width = a.length().max(b.length());

@@ -66,7 +66,7 @@ impl From<f64> for NumberTexture {
 }
 
 impl NumberTexture {
-    /// The mean of the number over a place.
+    /// The mean of the number over a footprint.
     pub fn at(&self, footprint: &TextureFootprint) -> f64 {
         match self {
             NumberTexture::Constant(value) => *value,
@@ -74,7 +74,7 @@ impl NumberTexture {
         }
     }
 
-    /// The mean over all places.
+    /// The mean over all footprints.
     pub fn mean(&self) -> f64 {
         match self {
             NumberTexture::Constant(value) => *value,
@@ -134,7 +134,7 @@ impl Varying {
     }
 }
 
-/// The mean bands of a pattern over a place.
+/// The mean bands of a pattern over a footprint.
 fn bands(pattern: &Pattern, footprint: &TextureFootprint) -> DVec3 {
     let parts = pattern.parts(footprint);
     if pattern.is_image() {

@@ -20,7 +20,7 @@ fn solid() -> TextureMapping {
     TextureMapping { solid: true, ..TextureMapping::default() }
 }
 
-/// A place on the plane z = 0 whose parameters are its coordinates.
+/// A footprint on the plane z = 0 whose parameters are its coordinates.
 fn on_plane(at: DVec2, width: f64) -> TextureFootprint {
     let side = |way: DVec2| FootprintSide { scene: way.extend(0.0), uv: way, own: way.extend(0.0) };
     let sides = [side(DVec2::X * width), side(DVec2::Y * width)];

@@ -1,8 +1,9 @@
-//! What facets reflect and let through of the light from all around, under a coat or without one: tables over the cosine.
+//! Albedo tables: what facets reflect and let through of the light from all around, under a coat or without one, over
+//! the cosine.
 //!
-//! With S what facets send to a viewer by one reflection or refraction, and E what the coat reflects, the tables hold the
-//! integrals over all directions of light that a surface needs to know what is missing: that of S, and that of S times the
-//! greater E of viewer and light.
+//! With S what facets send to a viewer by one reflection or refraction, and E what the coat reflects, the tables hold
+//! the integrals over all directions of light that a surface needs to know what is missing: that of S, and that of S
+//! times the greater E of viewer and light.
 
 use super::super::dielectric::beta;
 use crate::illumination::distribution::{Microfacet, SlopeDistribution};
@@ -37,7 +38,8 @@ pub(super) struct DirectionalAlbedos {
     pub(super) all_coat: f64,
     /// Reflected by Fresnel's equations, times the greater part that the coat reflects, of viewer and light.
     pub(super) reflected_coat: f64,
-    /// Reflected and refracted, times the part that the coat reflects, of whichever is outside; from inside, refracted alone.
+    /// Reflected and refracted, times the part that the coat reflects, of whichever is outside; from inside, refracted
+    /// alone.
     pub(super) sent_coat: f64,
 }
 
@@ -215,7 +217,7 @@ pub(super) enum InterfaceSide {
 }
 
 impl Albedo {
-    /// - `transmits`: whether what comes through counts; if not, all that is known of it is 0.
+    /// - `transmits`: whether what comes through counts; if not, all of it is 0.
     pub(super) fn new(interface: AlbedoInterface, coat: Option<CoatAlbedo>, transmits: bool) -> Albedo {
         let mut albedo =
             Albedo { interface, coat, tables: None, means: [DirectionalAlbedos::default(); 2], fresnel: [0.0; 3] };
@@ -229,8 +231,8 @@ impl Albedo {
         let surface = interface.surface;
         let square = surface.index().powi(2);
         if transmits {
-            // What comes through in the mean is the same to and fro but for the square of the index. The side from which light
-            // is reflected totally has kinks; what is known of the other has none.
+            // What comes through in the mean is the same to and fro but for the square of the index. The side from
+            // which light is reflected totally has kinks; the mean of the other has none.
             let [outside, inside] = &mut albedo.means;
             let through = outside.sent_coat - outside.reflected_coat;
             inside.sent_coat = through / square;

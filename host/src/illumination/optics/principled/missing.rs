@@ -1,15 +1,16 @@
-//! What of all light is missing when facets have reflected and refracted once, and on which side it comes back.
+//! Missing energy: what is lost of all light when facets have reflected and refracted once, and on which side it comes
+//! back.
 
 use super::super::context::ShadingContext;
 use super::albedo::{DirectionalAlbedos, InterfaceSide};
 use super::surface::{PrincipledSurface, PrincipledValues};
 
-/// The part of all light that surfaces miss when facets have reflected and refracted once.
+/// The part of all light that is lost when facets have reflected and refracted once.
 #[derive(Clone, Copy)]
 pub(super) struct MissingEnergy {
     pub(super) opaque: f64,
     pub(super) metal: f64,
-    /// A transparent one, on the side that is meant.
+    /// Of a transparent one, on the side that is meant.
     pub(super) clear: f64,
 }
 
@@ -69,8 +70,9 @@ impl PrincipledSurface {
 
     /// How what a transparent surface misses is divided: what stays on the side of the viewer, and what goes through.
     ///
-    /// Of the mean parts a and b that are missing on the two sides, (1 − F) min(a, b) / a goes through from the one with the
-    /// mean F of Fresnel's term: with it, light that goes to and fro is the same but for the square of the index.
+    /// Of the mean parts a and b that are missing on the two sides, (1 − F) min(a, b) / a goes through from the one
+    /// with the mean F of Fresnel's term: with it, light that goes to and fro is the same but for the square of the
+    /// index.
     ///
     /// - `own`: the mean of what is missing on the side of the viewer.
     pub(super) fn division(&self, at: &PrincipledValues, own: f64) -> [f64; 2] {

@@ -6,7 +6,8 @@ use std::f64::consts::{FRAC_1_PI, TAU};
 /// The least roughness of a sheen: below it there is hardly any.
 const LEAST: f64 = 0.04;
 
-/// The rim of a cloth: r(V) r(L) / (π r̄) with r = (1 − cosine)ᵏ, k = 1 / roughness, and r̄ its mean 2 / ((k + 1) (k + 2)).
+/// The rim of a cloth: r(V) r(L) / (π r̄) with r = (1 − cosine)ᵏ, k = 1 / roughness, and r̄ its mean 2 / ((k + 1) (k +
+/// 2)).
 ///
 /// It reflects r(V) of the light from all around, and is reciprocal.
 ///
@@ -43,7 +44,7 @@ impl Sheen {
         (1.0 - self.albedo(view)) * (1.0 - self.albedo(light)) * FRAC_1_PI / (1.0 - self.mean())
     }
 
-    /// The density of samples, 1/sr: as light counts.
+    /// The pdf of samples, 1/sr: in proportion to the value times cosine.
     pub(super) fn pdf(self, light: f64) -> f64 {
         self.albedo(light) * light * FRAC_1_PI / self.mean()
     }

@@ -1,4 +1,4 @@
-//! The surface of a principled material: its parts, what each sends to a viewer, and how directions of light are drawn.
+//! The surface of a principled material: its parts, their values, and how directions of light are sampled.
 
 use super::super::context::{BsdfSample, ShadingContext};
 use super::super::dielectric::{beta, interface, reflected};
@@ -16,7 +16,7 @@ use std::f64::consts::FRAC_1_PI;
 /// Neither of two ways is left to a smaller chance, if there is anything in it.
 const LEAST_CHANCE: f64 = 0.05;
 
-/// A principled material of one roughness under a coat of one roughness, ready.
+/// A principled material of one roughness under a coat of one roughness, prepared.
 #[derive(Debug)]
 pub(in crate::illumination::optics) struct PrincipledSurface {
     pub(super) base: PreparedPaint,
@@ -51,7 +51,7 @@ pub(in crate::illumination::optics) enum PrincipledPart {
     Spread,
 }
 
-/// The numbers of it at a place.
+/// Its numbers at a footprint.
 pub(super) struct PrincipledValues {
     pub(super) side: InterfaceSide,
     pub(super) metallic: f64,
@@ -64,7 +64,7 @@ pub(super) struct PrincipledValues {
     pub(super) rim: Sheen,
 }
 
-/// What a facet sends on.
+/// The parts of light that a facet reflects and lets through.
 pub(super) struct FacetFresnel {
     /// Reflected by what is metal and by what is opaque.
     ground: Channels,
@@ -99,9 +99,9 @@ impl PrincipledValues {
         (1.0 - self.metallic) * (1.0 - self.transmission)
     }
 
-    /// What a metal has left, after all further reflections, of light that one reflection did not send on.
+    /// The part that a metal reflects, after all further reflections, of light that one reflection did not send out.
     ///
-    /// - `all`: the mean part that one reflection sends on.
+    /// - `all`: the mean part that one reflection sends out.
     fn further(&self, all: f64) -> Channels {
         self.base.map(|base| {
             let mean = base + (1.0 - base) / 21.0;
@@ -159,7 +159,7 @@ impl PrincipledSurface {
         }
     }
 
-    /// Whether a part knows single directions only.
+    /// Whether a part is a delta lobe.
     pub(super) fn is_mirror(&self, part: PrincipledPart) -> bool {
         match part {
             PrincipledPart::Coat => self.coat_facets.is_none(),
@@ -168,9 +168,9 @@ impl PrincipledSurface {
         }
     }
 
-    /// Whether a part spreads light about everywhere.
+    /// Whether a part is broad.
     ///
-    /// - `narrow`: the density from straight above from which on it is a beam, 1/sr.
+    /// - `narrow`: the pdf straight above from which on it is narrow, 1/sr.
     pub(super) fn is_broad(&self, part: PrincipledPart, narrow: f64) -> bool {
         let pdf = |facets: &Option<Microfacet>| {
             facets.as_ref().map_or(f64::INFINITY, |facets| facets.pdf(DVec3::Z, DVec3::Z))
@@ -192,7 +192,7 @@ impl PrincipledSurface {
         self.thin && self.facets.is_none() && self.transmits()
     }
 
-    /// What a facet sends on at a cosine.
+    /// The parts of light that a facet reflects and lets through at a cosine.
     pub(super) fn fresnel(&self, at: &PrincipledValues, context: &ShadingContext, cosine: f64) -> FacetFresnel {
         let grazing = (1.0 - cosine.clamp(0.0, 1.0)).powi(5);
         let own = self.surface.reflectance(cosine).mean();
@@ -227,7 +227,7 @@ impl PrincipledSurface {
         if at.coat > 0.0 { 1.0 - at.coat * self.albedo.coat(cosine) } else { 1.0 }
     }
 
-    /// Where a facet would have to look to send light to the viewer, through or not.
+    /// The normal that a facet must have to send light to the viewer, through or not.
     pub(super) fn facet(&self, context: &ShadingContext, light: DVec3) -> Option<DVec3> {
         let view = context.view;
         let facet = if light.z > 0.0 {
@@ -339,7 +339,7 @@ impl PrincipledSurface {
         if self.thin { at.base * part } else { at.base.map(f64::sqrt) * (part * radiance_scale(context)) }
     }
 
-    /// The density of samples, 1/sr.
+    /// The pdf of samples, 1/sr.
     pub(super) fn pdf(&self, part: PrincipledPart, context: &ShadingContext, light: DVec3) -> f64 {
         let view = context.view;
         if view.z <= 0.0 || light.z == 0.0 {
@@ -367,7 +367,7 @@ impl PrincipledSurface {
         if pdf.is_finite() { pdf } else { 0.0 }
     }
 
-    /// Draws a direction of light.
+    /// Samples a direction of light.
     pub(super) fn sample(
         &self,
         part: PrincipledPart,
@@ -420,7 +420,7 @@ impl PrincipledSurface {
         [above + at.clear() * stays * missing.clear, at.clear() * goes * missing.clear * color.sqrt()]
     }
 
-    /// Single directions of a part: what is reflected, and what comes through.
+    /// Specular samples of a part: what is reflected, and what comes through.
     pub(super) fn specular_samples(&self, part: PrincipledPart, context: &ShadingContext) -> [Option<BsdfSample>; 2] {
         if !self.is_mirror(part) {
             return [None, None];
@@ -455,7 +455,7 @@ impl PrincipledSurface {
         self.fresnel(&at, context, context.view.z).through * self.under(&at, context.view.z)
     }
 
-    /// One of the single directions, by its part.
+    /// One of the specular samples, by its part.
     pub(super) fn specular_sample(
         &self,
         part: PrincipledPart,
@@ -493,7 +493,7 @@ impl PrincipledSurface {
         }
     }
 
-    /// About what a part shows of what is around.
+    /// Glossy albedo: about what a part shows of what is around.
     pub(super) fn glossy_albedo(&self, part: PrincipledPart, context: &ShadingContext) -> Channels {
         let at = self.at(context);
         let cosine = context.view.z.clamp(0.0, 1.0);
@@ -509,7 +509,7 @@ impl PrincipledSurface {
         }
     }
 
-    /// The part of light from all around that is reflected alike to everywhere.
+    /// Diffuse albedo: the part of light from all around that is reflected alike to everywhere.
     pub(super) fn diffuse_albedo(&self, part: PrincipledPart, context: &ShadingContext) -> Channels {
         if part != PrincipledPart::Spread {
             return Channels::ZERO;

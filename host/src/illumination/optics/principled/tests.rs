@@ -1,4 +1,4 @@
-//! Facts about the principled material: furnaces over all of its numbers, samples against densities, light to and fro.
+//! Facts about the principled material: furnaces over all of its numbers, samples against pdfs, reciprocity.
 
 use super::super::context::ShadingContext;
 use super::super::prepared_textures::{PreparedNumber, PreparedPaint};
@@ -88,7 +88,7 @@ fn furnace(surface: &PrincipledSurface, context: &ShadingContext) -> f64 {
         if surface.is_mirror(part) {
             continue;
         }
-        // Both ways of a part that goes two ways: each is drawn for one of the choices.
+        // Both directions of a part that has two: each is sampled for one of the choices.
         for choice in [0.0, 1.0_f64.next_down()] {
             let term = |point: [f64; 2]| {
                 let Some(light) = surface.sample(part, context, choice, point) else { return 0.0 };
@@ -214,7 +214,7 @@ fn light_to_and_fro_is_the_same() {
 }
 
 #[test]
-fn samples_follow_their_density_by_chi_squared() {
+fn samples_follow_their_pdf_by_chi_squared() {
     // Directions in 6 by 12 parts of equal solid angle of the whole sphere.
     const ROWS: usize = 6;
     const COLUMNS: usize = 12;
