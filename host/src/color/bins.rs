@@ -1,8 +1,8 @@
 //! Spectra as a few numbers: means over bins of wavelengths, or values at one wavelength in each bin.
 //!
-//! A renderer carries one number for each bin. Means have no noise, but a mean of products is not the product of
-//! means: the error falls with the square of the width of the bins. Wavelengths drawn in the bins have noise and no
-//! such error. Three bands of a screen are [`super::srgb`] of what is [`super::observer::surface_tristimulus`].
+//! A renderer carries one number for each bin. Means have no noise, but a mean of products is not the product of means:
+//! the error falls with the square of the width of the bins. Wavelengths sampled in the bins have noise and no such
+//! error. Three bands of a screen are [`super::srgb`] of what is [`super::observer::surface_tristimulus`].
 
 use super::observer::{VISIBLE, functions};
 use super::{ColorError, Spectrum, integral};
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn wavelengths_drawn_in_bins_have_no_bias() {
+    fn wavelengths_sampled_in_bins_have_no_bias() {
         let bins = Bins::visible(4).expect("bins");
         let exact = tristimulus(&shipped::D65);
         let parts = 200;

@@ -1,4 +1,4 @@
-//! The numbers that one ray carries side by side.
+//! Lanes: the numbers that one ray carries side by side.
 
 use serde::{Deserialize, Serialize};
 use std::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub};
@@ -23,7 +23,7 @@ impl Channels {
         Channels([value; LANES])
     }
 
-    /// One lane, drawn as often as the numbers times others tell, and that alone: it stands for all of them.
+    /// One lane, sampled in proportion to the numbers times weights, and that alone: it stands for all of them.
     ///
     /// - `uniform`: in 0..1, chooses.
     pub fn sample_lane(self, weights: [f64; LANES], uniform: f64) -> Option<(usize, Channels)> {

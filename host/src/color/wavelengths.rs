@@ -1,19 +1,22 @@
-//! Which wavelengths rays carry, and quantities at them.
+//! Wavelength sets: the wavelengths that rays carry, and quantities at them.
 //!
 //! Where a scene needs no spectra, a ray carries the three bands of a screen. Where it does, it carries eight
-//! wavelengths, evenly spaced over all that is seen, as a wavelength set whose place is drawn for each sample. There
-//! are 64 wavelength sets: all together they are 512 bins less than a nanometre wide, and a quantity is tabulated once
-//! as its means over them.
+//! wavelengths, evenly spaced over all that is seen, as a wavelength set that is sampled anew for each sample of a
+//! pixel. There are 64 sets: all together they are 512 bins less than a nanometre wide, and a quantity is tabulated
+//! once as its means over them.
+//!
+//! # Source
+//! Hero wavelength sampling, Wilkie and others 2014; here of 64 sets of bins in the place of any wavelengths.
 
 use super::{Bins, Channels, Color, LANES, Spectrum, color::WHITE, srgb};
 use glam::DVec3;
 
-/// Wavelength sets of wavelengths.
+/// Number of wavelength sets.
 const SETS: usize = 64;
 /// Wavelengths, nm, at which indices of refraction are taken for the three bands: about where each band has its middle.
 const OF_BANDS: [f64; 3] = [611.0, 549.0, 464.0];
 
-/// What rays carry.
+/// The wavelengths or bands that rays carry, as wavelength sets.
 #[derive(Clone, Debug)]
 pub struct WavelengthSets {
     /// For each wavelength set the wavelength of each lane, nm; 0 for unused lanes.
@@ -23,12 +26,12 @@ pub struct WavelengthSets {
     spectral: bool,
 }
 
-/// A quantity at the wavelengths of each wavelength set.
+/// A spectral table: a quantity at the wavelengths of each wavelength set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpectralTable(Vec<Channels>);
 
 impl SpectralTable {
-    /// A quantity for each of some wavelength sets.
+    /// A table of a quantity for each of some wavelength sets.
     pub fn each(sets: usize, of: impl FnMut(usize) -> Channels) -> SpectralTable {
         SpectralTable((0..sets.max(1)).map(of).collect())
     }
@@ -294,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lane_that_is_drawn_stands_for_all() {
+    fn a_lane_that_is_sampled_stands_for_all() {
         let light = Channels([1.0, 2.0, 3.0, 0.0, 5.0, 6.0, 7.0, 8.0]);
         let weights = [1.0, 4.0, 0.5, 1.0, 0.0, 2.0, 0.01, 3.0];
         let mut sum = Channels::ZERO;
@@ -303,7 +306,7 @@ mod tests {
             assert!((0..LANES).all(|other| other == lane || alone.0[other] == 0.0));
             sum += alone * 1e-5;
         }
-        // What is never seen is never drawn.
+        // A lane that is never seen is never sampled.
         for (lane, mean) in sum.0.into_iter().enumerate() {
             let expected = if weights[lane] > 0.0 { light.0[lane] } else { 0.0 };
             assert!((mean - expected).abs() < 0.05, "{lane}: {mean}, not {expected}");

@@ -74,7 +74,8 @@ impl NewtonSolver<'_> {
         found.filter(|critical| critical.at.distance(start) <= reach)
     }
 
-    /// The gradient of the distance on the first surface at the foot of a point, with what it would be to be critical.
+    /// The gradient of the distance on the first surface at the foot point of a point, with what it would be to be
+    /// critical.
     fn step(&self, places: &mut [SheetCoordinates; 2], at: DVec3, reach: f64) -> Option<CriticalStep> {
         let (one, foot) = self.foot(0, places[0], at, reach);
         let (two, gradient, gap, other) = self.gradient(places[1], foot.point, foot.normal, reach)?;

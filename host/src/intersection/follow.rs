@@ -28,7 +28,7 @@ pub enum End {
 /// Follows the curve from a point in a direction.
 ///
 /// - `longest`: the longest step from a point on, model units.
-/// - `goes_on`: whether to go on from a point.
+/// - `goes_on`: whether to continue from a point.
 /// - Returns the points behind the first, and how it ended.
 pub fn follow(
     solver: &NewtonSolver<'_>,
@@ -72,7 +72,7 @@ pub fn follow(
     (points, End::Lost)
 }
 
-/// Follows the curve along which two surfaces are at a level distance, both ways from one of its points.
+/// Follows the curve along which two surfaces are at a level distance, in both directions from one of its points.
 ///
 /// - `step`: from point to point, model units.
 /// - Returns the points in order, and whether the last is joined to the first.

@@ -17,7 +17,7 @@ const NEARLY_PARALLEL: f64 = 1e-5;
 const INDEPENDENT: f64 = 1e-3;
 /// Residuals this many roundings of the coordinates high cannot be avoided.
 const ROUNDINGS: f64 = 16.0;
-/// What a foot is beside its point, along the surface, as a part of the reach, where it lies on a border.
+/// Distance of a foot point beside its point, along the surface, as a part of the reach, where it lies on a border.
 const BESIDE: f64 = 1e-9;
 
 /// Finds points on the surfaces of two sheets.
@@ -59,7 +59,7 @@ impl NewtonPoint {
 }
 
 impl<'a> NewtonSolver<'a> {
-    /// Prepares for the sheets of `grounds`.
+    /// Prepares for two `sheets`.
     pub fn new(sheets: &'a [PreparedSheet<'a>; 2], precision: &CurvePrecision) -> NewtonSolver<'a> {
         let bounds = sheets.each_ref().map(|ground| ground.sheet.mesh.bounds());
         let size = bounds.iter().flatten().map(|bounds| bounds.diagonal()).fold(0.0, f64::max);
@@ -68,7 +68,8 @@ impl<'a> NewtonSolver<'a> {
         NewtonSolver { sheets, tolerance: (newton * size).max(ROUNDINGS * f64::EPSILON * farthest) }
     }
 
-    /// The foot of a point on a sheet, and its place there: beyond the border of the surface if a neighbour is nearer.
+    /// The foot point of a point on a sheet, and its place there: beyond the border of the surface if a neighbour is
+    /// nearer.
     pub fn foot(&self, side: usize, place: SheetCoordinates, at: DVec3, reach: f64) -> (SheetCoordinates, Foot) {
         let ground = &self.sheets[side];
         let foot = ground.foot(&place, at);
@@ -185,8 +186,8 @@ impl<'a> NewtonSolver<'a> {
         newton_point
     }
 
-    /// The point near `start` where two surfaces of one sheet and one of the other meet; none if they touch there, or do
-    /// not meet.
+    /// The point near `start` where two surfaces of one sheet and one of the other meet; none if they touch there, or
+    /// do not meet.
     ///
     /// - `places`: on the first sheet before and behind the border, on the second before and behind.
     /// - Returns what was found before and behind.
@@ -248,7 +249,7 @@ impl<'a> NewtonSolver<'a> {
         Some(self.unrefined(places, at)).filter(|newton_point| newton_point.inaccuracy.is_none())
     }
 
-    /// The point as it stands: how far its feet are apart.
+    /// The unrefined point: how far its foot points are apart.
     fn unrefined(&self, places: [SheetCoordinates; 2], at: DVec3) -> NewtonPoint {
         let feet = [0, 1].map(|side| self.sheets[side].foot(&places[side], at));
         let [one, two] = feet;
@@ -264,13 +265,14 @@ impl<'a> NewtonSolver<'a> {
     }
 }
 
-/// How far a foot is beside its point, along the surface.
+/// How far a foot point is beside its point, along the surface.
 pub fn beside(foot: &Foot, at: DVec3) -> f64 {
     let offset = at - foot.point;
     (offset - foot.normal * offset.dot(foot.normal)).length()
 }
 
-/// The vector with given heights over three planes through the origin, of unit normals; none if they do not determine it.
+/// The vector with given heights over three planes through the origin, of unit normals; none if they do not determine
+/// it.
 fn plane_intersection([a, b, c]: [DVec3; 3], heights: [f64; 3]) -> Option<DVec3> {
     let (bc, ca, ab) = (b.cross(c), c.cross(a), a.cross(b));
     let determinant = a.dot(bc);

@@ -91,7 +91,7 @@ pub struct CurvePoint {
     pub coordinates: [SheetCoordinates; 2],
     /// The distance between the points of both surfaces, model units.
     pub residual: f64,
-    /// The direction in which the branch goes on, unit length.
+    /// The direction in which the branch continues, unit length.
     pub tangent: DVec3,
     /// The angle between the tangent planes of the surfaces, degrees, 0..=90.
     pub angle: f64,
@@ -141,7 +141,7 @@ pub struct IntersectionCounts {
 /// In what two sheets meet.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Intersection {
-    /// The curves. Where two cross, each goes straight on.
+    /// The curves. Where two cross, each continues straight.
     pub branches: Vec<Branch>,
     /// Points in which the surfaces touch and have no others in common nearby.
     pub touching: Vec<CurvePoint>,

@@ -29,7 +29,7 @@ pub fn refine(solver: &NewtonSolver<'_>, precision: &CurvePrecision, intersectio
     }
 }
 
-/// Points of triangles that lie close together need not be in order on the exact curve: one from which the way on leads
+/// Points of triangles that lie close together need not be in order on the exact curve: one from which the next leads
 /// back along the tangent is not needed.
 fn settled(branch: Branch) -> Branch {
     let is_needed = |last: &CurvePoint, point: &CurvePoint, next: &CurvePoint| {
@@ -112,7 +112,7 @@ fn fill(solver: &NewtonSolver<'_>, chord: f64, branch: Branch) -> (Branch, [usiz
     (Branch { points: all, is_closed }, counts)
 }
 
-/// The points between two of which the tangents may point either way.
+/// The points between two of which the tangents may point in either direction.
 pub fn between(solver: &NewtonSolver<'_>, chord: f64, ends: [&CurvePoint; 2]) -> Vec<CurvePoint> {
     let way = ends[1].position - ends[0].position;
     let [from, to] = ends.map(|point| {

@@ -17,8 +17,8 @@ const SAGITTA_MARGIN: f64 = 1.5;
 
 /// Triangles, open or closed, that may know their exact surface.
 ///
-/// A triangle knows it if it names a surface that is there, and the parameters of its corners on it. Every other triangle
-/// is taken for a part of its plane.
+/// A triangle knows it if it names a surface that is there, and the parameters of its corners on it. Every other
+/// triangle is taken for a part of its plane.
 #[derive(Clone, Copy)]
 pub struct ExactSheet<'a> {
     pub(super) mesh: &'a Mesh,
@@ -38,7 +38,7 @@ impl<'a> From<&'a ExactSolid> for ExactSheet<'a> {
     }
 }
 
-/// The point of a surface that is nearest to a given one.
+/// The foot point of a given point: the point of a surface that is nearest to it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Foot {
     pub point: DVec3,
@@ -46,7 +46,7 @@ pub(super) struct Foot {
     pub uv: DVec2,
 }
 
-/// The way over a border: where it is, and a triangle behind it.
+/// A crossing of a border: where it is, and a triangle behind it.
 struct Crossing {
     middle: DVec3,
     triangle: u32,
@@ -55,7 +55,7 @@ struct Crossing {
 /// A sheet that is prepared for many questions.
 pub(super) struct PreparedSheet<'a> {
     pub sheet: ExactSheet<'a>,
-    /// For each surface the ways to others, and to its own other end.
+    /// For each surface the crossings to others, and to its own other end.
     crossings: HashMap<u32, Vec<Crossing>>,
 }
 
@@ -120,7 +120,8 @@ impl<'a> PreparedSheet<'a> {
         Foot { point, normal, uv: DVec2::new(b, c) }
     }
 
-    /// The place on a neighbour of the surface that is nearest to a point beyond its border; none if it has no neighbour.
+    /// The place on a neighbour of the surface that is nearest to a point beyond its border; none if it has no
+    /// neighbour.
     pub fn beyond(&self, place: &SheetCoordinates, at: DVec3) -> Option<SheetCoordinates> {
         let ways = self.crossings.get(&place.surface?)?;
         let distance = |way: &Crossing| way.middle.distance_squared(at);
@@ -143,7 +144,8 @@ impl<'a> PreparedSheet<'a> {
         SAGITTA_MARGIN * (0..3).map(of_side).fold(0.0, f64::max)
     }
 
-    /// A direction and the sine of an angle: the normals over a triangle are no farther from that direction, either way.
+    /// A direction and the sine of an angle: the normals over a triangle are no farther from that direction or its
+    /// opposite.
     pub fn cone(&self, triangle: u32) -> (DVec3, f64) {
         let axis = self.sheet.mesh.face_normal(triangle as usize).unwrap_or(DVec3::ZERO);
         let known = self.surface(triangle).and_then(|_| self.sheet.mesh.corner_normals.get(triangle as usize));

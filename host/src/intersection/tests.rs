@@ -126,7 +126,7 @@ fn a_cylinder_and_a_slanted_plane_meet_in_an_ellipse() {
     assert_eq!(found.branches.len(), 1);
     assert!(found.branches[0].is_closed);
     check(&found, &[&|p| p.x.hypot(p.z) - 1.0, &|p| p.dot(normal)], 1e-14, 1e-14);
-    // The way over the seam is no way back.
+    // The crossing of the seam does not lead back.
     let turns: f64 = found.branches[0]
         .positions()
         .windows(2)

@@ -83,8 +83,8 @@ impl Zone {
         (self.level / (rise(0) + rise(1))).sqrt().min(self.extent)
     }
 
-    /// The directions of the four curves that begin in a branching point; the third and fourth are opposite to the first
-    /// and second.
+    /// The directions of the four curves that begin in a branching point; the third and fourth are opposite to the
+    /// first and second.
     pub fn branches(&self) -> [DVec3; 4] {
         let [a, b] = self.center.curvatures.map(|curvature| curvature.abs().sqrt());
         let [x, y] = self.center.directions;
@@ -112,7 +112,8 @@ impl CriticalPoint {
         }
     }
 
-    /// The distances from it along the direction of the greater curvature at which the surfaces cross; none if they do not.
+    /// The distances from it along the direction of the greater curvature at which the surfaces cross; none if they do
+    /// not.
     pub fn crossing(&self) -> Option<f64> {
         let square = -2.0 * self.gap / self.curvatures[0];
         (square > 0.0).then(|| square.sqrt())
@@ -127,7 +128,7 @@ struct ZoneCandidate {
     reach: f64,
 }
 
-/// Finds them from pairs of triangles.
+/// Finds zones from pairs of triangles.
 pub fn find(solver: &NewtonSolver<'_>, raw: &TrianglePolylines) -> Zones {
     let search = |pair: &[u32; 2]| {
         let [one, two] = [0, 1].map(|k| solver.sheets[k].reach(pair[k]));

@@ -1,12 +1,12 @@
 //! Numbers for predicates: one that knows its error, and one that has none.
 //!
-//! A formula is written once over [`Arithmetic`]. It is first evaluated with [`RoundedNumber`], whose error bound says whether the
-//! sign is certain, and only if it is not with [`ExactNumber`].
+//! A formula is written once over [`Arithmetic`]. It is first evaluated with [`RoundedNumber`], whose error bound says
+//! whether the sign is certain, and only if it is not with [`ExactNumber`].
 
 use dashu_int::{IBig, Sign, UBig, ops::BitTest};
 use std::ops::{Add, Mul, Sub};
 
-/// What a formula of sums, differences and products is evaluated with.
+/// Arithmetic of sums, differences and products, with which a formula is evaluated.
 pub trait Arithmetic:
     Clone + From<f64> + Add<Output = Self> + Sub<Output = Self> + for<'a> Mul<&'a Self, Output = Self>
 {
@@ -90,7 +90,7 @@ impl Mul<&RoundedNumber> for RoundedNumber {
     }
 }
 
-/// A number of twice the digits: a rounded one, and what it lacks.
+/// A double-double number, of twice the digits: a rounded one, and what it lacks (Dekker 1971).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DoubleDouble {
     high: f64,

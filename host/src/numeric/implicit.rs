@@ -1,8 +1,8 @@
-//! Points that are known by what they lie on, and exact predicates of them.
+//! Implicit points, known by the lines and planes that they lie on, and exact predicates of them.
 //!
-//! Where an edge meets a face, or three faces meet, no floating-point number says exactly where that is. Such a point is
-//! kept as what defines it, with a rounded place and a bound on its error; predicates ask the rounded places first and
-//! the definitions only if those leave a doubt.
+//! Where an edge meets a face, or three faces meet, no floating-point number says exactly where that is. Such a point
+//! is kept as what defines it, with a rounded place and a bound on its error; predicates ask the rounded places first
+//! and the definitions only if those leave a doubt.
 //!
 //! # Source
 //! Attene 2020, "Indirect predicates for geometric constructions"; the numbers are ours.
@@ -14,7 +14,7 @@ use robust::{Coord, Coord3D, orient2d, orient3d};
 use std::cmp::Ordering;
 use std::sync::OnceLock;
 
-/// What defines a point.
+/// The definition of a point.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PointDefinition {
     /// Its coordinates.
@@ -30,7 +30,8 @@ pub enum PointDefinition {
 impl PointDefinition {
     /// Where two lines of one plane cross; they must not be parallel.
     pub fn crossing(one: [DVec3; 2], two: [DVec3; 2]) -> PointDefinition {
-        // A plane through the second along an axis: one along which the lines are seen to cross, the more squarely the better.
+        // A plane through the second along an axis: one along which the lines are seen to cross, the more squarely the
+        // better.
         let [p, q] = two;
         let (d, e) = (one[1] - one[0], q - p);
         let normal = (d / d.abs().max_element()).cross(e / e.abs().max_element()).abs();
@@ -47,7 +48,7 @@ impl PointDefinition {
     }
 }
 
-/// A point with its rounded place.
+/// An implicit point with its rounded place.
 #[derive(Clone, Debug)]
 pub struct ImplicitPoint {
     definition: PointDefinition,
@@ -86,7 +87,7 @@ impl ImplicitPoint {
         if errors == DVec3::ZERO {
             return ImplicitPoint::known(PointDefinition::Given(near), near, errors);
         }
-        // Where a line grazes a plane even twice the digits may not do.
+        // Where a line grazes a plane even double-double numbers may not do.
         if errors.max_element() <= 4.0 * f64::EPSILON * near.abs().max_element() {
             return ImplicitPoint::known(definition, near, errors);
         }
@@ -108,7 +109,7 @@ impl ImplicitPoint {
         self.near
     }
 
-    /// Whether that is where it is, without an error.
+    /// Whether that is its place exactly.
     pub fn is_exact(&self) -> bool {
         self.errors == DVec3::ZERO
     }
@@ -154,7 +155,7 @@ fn either(one: Level, two: Level) -> Level {
 /// A place to the last bit, in which some coordinates are known, and how far each is off at most.
 ///
 /// - `rounded`: the place by a formula with its error.
-/// - `twofold`: the same with twice the digits, whose error is that of the other times 2^-51 or so.
+/// - `twofold`: the same in double-double numbers, whose error is that of the other times 2^-51 or so.
 /// - `on`: points of lines and planes that it is on.
 fn place<const N: usize>(rounded: [RoundedNumber; 3], twofold: [DoubleDouble; 3], on: [&[DVec3]; N]) -> (DVec3, DVec3) {
     let known = on.into_iter().fold(Level::default(), |known, points| either(known, level(points)));
@@ -240,13 +241,13 @@ fn middle([a, b, c]: [Homogeneous; 3]) -> Homogeneous {
     [sum(0), sum(1), sum(2), under]
 }
 
-/// The plane that is seen when one axis is left out: the other two in cyclic order.
+/// The two axes that are left when one is left out, in cyclic order.
 pub fn others(axis: usize) -> [usize; 2] {
     [(axis + 1) % 3, (axis + 2) % 3]
 }
 
-/// Which way a, b, c turn, seen along `axis` with the other two in cyclic order: 1.0 counter-clockwise, -1.0 clockwise,
-/// 0.0 on one line.
+/// Direction in which a, b, c turn, seen along `axis` with the other two in cyclic order: 1.0 counter-clockwise, -1.0
+/// clockwise, 0.0 on one line.
 pub fn turn(axis: usize, a: &ImplicitPoint, b: &ImplicitPoint, c: &ImplicitPoint) -> f64 {
     let [x, y] = others(axis);
     if let (PointDefinition::Given(a), PointDefinition::Given(b), PointDefinition::Given(c)) =
@@ -289,8 +290,8 @@ pub fn side(a: DVec3, b: DVec3, c: DVec3, point: DVec3) -> f64 {
     sign_of(orient3d(coord(a), coord(b), coord(c), coord(point)))
 }
 
-/// On which side of a plane through three given points any point lies: 1.0 behind the plane, -1.0 in front of it, 0.0 on it;
-/// see [`side`].
+/// On which side of a plane through three given points any point lies: 1.0 behind the plane, -1.0 in front of it, 0.0
+/// on it; see [`side`].
 pub fn side_of(plane: [DVec3; 3], point: &ImplicitPoint) -> f64 {
     if let &PointDefinition::Given(point) = &point.definition {
         return side(plane[0], plane[1], plane[2], point);
@@ -305,7 +306,8 @@ pub fn side_of(plane: [DVec3; 3], point: &ImplicitPoint) -> f64 {
     })
 }
 
-/// The axis to leave out so that a triangle keeps an area, and how it then turns; `None` if its corners are on one line.
+/// The axis to leave out so that a triangle keeps an area, and how it then turns; `None` if its corners are on one
+/// line.
 pub fn projection([a, b, c]: [DVec3; 3]) -> Option<(usize, f64)> {
     let size = (b - a).cross(c - a).abs();
     let mut axes = [0, 1, 2];
@@ -393,7 +395,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_that_grazes_a_plane_of_hardly_any_area_meets_it_somewhere() {
+    fn a_line_that_grazes_a_plane_of_hardly_any_area_intersects_it_somewhere() {
         let line = [DVec3::new(0.0, 0.0, 0.1), DVec3::new(0.0, 0.1, 0.0)];
         let plane = [DVec3::new(0.0, -0.4, 0.1), DVec3::new(0.30000000000000004, 0.2, 0.1), DVec3::new(0.1, -0.2, 0.1)];
         let point = ImplicitPoint::new(PointDefinition::LineAndPlane(line, plane));

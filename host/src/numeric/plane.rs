@@ -1,4 +1,4 @@
-//! A plane through three points that is asked often on which side of it points lie.
+//! Planes through three points, for many tests on which side of them points lie.
 
 use super::implicit::side;
 use glam::DVec3;
@@ -45,8 +45,8 @@ impl Plane {
         is_clear.then(|| -height.signum())
     }
 
-    /// Which way the points turn, seen along an axis with the other two in cyclic order: 1.0 counter-clockwise, -1.0
-    /// clockwise, 0.0 where roundings leave a doubt.
+    /// Direction in which the points turn, seen along an axis with the other two in cyclic order: 1.0
+    /// counter-clockwise, -1.0 clockwise, 0.0 where roundings leave a doubt.
     #[inline]
     pub fn facing(&self, axis: usize) -> f64 {
         let is_clear = self.normal[axis].abs() > self.sizes[axis] * (4.0 * f64::EPSILON) + 1e-300;

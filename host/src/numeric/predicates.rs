@@ -1,4 +1,4 @@
-//! Signs that are right whatever the rounding.
+//! Predicates: signs that are right whatever the rounding.
 
 use glam::DVec2;
 use robust::{Coord, incircle, orient2d};

@@ -102,7 +102,7 @@ pub fn disk(point: [f64; 2]) -> [f64; 2] {
     [radius * cos, radius * sin]
 }
 
-/// A direction over a surface with density cos / pi per solid angle, from a point of the unit square.
+/// A direction over a surface with the pdf cos / pi, 1/sr, from a point of the unit square.
 ///
 /// - `normal`: unit length.
 #[inline]

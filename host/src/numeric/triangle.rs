@@ -37,7 +37,7 @@ pub struct Shear {
     length_z: f64,
 }
 
-/// Where a sheared ray meets a triangle.
+/// The hit of a sheared ray on a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleIntersection {
     /// Parameter along the ray.
@@ -121,10 +121,10 @@ impl Shear {
         ]
     }
 
-    /// Finds where the line of the ray meets a triangle, from either side and for any sign of `t`.
+    /// Intersects the line of the ray with a triangle, from either side and for any sign of `t`.
     ///
-    /// Corners and edges belong to the triangle. A triangle that the ray sees exactly edge-on, and one without
-    /// area, is not met: in a closed surface its neighbours are.
+    /// Corners and edges belong to the triangle. A triangle that the ray sees exactly edge-on, and one without area, is
+    /// not hit: in a closed surface its neighbours are.
     #[inline(always)]
     pub fn intersection(&self, [a, b, c]: [DVec3; 3]) -> Option<TriangleIntersection> {
         let (a, b, c) = (self.place(a), self.place(b), self.place(c));
@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn a_triangle_seen_edge_on_is_not_met() {
+    fn a_triangle_seen_edge_on_is_not_hit() {
         let ray = Ray { origin: DVec3::new(-1.0, 0.25, 0.0), direction: DVec3::X };
         let shear = Shear::new(&ray, 1.0).expect("a sound ray");
         assert_eq!(shear.intersection([DVec3::ZERO, DVec3::X, DVec3::Y]), None);

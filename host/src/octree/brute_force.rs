@@ -1,4 +1,4 @@
-//! What rays hit, by other means than the octree: for comparison.
+//! Ray hits by other means than the octree: for comparison.
 //!
 //! Nothing here knows cells, codes or exact signs. One ray looks at all triangles; many rays share the work by
 //! halving the triangles and dropping the rays that miss a half, without storing anything.
@@ -135,7 +135,7 @@ impl Block<'_> {
         self.halve(second, rays);
     }
 
-    /// Whether a ray may meet a box before its best hit so far; in doubt it may.
+    /// Whether a ray may hit a box before its best hit so far; in doubt it may.
     fn may_meet(&self, ray: u32, low: DVec3, high: DVec3) -> bool {
         let Ray { origin, direction } = self.rays[ray as usize];
         let scale = origin.abs().max(low.abs()).max(high.abs()).max_element();

@@ -1,9 +1,9 @@
-//! Triangles in the order of their locational codes, with boxes around runs of them: what is near what.
+//! A bounding volume hierarchy over triangles in the order of their locational codes: what is near what.
 //!
-//! Each triangle is filed once, under the code of the voxel that holds the middle of its box. Neighbours in that order
+//! Each triangle is in it once, under the code of the voxel that holds the middle of its box. Neighbours in that order
 //! are neighbours in space, so that boxes around groups of a few, around groups of these, and so on are small. Building
-//! takes one sort; nothing is divided. It serves questions that meet each triangle seldom: which pairs of triangles of two
-//! meshes may touch, and which triangles lie beside an axis-parallel ray.
+//! takes one sort; nothing is divided. It serves questions that reach each triangle seldom: which pairs of triangles of
+//! two meshes may touch, and which triangles lie beside an axis-parallel ray.
 
 use super::cube::Cube;
 use super::{LocationalCode, MAX_DEPTH};
@@ -18,10 +18,10 @@ const FAN: usize = 4;
 const ALL: u8 = (1 << FAN) - 1;
 /// Digits of the codes by which triangles are sorted.
 pub(super) const DIGITS: u32 = 10;
-/// Pairs of boxes from which on the search goes on in parallel.
+/// Pairs of boxes from which on the search continues in parallel.
 const TASKS: usize = 64;
 
-/// Triangles sorted by locational code.
+/// A four-wide BVH over triangles that are sorted by locational code.
 #[derive(Clone, Debug, Default)]
 pub struct TriangleBvh {
     /// Triangles in order.
@@ -46,8 +46,8 @@ impl BvhSubset<'_> {
     }
 }
 
-/// As many boxes as are under a box, coordinate by coordinate, to be compared at once. Where there are fewer, the last are
-/// empty.
+/// As many boxes as are under a box, coordinate by coordinate, to be compared at once. Where there are fewer, the last
+/// are empty.
 #[derive(Clone, Debug)]
 struct Group {
     min: [f64x4; 3],
@@ -212,14 +212,14 @@ impl TriangleBvh {
         })
     }
 
-    /// Pairs of triangles of this set, the lower first, whose boxes have a point in common and that `keep` accepts, in a
-    /// fixed order.
+    /// Pairs of triangles of this set, the lower first, whose boxes have a point in common and that `keep` accepts, in
+    /// a fixed order.
     pub fn pairs_within(&self, keep: impl Fn(u32, u32) -> bool + Sync) -> Vec<[u32; 2]> {
         self.pairs_within_until(|| false, keep)
     }
 
-    /// Pairs of triangles of this set as [`TriangleBvh::pairs_within`] gives them; some of them where `is_enough` becomes true
-    /// before all are found.
+    /// Pairs of triangles of this set as [`TriangleBvh::pairs_within`] gives them; some of them where `is_enough`
+    /// becomes true before all are found.
     pub fn pairs_within_until(
         &self,
         is_enough: impl Fn() -> bool + Sync,
@@ -264,7 +264,8 @@ impl TriangleBvh {
         }
     }
 
-    /// Visits triangles, those in near boxes first, and leaves out boxes that are farther than what a visit returned last.
+    /// Visits triangles, those in near boxes first, and leaves out boxes that are farther than what a visit returned
+    /// last.
     ///
     /// - `distance`: of a box.
     pub(super) fn search(&self, distance: impl Fn(Bounds) -> f64, mut visit: impl FnMut(u32) -> f64) {
@@ -312,8 +313,8 @@ impl TriangleBvh {
         &self.levels[place.level as usize - 1][place.index as usize]
     }
 
-    /// Visits the pairs under a pair of boxes, of which the one of the higher level is opened, or both, that touch; the last
-    /// first.
+    /// Visits the pairs under a pair of boxes, of which the one of the higher level is opened, or both, that touch; the
+    /// last first.
     ///
     /// - `beside`: the second box.
     #[inline(always)]

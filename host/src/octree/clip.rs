@@ -35,7 +35,7 @@ impl LocalBounds {
         Self { low: low.map(round_down), high: high.map(round_up) }
     }
 
-    /// Half the surface; proportional to the share of random lines that meet the box.
+    /// Half the surface; proportional to the share of random lines that hit the box.
     pub fn half_area(&self) -> f32 {
         let [x, y, z] = [0, 1, 2].map(|axis| (self.high[axis] - self.low[axis]).max(0.0));
         x * y + y * z + z * x

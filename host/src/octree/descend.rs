@@ -13,8 +13,8 @@ use glam::DVec3;
 /// Entries of the stack that need no allocation.
 const STACK: usize = 32;
 
-/// What is still to be visited: where the ray enters it, as bits, above what it is. So the nearer is the lesser, since no
-/// length is negative.
+/// What is still to be visited: where the ray enters it, as bits, above what it is. So the nearer is the lesser, since
+/// no length is negative.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Entry(u64);
 
@@ -108,7 +108,7 @@ pub fn is_any(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64) -> bool {
     is_any_by::<ScalarLanes>(octree, ray, [t_min, t_max])
 }
 
-/// The nearest triangle that a ray meets, as [`nearest`] finds it, with given instructions.
+/// The nearest triangle that a ray hits, as [`nearest`] finds it, with given instructions.
 #[inline(always)]
 pub fn nearest_by<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2], count: &mut WalkCount) -> Option<Hit> {
     let line = PreparedRay::new(ray, &octree.cube, limits[0], limits[1])?;
@@ -119,7 +119,7 @@ pub fn nearest_by<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2], count:
     hit
 }
 
-/// Whether a ray meets any triangle, as [`is_any`] tells, with given instructions.
+/// Whether a ray hits any triangle, as [`is_any`] tells, with given instructions.
 #[inline(always)]
 pub fn is_any_by<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2]) -> bool {
     let line = PreparedRay::new(ray, &octree.cube, limits[0], limits[1]);
@@ -232,7 +232,7 @@ impl Search<'_> {
         self.visit::<L>(|search, packet| search.test::<L, ANY>(packet, within))
     }
 
-    /// Visits the packets on the way, the nearer ones first, until one of them is the last.
+    /// Visits the packets along the ray, the nearer ones first, until one of them is the last.
     #[inline(always)]
     fn visit<L: Lanes>(&mut self, mut is_last: impl FnMut(&mut Self, &Packet) -> bool) -> bool {
         let index = &self.octree.index;

@@ -1,4 +1,4 @@
-//! What an octree does not take.
+//! Errors of building an octree.
 
 use glam::DVec3;
 

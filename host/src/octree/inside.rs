@@ -22,12 +22,12 @@ pub enum Containment {
 impl Octree {
     /// Says on which side of the surface a point lies; the surface must be closed and consistently oriented.
     ///
-    /// Looks at the cells that a ray along x meets, by binary search. All signs are exact; the ray is thought to be moved
-    /// a little along y and much less along z, so that it meets neither edge nor corner. Triangles without an area are
-    /// not looked at.
+    /// Tests the cells that a ray along x hits, by binary search. All signs are exact; the ray is thought to be moved a
+    /// little along y and much less along z, so that it hits neither edge nor corner. Triangles without an area are not
+    /// tested.
     ///
-    /// - Returns [`Containment::Outside`] for a point that is not finite, and [`Containment::Inside`] wherever the surface winds around
-    ///   the point, however often and whichever way.
+    /// - Returns [`Containment::Outside`] for a point that is not finite, and [`Containment::Inside`] wherever the
+    ///   surface winds around the point, however often and in whichever direction.
     pub fn containment(&self, point: DVec3) -> Containment {
         let Some(mut voxel) = self.cube.voxel(point) else { return Containment::Outside };
         let mut ahead = Vec::new();
@@ -67,7 +67,7 @@ impl TriangleBvh {
     }
 }
 
-/// On which side of a surface a point lies; `ahead` are all triangles, each once, that a ray along x may meet.
+/// On which side of a surface a point lies; `ahead` are all triangles, each once, that a ray along x may hit.
 ///
 /// - `scale`: a power of two that brings the surface to about size 1, so that no product leaves the range of numbers.
 fn containment(point: DVec3, ahead: impl Iterator<Item = [DVec3; 3]>, scale: f64) -> Containment {
@@ -123,7 +123,7 @@ fn passes([a, b, c]: [DVec3; 3], point: DVec3, height: f64) -> i32 {
             return 0;
         }
     }
-    // A front that looks along x has its back, where heights are positive, on the side of the point.
+    // A front that faces x has its back, where heights are positive, on the side of the point.
     let is_ahead = (height > 0.0) == (facing > 0.0);
     if is_ahead { facing.signum() as i32 } else { 0 }
 }

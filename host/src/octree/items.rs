@@ -1,5 +1,4 @@
-//! What the index holds, in the order of locational codes: triangles, and pieces of large ones that are thin and
-//! slanted.
+//! Items of the index, in the order of locational codes: triangles, and pieces of large ones that are thin and slanted.
 
 use super::build::{OctreeBuilder, octants, place};
 use super::bvh::{DIGITS, radix_sorted};
@@ -111,7 +110,7 @@ pub fn items(division: &OctreeBuilder<'_>, local: &[f32x4]) -> (Vec<Item>, Vec<I
     let items: Vec<Item> =
         keys.par_iter().with_min_len(PARALLEL_ITEMS).map(|&key| items[key as u32 as usize]).collect();
 
-    // Surfaces meet four times as many cells at each level.
+    // Surfaces intersect four times as many cells at each level.
     let level = (items.len() / CELL_ITEMS).max(1).ilog(4).min(DIGITS);
     let cell = |key: u64| key >> 32 >> (3 * (DIGITS - level));
     let mut cells: Vec<Item> = Vec::with_capacity(2 * items.len() / CELL_ITEMS);

@@ -1,10 +1,10 @@
 //! The linear octree: sorted locational codes over triangles, location, and what a ray hits.
 //!
-//! Three structures stand on the same codes. [`Octree`] stores terminal nodes, each with every triangle that touches it,
-//! for whoever asks for a place: neighbours, the inside test, rays that go from cell to cell. They are made when they are
-//! first asked for. Its index files each triangle once, by its middle, in wide nodes for rays that start at the top.
-//! [`TriangleBvh`] files them so too, for whoever asks each triangle once: the pairs of a Boolean operation. Sorting takes less
-//! than a tenth of the time of dividing, so neither of the two waits for terminal nodes.
+//! Three structures stand on the same codes. [`Octree`] stores terminal nodes, each with every triangle that touches
+//! it, for whoever asks for a place: neighbours, the inside test, rays that go from cell to cell. They are made when
+//! they are first asked for. Its index is a wide BVH that holds each triangle once, by its middle, for rays that start
+//! at the top. [`TriangleBvh`] holds them once, too, for whoever asks each triangle once: the pairs of a Boolean
+//! operation. Sorting takes less than a tenth of the time of dividing, so neither of the two waits for terminal nodes.
 
 pub mod brute_force;
 mod settings;

@@ -1,4 +1,4 @@
-//! Eight triangles at a time: which of them can a ray hit?
+//! Packets of eight triangles, which a ray tests at a time.
 
 use super::lanes::{Eight, LANES, Lanes};
 use super::prepared_ray::SinglePrecisionRay;
@@ -10,8 +10,8 @@ const ROUNDING: f32 = 1.0 / (1_u32 << 22) as f32;
 /// The place of a corner that is not there.
 const NOWHERE: u8 = u8::MAX;
 
-/// Points in a packet: eight triangles side by side have nine or ten corners, and eleven points fill ten lines of the cache.
-/// One triangle in two hundred finds no room for its own.
+/// Points in a packet: eight triangles side by side have nine or ten corners, and eleven points fill ten lines of the
+/// cache. One triangle in two hundred finds no room for its own.
 const POINTS: usize = 11;
 
 /// Eight triangles in local coordinates, rounded to single precision, lane by lane.
@@ -79,17 +79,17 @@ impl Packet {
         Some([*a?, *b?, *c?])
     }
 
-    /// The triangles that the ray may hit between the start of the frame and `limit`, and for `ANY` those that it certainly
-    /// hits between the lengths `within`: one bit a lane.
+    /// The triangles that the ray may hit between the start of the frame and `limit`, and for `ANY` those that it
+    /// certainly hits between the lengths `within`: one bit a lane.
     ///
-    /// A lane that is left out is certainly missed, also in the double precision that decides: let e be the
-    /// tolerance of the frame, by which a sheared coordinate may be off, and s the size of the triangle. If the ray
-    /// meets the triangle, its sheared corners lie within 2 s of the ray, so that an edge function is off by at most
-    /// 8 e s + 2 e^2, and by 12 s^2 2^-24 < 3 e s from the products: by less than d = 16 e (s + e) in all.
+    /// A lane that is left out is certainly missed, also in the double precision that decides: let e be the tolerance
+    /// of the frame, by which a sheared coordinate may be off, and s the size of the triangle. If the ray hits the
+    /// triangle, its sheared corners lie within 2 s of the ray, so that an edge function is off by at most 8 e s + 2
+    /// e^2, and by 12 s^2 2^-24 < 3 e s from the products: by less than d = 16 e (s + e) in all.
     ///
-    /// The length to the triangle is the mean of those to its corners, weighted by the edge functions. With weights that
-    /// are off it is off by 3 d s; their sum, which is at most 6 d more than the whole, is off by as much and their
-    /// products by 2^-22 of it: together less than 8 d (s + e) + 2 e whole, after multiplication by the whole.
+    /// The length to the triangle is the mean of those to its corners, weighted by the edge functions. With weights
+    /// that are off it is off by 3 d s; their sum, which is at most 6 d more than the whole, is off by as much and
+    /// their products by 2^-22 of it: together less than 8 d (s + e) + 2 e whole, after multiplication by the whole.
     #[inline(always)]
     pub fn candidates<L: Lanes, const ANY: bool>(
         &self,

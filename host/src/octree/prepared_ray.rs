@@ -29,7 +29,7 @@ const MARGIN: f64 = 4.0;
 /// A ray prepared for what is in a cube.
 #[derive(Clone, Debug)]
 pub struct PreparedRay {
-    /// What decides which triangles it meets.
+    /// The shear, which decides the triangles that it hits.
     pub shear: Shear,
     /// The part that counts.
     pub chord: Chord,
@@ -105,7 +105,7 @@ impl Chord {
         self.tolerance - SINGLE_TOLERANCE
     }
 
-    /// Whether the ray may meet a cube of the octree, in double precision; in doubt it may.
+    /// Whether the ray may hit a cube of the octree, in double precision; in doubt it may.
     pub fn may_meet(&self, shear: &Shear, cube: LocationalCode) -> bool {
         let voxel = 1.0 / f64::from(1_u32 << MAX_DEPTH);
         let margin = FAT + 4.0 * self.double_tolerance();
@@ -133,7 +133,7 @@ pub struct SinglePrecisionRay {
     pub axes: [usize; 3],
     /// Slopes over the longest axis as coordinates grow, by axis.
     pub shear: [f32; 4],
-    /// Where the line of the ray meets zero of the longest axis, by axis.
+    /// Where the line of the ray hits zero of the longest axis, by axis.
     pub beside: [f32; 4],
     /// The sign of its direction along the longest axis times where it begins there.
     pub base_z: f32,

@@ -9,7 +9,7 @@ pub struct OctreeSettings {
     pub leaf_triangles: usize,
     /// No cell has a smaller side than this, world units; 0 for no limit.
     pub leaf_side: f64,
-    /// How rays find their way.
+    /// How rays find cells.
     pub walk: Walk,
 }
 
@@ -19,12 +19,12 @@ impl Default for OctreeSettings {
     }
 }
 
-/// How a ray finds the cells on its way. All ways give the same hits.
+/// How a ray finds the cells along it. All walks give the same hits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Walk {
     /// Down an index of wide nodes over the triangles in the order of their codes. Needs no terminal nodes.
     #[default]
     Index,
-    /// From cell to cell across the side that the leading direction meets, each found by binary search. Needs no index.
+    /// From cell to cell across the side that the leading direction hits, each found by binary search. Needs no index.
     LeadingDirection,
 }

@@ -1,4 +1,4 @@
-//! Shafts: the triangles that rays from one box to another may meet, found once for all of these rays.
+//! Shafts: the triangles that rays from one box to another may hit, found once for all of these rays.
 
 use super::Octree;
 use super::descend::{each_in, is_any_in};
@@ -12,7 +12,7 @@ const WIDER: f64 = 1e-6;
 /// What covers a shaft does so with this to spare, as a fraction.
 const SPARE: f64 = 1e-6;
 
-/// All triangles that a ray from one box to another may meet.
+/// All triangles that a ray from one box to another may hit.
 #[derive(Clone, Debug)]
 pub struct Shaft {
     packets: Vec<Packet>,
@@ -48,7 +48,7 @@ pub enum ShaftContents {
 }
 
 impl Octree {
-    /// Finds what rays from points of one box to points of another may meet.
+    /// Finds the triangles that rays from points of one box to points of another may hit.
     ///
     /// - `covers`: whether a triangle counts as one that may stand before everything. `most`: triangles at the most.
     /// - Without an index there are always too many.
@@ -95,7 +95,7 @@ impl Octree {
         ShaftContents::Some(Shaft { packets: packets.collect(), triangles: found.len() })
     }
 
-    /// Whether rays from points of one box to points of another meet no triangle that counts.
+    /// Whether rays from points of one box to points of another hit no triangle that counts.
     ///
     /// True only where it is sure; never without an index.
     pub fn is_clear(&self, from: Bounds, to: Bounds, counts: impl Fn(u32) -> bool) -> bool {
@@ -139,7 +139,7 @@ impl Octree {
         false
     }
 
-    /// Whether ways from one box to another may lead through a third.
+    /// Whether lines from one box to another may lead through a third.
     pub fn may_stand_between(from: Bounds, to: Bounds, third: Bounds) -> bool {
         Hull::new([from, to]).may_meet(&third)
     }
@@ -231,7 +231,7 @@ impl Hull {
         one[0].min(two[0]) <= 0.0 && one[1].max(two[1]) >= 0.0
     }
 
-    /// Whether all ways from one end to the other lead through a triangle, with something to spare.
+    /// Whether all lines from one end to the other lead through a triangle, with something to spare.
     fn is_covered_by(&self, corners: &[DVec3; 3]) -> bool {
         let [a, b, c] = *corners;
         let normal = (b - a).cross(c - a);
@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn rays_in_a_shaft_meet_what_they_meet_anyway() {
+    fn rays_in_a_shaft_hit_what_they_hit_anyway() {
         let mut random = Pcg32::seed_from_u64(5);
         let (mut some, mut covered, mut clear) = (0, 0, 0);
         for round in 0..400 {
@@ -347,7 +347,7 @@ mod tests {
     }
 
     #[test]
-    fn a_shaft_holds_little_more_than_what_its_rays_meet() {
+    fn a_shaft_holds_little_more_than_what_its_rays_hit() {
         let mut random = Pcg32::seed_from_u64(6);
         let octree = soup(20_000, 0.02, &mut random);
         let small = |at: DVec3| Bounds { min: at, max: at + DVec3::splat(0.02) };

@@ -1,10 +1,10 @@
-//! What an octree holds, in numbers.
+//! Statistics of an octree.
 
 use serde::Serialize;
 
 use super::Octree;
 
-/// What an octree holds.
+/// Statistics of an octree.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Statistics {
     /// Objects put in.

@@ -1,9 +1,10 @@
-//! The octree of the paper's two-way ray tracing: every node is a voxel, and a point of the surface in it stands for it.
+//! The octree of the paper's two-way ray tracing: every node is a voxel, and a point of the surface in it stands for
+//! it.
 //!
-//! In a voxel that holds one surface a point of it is drawn at random and kept. A ray that meets the surface there meets
-//! this point, with its normal, whatever triangles the voxel has. So what rays tell is off by about a voxel: to be used
-//! where voxels are small beside what matters. Voxels that hold more than one surface, or one that bends, keep their
-//! triangles. Where a surface ends within a voxel, its point stands for it up to the voxel's sides.
+//! In a voxel that holds one surface a point of it is sampled at random and kept. A ray that hits the surface there
+//! hits this point, with its normal, whatever triangles the voxel has. So what rays tell is off by about a voxel: to be
+//! used where voxels are small beside what matters. Voxels that hold more than one surface, or one that bends, keep
+//! their triangles. Where a surface ends within a voxel, its point stands for it up to the voxel's sides.
 
 use super::build::{Leaves, Nodes, OctreeBuilder, PARALLEL_TRIANGLES, TriangleReference, octants, place};
 use super::clip::clipped;
@@ -25,10 +26,10 @@ const FLAT: f64 = 0.25;
 /// The cosine between their normals at the least.
 const LEVEL: f64 = 0.5;
 /// So far from where a ray begins triangles count, sides of a voxel: around it is the surface that the ray leaves, and
-/// planes of its points would be in the way.
+/// planes of its points would occlude the ray.
 const CLEAR: f64 = 2.0;
-/// How far beyond its voxel a plane counts, sides of the voxel: planes of neighbours do not quite meet, and no ray is to
-/// slip between them.
+/// How far beyond its voxel a plane counts, sides of the voxel: planes of neighbours do not quite meet, and no ray is
+/// to slip between them.
 const SLACK: f64 = 0.5;
 /// Cells above this level are divided at once.
 const PARALLEL_LEVELS: u32 = 3;
@@ -55,7 +56,8 @@ pub(super) struct VoxelPoint {
 impl SurfacePoints {
     /// Finds the voxels of an octree's triangles and a point for each that holds one surface; on all threads.
     ///
-    /// - `depth`: 2 to this power voxels are along the modelling cube; at most [`MAX_POINT_DEPTH`], more counts as that.
+    /// - `depth`: 2 to this power voxels are along the modelling cube; at most [`MAX_POINT_DEPTH`], more counts as
+    ///   that.
     /// - `surface`: which surface a triangle belongs to; none for one that no point may stand for.
     /// - `seed`: of the choice of points, which does not depend on the number of threads.
     pub fn new<S: PartialEq>(
@@ -90,8 +92,8 @@ impl SurfacePoints {
     }
 
     /// Finds the nearest hit with `t_min < t < t_max`, both exclusive: of a triangle, or of the plane of a point that
-    /// stands for one. The hit of a point is where the point is on its triangle, off the ray by about a voxel; `t` is where
-    /// the ray meets its plane.
+    /// stands for one. The hit of a point is where the point is on its triangle, off the ray by about a voxel; `t` is
+    /// where the ray hits its plane.
     pub fn closest(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<Hit> {
         let line = PreparedRay::new(ray, &self.octree.cube, t_min, t_max)?;
         let mut search = Search::new(&self.octree, &line, t_min, t_max, false);
@@ -134,7 +136,7 @@ fn voxels(division: &OctreeBuilder<'_>, cell: LocationalCode, references: Vec<Tr
     leaves
 }
 
-/// A point for a voxel, drawn evenly from the surface in it; none if that is not one, or bends.
+/// A point for a voxel, sampled evenly from the surface in it; none if that is not one, or bends.
 fn point<S: PartialEq>(
     division: &OctreeBuilder<'_>,
     voxel: LocationalCode,

@@ -1,4 +1,4 @@
-//! What a ray hits, by the way that the octree is walked.
+//! Ray hits, by the walk of the octree.
 
 use super::prepared_ray::PreparedRay;
 use super::settings::Walk;

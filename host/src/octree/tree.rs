@@ -48,8 +48,8 @@ pub(super) struct ObjectCounts {
 
 /// A linear octree over the triangles of some objects. Threads share it freely.
 ///
-/// Objects are numbered from 0 in the order in which they were put in, and so are their vertices and triangles, one object
-/// after the other. Where an object is taken out, what comes behind it moves up, as in a vector.
+/// Objects are numbered from 0 in the order in which they were put in, and so are their vertices and triangles, one
+/// object after the other. Where an object is taken out, what comes behind it moves up, as in a vector.
 #[derive(Clone, Debug)]
 pub struct Octree {
     pub(super) cube: Cube,

@@ -10,7 +10,7 @@ use glam::DVec3;
 /// Voxels along the cube.
 const VOXELS: i64 = 1 << MAX_DEPTH;
 
-/// One ray on its way: what it has met so far.
+/// One ray as it is traced: what it has hit so far.
 pub struct Search<'a> {
     pub(super) octree: &'a Octree,
     /// Apart, so that what changes can stay in the registers of the processor.
@@ -33,13 +33,13 @@ impl<'a> Search<'a> {
         Self { octree, ray: line, t_min, t_max, any, best: None, limit, count: WalkCount::default() }
     }
 
-    /// What was found.
+    /// The hit that was found.
     #[inline(always)]
     pub fn found(&self) -> (Option<Hit>, WalkCount) {
         (self.best, self.count)
     }
 
-    /// Looks into the cells on the way.
+    /// Visits the cells along the ray.
     pub fn walk(&mut self) {
         if self.octree.triangles.is_empty() {
             return;
@@ -53,10 +53,10 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Looks into the cells on the way, in terminal nodes as it is told.
+    /// Visits the cells along the ray, in terminal nodes as it is told.
     ///
-    /// - `visit`: the terminal node, and from where to where the ray is in it, sides of the modelling cube along the longest
-    ///   axis; returns whether the search is over.
+    /// - `visit`: the terminal node, and from where to where the ray is in it, sides of the modelling cube along the
+    ///   longest axis; returns whether the search is over.
     pub(super) fn walk_with(&mut self, visit: impl FnMut(&mut Self, usize, [f64; 2]) -> bool) {
         if 4.0 * self.ray.chord.double_tolerance() <= FAT { self.step_from_cell_to_cell(visit) } else { self.walk() }
     }
@@ -175,7 +175,7 @@ impl Search<'_> {
         }
     }
 
-    /// Opens all cubes that the ray may meet, from the modelling cube down.
+    /// Opens all cubes that the ray may hit, from the modelling cube down.
     fn look_from_above(&mut self) {
         let leaves = self.octree.leaves();
         let mut cubes = vec![(LocationalCode::ROOT, 0..leaves.codes.len())];

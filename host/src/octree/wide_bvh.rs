@@ -1,4 +1,4 @@
-//! The index: wide nodes over the triangles in the order of their codes, for rays that start at the top.
+//! The index: a wide BVH over the triangles in the order of their codes, for rays that start at the top.
 
 use std::ops::Range;
 
@@ -19,7 +19,7 @@ use crate::numeric::bounds::Bounds;
 /// So many cells or fewer are divided by their items.
 const FEW_CELLS: usize = 64;
 
-/// So many triangles or fewer are not divided.
+/// Items of so many triangles or fewer are not divided.
 const LEAF: usize = 12;
 
 /// Set where a child is not a node.
@@ -28,7 +28,7 @@ const PACKETS: u32 = 1 << 31;
 /// Behind that, the number of packets less one; then the place.
 const PLACE_BITS: u32 = 28;
 
-/// What is below a box: a node, or a few successive packets, by its place.
+/// A child of a box: a node, or a few successive packets, by its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Child(pub u32);
 
@@ -92,7 +92,7 @@ impl BvhNode {
             .filter(|(bounds, _)| !bounds.is_empty())
     }
 
-    /// The children that the ray may meet up to a limit, one bit each, and where it enters them.
+    /// The children that the ray may hit up to a limit, one bit each, and where it enters them.
     #[inline(always)]
     pub fn meets<L: Lanes>(&self, frame: &SinglePrecisionRay, limit: f32) -> (u32, L) {
         let [x, y, z] = &self.bounds;
@@ -246,7 +246,7 @@ fn shares<'a>(mut items: &'a mut [Item], part: &ItemGroup) -> Vec<(&'a mut [Item
     parts.into_iter().map(share).collect()
 }
 
-/// What all nodes are made of.
+/// Builder of the nodes, with the items of which they are made.
 struct Builder<'a> {
     vertices: &'a [DVec3],
     triangles: &'a [[u32; 3]],

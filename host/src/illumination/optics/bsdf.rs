@@ -348,8 +348,7 @@ impl Bsdf {
 
     /// Transmittance of light that goes straight through.
     ///
-    /// - `cosine`: of the angle between light and normal, 0..=1. `place`: the footprint, asked for only if there are
-    ///   textures.
+    /// - `cosine`: of the angle between light and normal, 0..=1. `footprint`: asked for only if there are textures.
     pub fn straight_transmittance(
         &self,
         wavelength_set: usize,
@@ -380,8 +379,7 @@ impl Bsdf {
 
     /// Transmittance of a polished interface, as if it did not bend light.
     ///
-    /// - `cosine`: of the angle between light and normal, 0..=1. `place`: the footprint, asked for only if there are
-    ///   textures.
+    /// - `cosine`: of the angle between light and normal, 0..=1. `footprint`: asked for only if there are textures.
     pub fn clear_transmittance(
         &self,
         wavelength_set: usize,

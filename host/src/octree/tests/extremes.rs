@@ -37,7 +37,7 @@ fn rays_along_faces_edges_and_diagonals_of_cells_lose_nothing() {
 }
 
 #[test]
-fn a_ray_in_the_plane_of_triangles_hits_the_sides_that_it_meets() {
+fn a_ray_in_the_plane_of_triangles_hits_the_sides_across_it() {
     let shape = block(4);
     let octrees = walks(&shape);
     // Within the side y = 1: edge-on there, but the sides x = -1 and x = 1 begin at its edge.

@@ -90,7 +90,7 @@ fn limits_are_exclusive() {
     let shape = ball(3);
     let ray = Ray { origin: DVec3::new(0.1, 0.2, -3.0), direction: DVec3::Z };
     for octree in walks(&shape) {
-        let first = octree.closest(&ray, 0.0, f64::INFINITY).expect("it meets the sphere");
+        let first = octree.closest(&ray, 0.0, f64::INFINITY).expect("it hits the sphere");
         let second = octree.closest(&ray, first.t, f64::INFINITY).expect("it leaves the sphere");
         assert!(second.t > first.t);
         assert_eq!(octree.closest(&ray, second.t, f64::INFINITY), None);

@@ -16,7 +16,7 @@ fn is_beside(cube: LocationalCode, towards: [i8; 3], node: LocationalCode) -> bo
         let (low, high) = (b[axis], b[axis] + node.side());
         match towards[axis] {
             0 => low < a[axis] + cube.side() && a[axis] < high,
-            // A node that goes on around the corner begins before it.
+            // A node that continues around the corner begins before it.
             1 => low <= a[axis] + cube.side() && a[axis] + cube.side() < high,
             _ => low < a[axis] && a[axis] <= high,
         }

@@ -21,7 +21,7 @@ fn outward(divisions: u32) -> Shape {
 }
 
 #[test]
-fn points_are_met_about_a_voxel_from_where_the_surface_is() {
+fn points_are_hit_about_a_voxel_from_where_the_surface_is() {
     let ball = outward(5);
     let octree = ball.octree();
     let mut mean_before = f64::INFINITY;
@@ -73,7 +73,7 @@ fn no_ray_leaves_a_closed_room_or_a_ball() {
 }
 
 #[test]
-fn rays_that_leave_a_ball_do_not_meet_it_again() {
+fn rays_that_leave_a_ball_do_not_hit_it_again() {
     let ball = outward(5);
     let points = points(&ball.octree(), 6);
     let mut stream = RandomStream::new(9, 0);

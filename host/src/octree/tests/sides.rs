@@ -3,7 +3,7 @@
 use super::*;
 use crate::octree::{Containment, TriangleBvh};
 
-/// The octree and the sorted triangles of a shape, which must agree.
+/// The octree and the triangle BVH of a shape, which must agree.
 struct Both<'a> {
     shape: &'a Shape,
     octree: Octree,
@@ -86,7 +86,7 @@ fn the_side_is_that_of_the_solid_angle() {
         let mut counts = [0; 2];
         for i in 0..1500 {
             let corner = shape.vertices[stream.below(shape.vertices.len())];
-            // Half of the points are as high as a corner: the ray through them meets corners and edges.
+            // Half of the points are as high as a corner: the ray through them hits corners and edges.
             let random = sphere(stream.point()) * 1.6 * stream.uniform();
             let point = if i % 2 == 0 { corner.with_x(random.x) } else { random };
             let winding = winding(&shape, point);
