@@ -41,7 +41,7 @@ fn a_pixel_is_explained_as_it_is_rendered() {
     assert_eq!(samples.len(), 4);
     assert_eq!(samples[0]["wavelengths"].as_array().unwrap().len(), 8, "copper needs spectra");
     let notes = samples[0]["notes"].as_array().unwrap();
-    assert!(notes.iter().any(|note| note["what"].as_str().unwrap().starts_with("meets sphere, metal material")));
+    assert!(notes.iter().any(|note| note["what"].as_str().unwrap().starts_with("hits sphere, metal material")));
     let ended = peris(&["render", "a.rhai", "--pixel", "48,0"], folder);
     assert!(ended.code == Some(2) && ended.errors.contains("outside the picture"), "{}", ended.errors);
 }

@@ -1,6 +1,6 @@
-//! Why there is no spectrum.
+//! Errors of spectra and colours.
 
-/// Why there is no spectrum or no colour.
+/// A reason for which there is no spectrum or no colour.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ColorError {
     /// A spectrum needs two samples and more.
@@ -9,7 +9,7 @@ pub enum ColorError {
     /// A wavelength is not positive, or not greater than the one before.
     #[error("sample {index}: the wavelength {wavelength} nm is not positive, or not above the one before")]
     Wavelength {
-        /// Which sample, from 0.
+        /// Index of the sample, from 0.
         index: usize,
         /// Its wavelength, nm.
         wavelength: f64,

@@ -70,7 +70,7 @@ pub fn branches(solver: &NewtonSolver<'_>, raw: &TrianglePolylines, zones: &Zone
 struct Joiner<'a> {
     solver: &'a NewtonSolver<'a>,
     arcs: Vec<Arc>,
-    /// Which end follows which.
+    /// The end that follows each end.
     goes_on: HashMap<Tip, Tip>,
 }
 

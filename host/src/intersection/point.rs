@@ -65,7 +65,7 @@ impl Mark {
     }
 }
 
-/// Why a point is not accurate.
+/// A reason for which a point is not accurate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Inaccuracy {
     /// The planes that touch the surfaces are nearly one.
@@ -97,7 +97,7 @@ pub struct CurvePoint {
     pub angle: f64,
     /// What is special about it.
     pub mark: Mark,
-    /// Why it is not accurate, if it is not.
+    /// The reason for which it is not accurate, if it is not.
     pub inaccuracy: Option<Inaccuracy>,
 }
 

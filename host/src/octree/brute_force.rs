@@ -1,7 +1,7 @@
 //! Ray hits by other means than the octree: for comparison.
 //!
-//! Nothing here knows cells, codes or exact signs. One ray looks at all triangles; many rays share the work by
-//! halving the triangles and dropping the rays that miss a half, without storing anything.
+//! Nothing here knows cells, codes or exact signs. One ray tests all triangles; many rays share the work by halving the
+//! triangles and dropping the rays that miss a half, without storing anything.
 
 use glam::DVec3;
 use rayon::prelude::*;

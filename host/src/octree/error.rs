@@ -7,7 +7,7 @@ use crate::numeric::triangle::MAX_MAGNITUDE;
 /// Most triangles that one octree takes.
 pub const MAX_TRIANGLES: usize = 1 << 28;
 
-/// Why an octree cannot be built.
+/// A reason for which an octree cannot be built.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum OctreeError {
     /// A coordinate is infinite or not a number.

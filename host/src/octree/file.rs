@@ -1,7 +1,7 @@
 //! An octree as bytes: what was put in and the terminal nodes. The index is made anew.
 //!
-//! Layout: eight bytes of name, version (u32), checksum (CRC-32 of the rest, u32), then the fields of [`Stored`]. Numbers
-//! are little-endian; integers of the fields have variable length.
+//! Layout: eight bytes of name, version (u32), checksum (CRC-32 of the rest, u32), then the fields of [`Stored`].
+//! Numbers are little-endian; integers of the fields have variable length.
 
 use crate::encoding::{Integers, decode, encode};
 use glam::DVec3;
@@ -32,7 +32,7 @@ pub const ENDING: &str = "octree";
 /// The longest file that is read, bytes.
 pub const MAX_BYTES: u64 = 16 << 30;
 
-/// Why bytes are not an octree.
+/// A reason for which bytes are not an octree.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FileError {
     /// It begins with something else.

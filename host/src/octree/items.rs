@@ -49,7 +49,7 @@ impl Item {
         Self { low: with(self.low, number), high: with(self.high, weight) }
     }
 
-    /// Which triangle it is, or where the items of a cell begin.
+    /// Number of the triangle, or where the items of a cell begin.
     #[inline]
     pub fn number(&self) -> u32 {
         self.low.as_array()[3].to_bits() & !NORMAL
@@ -73,7 +73,7 @@ impl Item {
         self.low + self.high
     }
 
-    /// Half the surface; proportional to the share of random lines that meet the box.
+    /// Half the surface; proportional to the share of random lines that hit the box.
     #[inline]
     pub fn half_area(&self) -> f32 {
         let [x, y, z, _] = (self.high - self.low).to_array();

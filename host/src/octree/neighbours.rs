@@ -1,4 +1,4 @@
-//! Which terminal nodes lie beside a cube, larger, as large, or smaller.
+//! Neighbours: the terminal nodes beside a cube, larger, as large, or smaller.
 
 use std::ops::Range;
 
@@ -9,8 +9,8 @@ impl Octree {
     /// The terminal nodes that touch a cube from one side, in order.
     ///
     /// - `towards`: -1, 0 or 1 along each axis: one step for the neighbours across a face, two for those that share an
-    ///   edge with the cube, three for those at its vertex. Neighbours across a face are whole: those that also touch the
-    ///   face's edges are among them. A node that contains the cube is nobody's neighbour.
+    ///   edge with the cube, three for those at its vertex. Neighbours across a face are whole: those that also touch
+    ///   the face's edges are among them. A node that contains the cube is nobody's neighbour.
     /// - Returns nothing where the region is empty, beyond the modelling cube, and for no step at all.
     ///
     /// Cost: a binary search for each cube opened, from the neighbour of the same size down.

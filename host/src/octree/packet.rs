@@ -23,7 +23,7 @@ pub struct Packet {
     size: Eight,
     /// Indices of the triangles.
     pub triangles: [u32; LANES],
-    /// Which of the points are their corners; none where there is no room.
+    /// Places of their corners among the points; none where there is no room.
     places: [[u8; 3]; LANES],
     /// Vertices in double precision, beside the triangles so that what decides comes with them.
     points: [DVec3; POINTS],

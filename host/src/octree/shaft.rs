@@ -354,7 +354,7 @@ mod tests {
         let ShaftContents::Some(shaft) =
             octree.between(small(DVec3::splat(-0.9)), small(DVec3::splat(0.9)), |_| true, 1000)
         else {
-            panic!("not many are in the way")
+            panic!("not many are between")
         };
         // The shaft has 0.02^2 of the 4 square units of the cross section, so to say, and triangles are as wide.
         assert!(shaft.len() < 60, "{}", shaft.len());

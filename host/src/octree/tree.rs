@@ -160,7 +160,7 @@ impl Octree {
         self
     }
 
-    /// This octree, walked another way. Makes the index if the walk needs it; else drops it, and makes the terminal
+    /// This octree with another walk. Makes the index if the walk needs it; else drops it, and makes the terminal
     /// nodes.
     pub fn with_walk(mut self, walk: Walk) -> Self {
         let index = match walk {

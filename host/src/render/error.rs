@@ -1,4 +1,4 @@
-//! Why there is no picture.
+//! Errors of rendering.
 
 use crate::illumination::material::MaterialError;
 use crate::octree::OctreeError;

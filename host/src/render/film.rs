@@ -213,7 +213,7 @@ impl Film {
         Ok(picture)
     }
 
-    /// Which pixels, or one of those beside them, have a greater relative error than asked for.
+    /// Of each pixel, whether it or one beside it has a greater relative error than asked for.
     pub fn uncertain(&self, target: f64) -> Vec<bool> {
         let (width, height) = (self.width as usize, self.height as usize);
         let errors: Vec<f64> = self.tallies.iter().map(Tally::relative_error).collect();

@@ -50,7 +50,7 @@ pub struct Fingerprint {
     order: u32,
 }
 
-/// Why a state cannot be read or written.
+/// A reason for which a state cannot be read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum StateError {
     /// The file cannot be read.
@@ -124,9 +124,9 @@ impl Fingerprint {
         Fingerprint { scene: checksum(&words), geometry: geometry.finalize(), order: checksum(order.as_bytes()) }
     }
 
-    /// The fingerprint of this rendering made in a way of its own, such as one of several views.
+    /// The fingerprint of this rendering made as a variant, such as one of several views.
     ///
-    /// - `way`: in words; fingerprints of other ways differ.
+    /// - `way`: the variant in words; fingerprints of others differ.
     pub fn with(self, way: &str) -> Fingerprint {
         Fingerprint { order: crc32fast::hash(format!("{} {way}", self.order).as_bytes()), ..self }
     }

@@ -1,8 +1,8 @@
-//! Why there is no distribution.
+//! Errors of distributions.
 
 use glam::DVec3;
 
-/// Why a distribution cannot be made or used.
+/// A reason for which a distribution cannot be made or used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DistributionError {
     /// A roughness outside what is provided for.

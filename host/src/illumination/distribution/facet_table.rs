@@ -37,7 +37,7 @@ pub struct TableError {
     pub values: usize,
 }
 
-/// Why a function of the angle gives no distribution of facets.
+/// A reason for which a function of the angle gives no distribution of facets.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FacetError<E> {
     /// The function itself failed.

@@ -19,7 +19,7 @@ pub struct Goniometry {
     candelas: Vec<f64>,
 }
 
-/// Why a table of intensities cannot be read.
+/// A reason for which a table of intensities cannot be read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GoniometryError {
     /// A line of the file.
@@ -87,8 +87,8 @@ impl Numbers<'_> {
 impl Goniometry {
     /// A table.
     ///
-    /// - `vertical`: degrees from straight down, rising within 0..=180. `horizontal`: degrees, rising from 0 to 0, 90, 180
-    ///   or 360; what is missing of the circle is the mirror image of what is there.
+    /// - `vertical`: degrees from straight down, rising within 0..=180. `horizontal`: degrees, rising from 0 to 0, 90,
+    ///   180 or 360; what is missing of the circle is the mirror image of what is there.
     /// - `candelas`: for each horizontal angle one for each vertical angle.
     ///
     /// # Errors

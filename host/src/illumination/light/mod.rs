@@ -129,7 +129,7 @@ impl SkyDisc {
     }
 }
 
-/// Why a light is none.
+/// A reason for which a light is none.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LightError {
     /// A place or a length that is not finite.

@@ -230,7 +230,7 @@ pub struct MaterialPreview {
     pub mirror: DVec3,
 }
 
-/// Why a material is none.
+/// A reason for which a material is none.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MaterialError {
     /// A fraction that is not between 0 and 1.

@@ -170,7 +170,7 @@ pub struct InteriorMedium {
     pub absorption: SpectralTable,
     /// Whether the index differs with the wavelength.
     pub disperses: bool,
-    /// Which of several bodies in one place is there: that of the greatest.
+    /// Priority among several bodies in one place: that of the greatest is there.
     pub priority: i32,
 }
 

@@ -152,7 +152,7 @@ impl RoughDielectric {
 
 impl Lobe for RoughDielectric {
     fn flags(&self) -> Flags {
-        // Of facets that all are seen, a quarter of the density of their normals.
+        // If all facets are seen, the pdf is a quarter of the density of their normals.
         Flags::of_pdf(0.25 * self.facets.area(DVec3::Z, self.roughness))
     }
 
@@ -207,7 +207,7 @@ impl Lobe for RoughDielectric {
         by_lane(context, of_lane)
     }
 
-    /// Draws a facet as the viewer sees it, and reflects or refracts there.
+    /// Samples a facet as the viewer sees it, and reflects or refracts there.
     fn sample(&self, context: &ShadingContext, choice: f64, point: [f64; 2]) -> Option<BsdfSample> {
         let view = context.view;
         let facet = self.facets.visible(view, self.roughness, point)?;

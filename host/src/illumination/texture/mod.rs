@@ -104,7 +104,7 @@ pub enum Relief {
     },
 }
 
-/// Why a texture is none.
+/// A reason for which a texture is none.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TextureError {
     /// A pattern has too few or too many paints.

@@ -1,4 +1,4 @@
-//! Which instructions the processor has makes no difference.
+//! Instructions of the processor make no difference.
 
 use super::*;
 use crate::octree::WalkCount;

@@ -1,4 +1,4 @@
-//! Tests of the octree against other ways to the same answer.
+//! Tests of the octree against other algorithms for the same answer.
 
 mod edits;
 mod extremes;

@@ -22,9 +22,9 @@ const CELL: usize = 16;
 /// root, and at least 0.18 where it finds none.
 const WORTH: f64 = 0.15;
 
-/// Which pixels are tried.
+/// The windows whose pixels are tried.
 pub(super) struct Pilot {
-    /// Which pixels are quiet or outside of the windows, row by row.
+    /// Of each pixel, row by row, whether it is quiet or outside of the windows.
     pub(super) quiet: Vec<bool>,
     width: usize,
     /// The error that is small enough, as a part of the error of what was not filtered.

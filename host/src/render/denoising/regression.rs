@@ -35,7 +35,7 @@ const LEAST_VARIANCE: f32 = 1e-8;
 const MOST_VARIANCE: f32 = 8.0;
 /// Features, beside the place.
 pub(super) const FEATURES: usize = 7;
-/// Which of the ridges each of them has.
+/// The ridge of each of them.
 const RIDGE_OF: [usize; FEATURES] = [0, 0, 0, 1, 1, 1, 2];
 /// The unit of places, and their ridge in it.
 const PLACE_UNIT: f32 = 10.0;
@@ -191,7 +191,7 @@ struct Filtering<'a> {
     picture: &'a NoisyPicture,
     other: &'a NoisyPicture,
     features: &'a FeaturePlanes,
-    /// Which pixels of the rows are quiet.
+    /// Of each pixel of the rows, whether it is quiet.
     quiet: &'a [bool],
     /// Its first column and row.
     at: [usize; 2],

@@ -34,7 +34,8 @@ pub(super) struct Contacts {
 impl Contacts {
     /// The lines on some triangles.
     ///
-    /// Rods that are thinner than elements neither have nor make any: nothing larger than an element is in them or behind.
+    /// Rods that are thinner than elements neither have nor make any: nothing larger than an element is in them or
+    /// behind.
     ///
     /// - `finest`: a length. `takes_part`: whether a triangle is asked for.
     pub(super) fn new(
@@ -118,7 +119,7 @@ fn is_rod(bounds: &Bounds, finest: f64) -> bool {
     size[1] < finest
 }
 
-/// Gives the lines in which a triangle meets another; all of its edges, if it lies in the plane.
+/// Gives the lines in which a triangle intersects another; all of its edges, if it lies in the plane.
 fn meeting(own: [DVec3; 3], other: [DVec3; 3], tolerance: f64, mut give: impl FnMut([DVec3; 2])) {
     let (normal, area) = normal_and_area(own);
     if area <= 0.0 {
@@ -173,7 +174,7 @@ fn between(a: DVec3, b: DVec3, low: f64, high: f64) -> DVec3 {
     a + (b - a) * (low / (low - high))
 }
 
-/// The line in which a triangle meets another that rises steeply from it.
+/// The line in which a triangle intersects another that rises steeply from it.
 fn crease(own: [DVec3; 3], other: [DVec3; 3], tolerance: f64) -> Option<[DVec3; 2]> {
     let (normal, _) = normal_and_area(own);
     let [one, two] = [normal, normal_and_area(other).0];

@@ -49,7 +49,7 @@ pub(super) struct ExternalLight {
 /// each to the next. Nothing for clusters.
 pub(super) type CornerLight = Box<[ExternalLight]>;
 
-/// Which of them are the corners of each quarter.
+/// The corners of each quarter among them.
 const OF_QUARTERS: [[usize; 3]; 4] = [[0, 3, 5], [3, 1, 4], [5, 4, 2], [4, 5, 3]];
 
 /// External light at the corners of the parts into which a node is divided.

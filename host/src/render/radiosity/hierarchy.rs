@@ -470,7 +470,7 @@ mod tests {
         assert_eq!(leaves(row(0.0, 0.0).collect(), 0.1), 8);
         // Squares of two, none of which touches another, are too few.
         assert_eq!(leaves(row(0.0, 0.1).collect(), 10.0), 8);
-        // A wall that rises from them faces another way.
+        // A wall that rises from them faces another direction.
         let wall =
             row(0.0, 0.0).map(|RadiosityPatch { corners, .. }| patch(corners.map(|c| DVec3::new(c.x, 0.0, c.y))));
         assert!(leaves(row(0.0, 0.0).chain(wall).collect(), 10.0) > 1);

@@ -16,7 +16,7 @@ const MOST_DIRECTIONS: u32 = 1024;
 /// The hierarchy of the patches to which light comes, straight or from others; elements of them to which none comes are
 /// dark.
 ///
-/// - `finest`, `coarsest`: lengths; patches are looked at in parts of the second.
+/// - `finest`, `coarsest`: lengths; patches are tested in parts of the second.
 pub(super) fn lit_hierarchy(
     visibility: &VisibilityTester<'_>,
     patches: Vec<RadiosityPatch>,

@@ -1,9 +1,9 @@
 //! Solves for the light that elements reflect to each other: conjugate gradients with a coarse level.
 //!
 //! The irradiance I by light of other elements is A I = M (b0 + ρ I), with b0 what elements send before any of it. With
-//! y = √ρ I the matrix is symmetric: (A − √ρ M √ρ) y = √ρ M b0, and positive definite where ρ < 1. In a closed room with
-//! ρ near 1, its smallest eigenvalues belong to light that is nearly the same everywhere: aggregates of elements, on
-//! each of which I is the same, know it, and are solved directly beside a diagonal.
+//! y = √ρ I the matrix is symmetric: (A − √ρ M √ρ) y = √ρ M b0, and positive definite where ρ < 1. In a closed room
+//! with ρ near 1, its smallest eigenvalues belong to light that is nearly the same everywhere: aggregates of elements,
+//! on each of which I is the same, know it, and are solved directly beside a diagonal.
 
 use super::exchange::Exchange;
 use crate::color::{Channels, LANES};
@@ -35,7 +35,7 @@ struct System<'a> {
     areas: Vec<f64>,
     /// √ρ
     roots: Vec<Channels>,
-    /// Which aggregate each leaf is of.
+    /// The aggregate of each leaf.
     aggregate: Vec<usize>,
     /// For each lane, the factor of the matrix of the aggregates.
     coarse: Vec<Factor>,
@@ -184,8 +184,8 @@ impl System<'_> {
         residual.iter().enumerate().map(of).collect()
     }
 
-    /// Steps of conjugate gradients, all lanes side by side, until no residual is greater than `goal` times the greatest right
-    /// side, per area. Tells how many.
+    /// Steps of conjugate gradients, all lanes side by side, until no residual is greater than `goal` times the
+    /// greatest right side, per area. Tells how many.
     fn descend(&self, right: &[Channels], y: &mut [Channels], goal: f64, most: u32, stopped: &dyn Fn() -> bool) -> u32 {
         let image = self.apply(y);
         let mut residual: Vec<Channels> = right.iter().zip(&image).map(|(a, b)| *a - *b).collect();

@@ -88,7 +88,7 @@ fn in_a_closed_sphere_light_grows_by_one_over_what_is_lost() {
 fn a_closed_room_that_reflects_nearly_all_is_solved_in_few_steps() {
     for loss in [1e-2, 1e-4, 1e-6] {
         let room = prepared(vec![cube("room", 2.0, 1.0 - loss), sphere("ball", 0.4, 1.0 - loss)], vec![]);
-        // One wall glows on its inner side.
+        // One wall emits on its inner side.
         let wall = |_: u32, outside: bool, at: DVec3| Channels::splat(if !outside && at.y > 0.99 { 1.0 } else { 0.0 });
         let radiosity = solved(&room, &coarse(), Some(&wall));
         let report = radiosity.report;
@@ -388,7 +388,7 @@ fn balls_of_many_small_triangles_have_few_elements_and_light_as_the_closed_form_
 }
 
 #[test]
-fn a_ball_of_face_clusters_that_glows_inside_keeps_all_light() {
+fn a_ball_of_face_clusters_that_emits_inside_keeps_all_light() {
     let ball = Object { tolerance: Some(1e-3), ..sphere("ball", 1.0, 0.99) };
     let ball = prepared(vec![ball], vec![]);
     let glowing = |_: u32, outside: bool, _: DVec3| Channels::splat(if outside { 0.0 } else { 1.0 });

@@ -62,7 +62,7 @@ impl PathNote {
         let material = prepared.material(interaction.triangle).word();
         let normal = interaction.element.normal;
         let what = format!(
-            "meets {}{side}, {material} material, after {:.6}; normal {:.4} {:.4} {:.4}",
+            "hits {}{side}, {material} material, after {:.6}; normal {:.4} {:.4} {:.4}",
             object.name, interaction.distance, normal.x, normal.y, normal.z
         );
         PathNote { at: Some(interaction.element.position), ..PathNote::new(depth, what, None) }

@@ -3,7 +3,7 @@
 //!
 //! Each pixel is the mean of its samples as a reconstruction filter weighs them: by a box, which is what scenes have
 //! without a word, the mean over its area, and coverage the covered share of it. Places in the pixel and on the lens,
-//! points of lights, directions and wavelengths are drawn from Owen's scrambled sequences.
+//! points of lights, directions and wavelengths are sampled by Owen's scrambled sequences.
 
 mod accumulation;
 mod direct;
@@ -69,7 +69,7 @@ pub struct RayTracer<'a> {
 /// One sample of a pixel, explained.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Explanation {
-    /// Which sample.
+    /// The number of the sample.
     pub sample: u32,
     /// The wavelengths that it carries, nm; none if it carries red, green and blue.
     pub wavelengths: Option<Vec<f64>>,

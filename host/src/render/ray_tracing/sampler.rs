@@ -41,7 +41,7 @@ impl PathSampler {
         PathSampler { sequence: SobolSequence::new(seed, pixel), index, of, time: 0.0 }
     }
 
-    /// The sampler at a time drawn from those in which a shutter is open for so long; a single sample in their middle.
+    /// The sampler at a time from those in which a shutter is open for so long; a single sample in their middle.
     pub(super) fn at_random_time(self, shutter: f64) -> PathSampler {
         let part = if self.of <= 1 { 0.5 } else { self.point(SampleDimension::Time)[0] };
         PathSampler { time: (part - 0.5) * shutter, ..self }

@@ -1,4 +1,4 @@
-//! Facts about textures in pictures: means that are known, and pictures that two ways of filtering agree on.
+//! Facts about textures in pictures: means that are known, and pictures that two methods of filtering agree on.
 
 use super::tests::{diffuse, from_above, mirror, object, red, scene, trace};
 use super::two_way_tests::{block, two_way};

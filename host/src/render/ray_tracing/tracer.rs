@@ -115,7 +115,7 @@ pub(super) struct PathResult {
     pub(super) radiance: [Channels; PathClass::ALL.len()],
     /// Radiance of each class at other wavelengths than those of the sample, linear sRGB.
     pub(super) other_wavelengths: [DVec3; PathClass::ALL.len()],
-    /// Whether the first path segment met an object or light.
+    /// Whether the first path segment hit an object or light.
     pub(super) covered: bool,
     /// The first hit: distance from the camera, normal, object and material.
     pub(super) first: Option<FirstHit>,

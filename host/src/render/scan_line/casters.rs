@@ -35,7 +35,7 @@ pub(super) struct Silhouette {
 /// All triangles that throw shadows.
 pub(super) struct Casters<'a> {
     pub(super) prepared: &'a Prepared,
-    /// Which triangles there are: those of the objects that the plan keeps.
+    /// Numbers of the triangles: those of the objects that the plan keeps.
     pub(super) triangles: Vec<u32>,
     edges: Vec<CasterEdge>,
     /// For all triangles of the scene, the group; empty if all are opaque.

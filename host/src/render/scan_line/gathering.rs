@@ -1,4 +1,4 @@
-//! Which surfaces the samples of a pixel see, and the elements in the middle of what they see.
+//! Gathering: the surfaces that the samples of a pixel see, and the elements in the middle of what they see.
 
 use super::shader::{PixelScratch, SampleSight, Shader};
 use super::surfaces::{PixelInteraction, PixelSurface, SampleFragment, StripPixel};

@@ -29,7 +29,7 @@ const ROUNDING: f64 = 1e-9;
 /// Samples of a line that a polygon covers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Span {
-    /// Which line, from the top of the picture.
+    /// Number of the line, from the top of the picture.
     pub(super) line: usize,
     /// From this column.
     pub(super) from: usize,
@@ -42,7 +42,7 @@ pub(super) struct Span {
 /// Lines that are drawn together.
 #[derive(Clone, Debug)]
 pub(super) struct SampleLines {
-    /// Which, [`MOST_LINES`] at the most.
+    /// Numbers of the lines, [`MOST_LINES`] at the most.
     pub(super) range: Range<usize>,
     /// Columns.
     pub(super) width: usize,
@@ -63,8 +63,8 @@ impl PictureRegion {
 }
 
 impl SampleLines {
-    /// - `range`: which lines; `width`: how many columns. `offsets`: where samples lie in their pixels, for each line of a
-    ///   row of pixels.
+    /// - `range`: which lines; `width`: how many columns. `offsets`: where samples lie in their pixels, for each line
+    ///   of a row of pixels.
     pub(super) fn new(range: Range<usize>, width: usize, offsets: &[f64]) -> SampleLines {
         let offset = |i: usize| offsets[(range.start + i) % offsets.len()];
         SampleLines { offsets: std::array::from_fn(offset), range, width }
@@ -78,7 +78,8 @@ impl SampleLines {
 
     /// Gives the spans of a convex polygon within a part of the picture.
     ///
-    /// Sides that two polygons share are crossed at the same place bit by bit: no sample between them is lost or found twice.
+    /// Sides that two polygons share are crossed at the same place bit by bit: no sample between them is lost or found
+    /// twice.
     #[inline]
     pub(super) fn spans(&self, corners: &[ScreenPoint], within: &PictureRegion, mut give: impl FnMut(Span)) {
         if rises_once(corners) {

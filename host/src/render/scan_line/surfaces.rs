@@ -57,7 +57,7 @@ pub(super) struct SampleFragment {
     pub(super) surface: usize,
     pub(super) fragment: usize,
     pub(super) triangle: u32,
-    /// Which of the pixel's samples.
+    /// Index of the sample in the pixel.
     pub(super) sample: usize,
 }
 
@@ -76,13 +76,13 @@ pub(super) struct PixelSurface {
     pub(super) alone: bool,
     /// Sums of their nearness and depth.
     pub(super) nearness: [f64; 2],
-    /// Which of the elements that were found is its own.
+    /// Index of its own among the elements that were found.
     pub(super) interaction: Option<usize>,
     /// At the wavelengths of the shading context, its radiance towards the camera without lights, and the part of light
     /// that goes straight through.
     pub(super) unlit_radiance: Channels,
     pub(super) transmittance: Channels,
-    /// Which of the lights that were found are its own.
+    /// Indices of its own among the contributions that were found.
     pub(super) contributions: Range<usize>,
 }
 

@@ -1,4 +1,4 @@
-//! Which triangles the samples of a strip of the picture see.
+//! Visible triangles of the samples of a strip of the picture.
 
 use super::screen::{ClipCorner, ClippedPolygon, Screen, ScreenPoint};
 use super::spans::{Nearness, PictureRegion, SampleLines, Span};
@@ -13,7 +13,7 @@ pub(super) const NONE: u32 = u32::MAX;
 #[derive(Clone, Copy, Debug)]
 struct ScreenTriangle {
     triangle: u32,
-    /// Which of the outlines it has, if it was clipped.
+    /// Index of its outline, if it was clipped.
     outline: u32,
 }
 

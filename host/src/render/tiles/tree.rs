@@ -9,8 +9,8 @@ use crate::render::world::{Appearance, diffuse_albedo};
 use glam::{DVec3, Vec3};
 use std::f64::consts::FRAC_1_PI;
 
-/// Colours are looked up so far from a corner towards the middle of the piece, as a part of the way: what a neighbour has
-/// there does not count.
+/// Colours are looked up so far from a corner towards the middle of the piece, as a part of the way: what a neighbour
+/// has there does not count.
 const ASIDE: f64 = 1e-6;
 
 /// A triangle, or one of the four into which the middles of its edges divide such a piece.
@@ -86,7 +86,7 @@ type Sides<'d> = [Option<&'d ElementTree>; 2];
 
 /// The parts of a piece. Where its two sides are not divided alike, they are those of the side that has more of them.
 fn parts<'d>(triangle: [DVec3; 3], piece: &TrianglePiece, sides: Sides<'d>) -> Vec<(TrianglePiece, Sides<'d>)> {
-    /// Which quarter of the inner side lies behind a quarter of the outer one.
+    /// The quarter of the inner side that lies behind each quarter of the outer one.
     const BEHIND: [usize; 4] = [0, 2, 1, 3];
     let [outer, inner] = sides.map(|side| side.filter(|side| !side.parts.is_empty()));
     let quarters = |outer: Option<&'d ElementTree>, inner: Option<&'d ElementTree>| {

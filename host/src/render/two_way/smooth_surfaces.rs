@@ -144,7 +144,7 @@ impl Groups {
     fn first(&mut self, of: u32) -> u32 {
         let mut at = of;
         while self.0[at as usize] != at {
-            // Each step halves the way for those who come after.
+            // Each step halves the path for those that come after (Tarjan and van Leeuwen 1984).
             self.0[at as usize] = self.0[self.0[at as usize] as usize];
             at = self.0[at as usize];
         }

@@ -13,7 +13,7 @@ use crate::numeric::sampling::cosine_hemisphere;
 use glam::{DVec2, DVec3};
 use std::f64::consts::FRAC_1_PI;
 
-/// Neither of two ways is left to a smaller chance, if there is anything in it.
+/// Neither reflection nor transmission is left to a smaller chance, if there is anything in it.
 const LEAST_CHANCE: f64 = 0.05;
 
 /// A principled material of one roughness under a coat of one roughness, prepared.
@@ -47,7 +47,7 @@ pub(in crate::illumination::optics) enum PrincipledPart {
     Coat,
     /// What facets reflect and refract once.
     Facets,
-    /// What is spread alike: the color of the ground, and what is missing of the others.
+    /// Diffuse: the color of the ground, and the missing energy of the others.
     Spread,
 }
 
@@ -308,7 +308,7 @@ impl PrincipledSurface {
         through * (pdf * masking * radiance_scale(context) * under)
     }
 
-    /// What is spread alike on the side of the viewer: colors, and what is missing.
+    /// Diffuse value on the side of the viewer: colors, and missing energy.
     fn spread(&self, at: &PrincipledValues, context: &ShadingContext, light: DVec3) -> Channels {
         let [from, to] = [context.view.z, light.z].map(|cosine| self.missing(at, at.side, cosine));
         let mean = self.mean_missing(at, at.side);
@@ -326,7 +326,7 @@ impl PrincipledSurface {
         value
     }
 
-    /// What is missing and comes from the other side, spread alike.
+    /// Diffuse value of missing energy that comes from the other side.
     fn spread_through(&self, at: &PrincipledValues, context: &ShadingContext, light: DVec3) -> Channels {
         if at.clear() == 0.0 || !self.is_alone(context, at.side) {
             return Channels::ZERO;
@@ -405,7 +405,7 @@ impl PrincipledSurface {
         }
     }
 
-    /// How much is spread alike to the viewer from above, and from below.
+    /// Diffuse parts to the viewer from above, and from below.
     pub(super) fn spread_shares(&self, at: &PrincipledValues, context: &ShadingContext) -> [f64; 2] {
         let missing = self.missing(at, at.side, context.view.z);
         let further =
