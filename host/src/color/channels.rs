@@ -15,7 +15,7 @@ pub struct Channels(pub [f64; LANES]);
 impl Channels {
     /// No light.
     pub const ZERO: Channels = Channels([0.0; LANES]);
-    /// All of it.
+    /// All of the light.
     pub const ONE: Channels = Channels([1.0; LANES]);
 
     /// One number in all lanes.

@@ -9,8 +9,8 @@ use std::sync::LazyLock;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Color {
-    /// Linear sRGB. Of a light, (1, 1, 1) is D65 whose integral with the observer's ȳ is 1 watt; of a reflectance it is a
-    /// perfect reflector.
+    /// Linear sRGB. Of a light, (1, 1, 1) is D65 whose integral with the observer's ȳ is 1 watt; of a reflectance it is
+    /// a perfect reflector.
     Bands(DVec3),
     /// Per nanometre, if it is light; fractions, if it is a reflectance.
     Spectrum(Spectrum),
@@ -27,7 +27,7 @@ impl From<DVec3> for Color {
 }
 
 impl Color {
-    /// Nothing.
+    /// No light.
     pub const BLACK: Color = Color::Bands(DVec3::ZERO);
 
     /// One value in all bands.

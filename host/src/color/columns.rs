@@ -55,10 +55,10 @@ pub(super) fn named_rows(text: &str) -> Result<Vec<TableRow<'_>>, ColorError> {
     rows(text).map(|(_, rows)| rows)
 }
 
-/// Where figures come from.
+/// The origin of figures.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Origin {
-    /// What they are.
+    /// A description of the figures.
     pub what: String,
     /// Who measured them, where they were published.
     pub source: String,
@@ -66,7 +66,7 @@ pub struct Origin {
     pub terms: String,
 }
 
-/// What the head of a table says of its origin; nothing, where it says nothing.
+/// The origin that the head of a table tells; empty, where it tells nothing.
 pub fn origin(text: &str) -> Origin {
     let mut origin = Origin::default();
     let (mut unused, mut place) = (String::new(), 0);

@@ -33,7 +33,7 @@ pub enum ColorError {
     /// A formula does not hold at this wavelength.
     #[error("{name}: no index is known at {wavelength} nm, only from {from} to {to} nm")]
     OutOfRange {
-        /// What.
+        /// The name of the formula.
         name: String,
         /// The wavelength, nm.
         wavelength: f64,
@@ -45,7 +45,7 @@ pub enum ColorError {
     /// A formula that is none.
     #[error("{name}: its coefficients are not finite, or hold nowhere")]
     Formula {
-        /// What.
+        /// The name of the formula.
         name: String,
     },
     /// A colour is not three finite numbers.
@@ -54,11 +54,11 @@ pub enum ColorError {
     /// Nothing of this name ships with the program.
     #[error("no {kind} is called \"{name}\"; {advice}")]
     Unknown {
-        /// What was looked for.
+        /// The kind of what was looked for.
         kind: &'static str,
         /// Its name.
         name: String,
-        /// What it may have meant, or the names that there are.
+        /// Names that it may have meant, or the names that there are.
         advice: String,
     },
     /// A line of a table cannot be read.

@@ -10,7 +10,7 @@ use super::ColorError;
 /// Sellmeier 1871; coefficients as the files `data/color/glasses.txt` and `data/color/liquids.txt` state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Glass {
-    /// What it is called.
+    /// The name of the solid or liquid.
     pub name: String,
     /// The shortest wavelength for which the coefficients hold, nm.
     pub from: f64,

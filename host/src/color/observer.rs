@@ -1,4 +1,4 @@
-//! What the CIE 1931 standard observer, 2 degrees, sees.
+//! The CIE 1931 standard observer, 2 degrees.
 
 use super::shipped::OBSERVER;
 use super::{Spectrum, integral};
@@ -15,7 +15,8 @@ pub fn functions() -> &'static [Spectrum; 3] {
     &OBSERVER
 }
 
-/// X, Y and Z of light: the integrals of its spectrum times the functions of the observer, unit of the spectrum times nm.
+/// X, Y and Z of light: the integrals of its spectrum times the functions of the observer, unit of the spectrum times
+/// nm.
 pub fn tristimulus(light: &Spectrum) -> DVec3 {
     DVec3::from_array(functions().each_ref().map(|function| integral(&[light, function], VISIBLE.0, VISIBLE.1)))
 }

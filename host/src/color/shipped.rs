@@ -1,4 +1,4 @@
-//! What ships with the program: lamps, daylight, the observer, metals, glasses, and what surfaces reflect.
+//! Spectra that ship with the program: of lamps, daylight, the observer, metals, glasses, and reflectances of surfaces.
 //!
 //! The files lie in `data/color`; each states its source and its terms in its head.
 
@@ -32,7 +32,7 @@ const METALS: &[&str] = &[
 const GLASSES: &str = include_str!("../../data/color/glasses.txt");
 /// Liquids.
 const LIQUIDS: &str = include_str!("../../data/color/liquids.txt");
-/// What surfaces reflect; the patches of the colour checker first.
+/// Reflectances of surfaces; the patches of the colour checker first.
 const REFLECTANCES: &[&str] = &[
     CHECKER,
     include_str!("../../data/color/paints.txt"),
@@ -157,7 +157,7 @@ pub fn reflectances() -> Vec<&'static str> {
     REFLECTANCES.iter().flat_map(|text| columns::names(text)).collect()
 }
 
-/// What a surface reflects, 0..=1, as [`reflectances`] names it.
+/// The reflectance of a surface, 0..=1, as [`reflectances`] names it.
 ///
 /// # Errors
 /// [`ColorError::Unknown`].
@@ -187,7 +187,7 @@ pub fn function(name: &str) -> Result<Vec<(&'static str, Spectrum)>, ColorError>
     }
 }
 
-/// Where the figures of a name come from, whatever it names.
+/// The origin of the figures of a name, whatever it names.
 pub fn origin(name: &str) -> Option<Origin> {
     let function = || FUNCTIONS.iter().find(|row| row.0 == name).map(|row| row.1);
     let metal = || METALS.iter().find(|text| metals_of(text).any(|known| known == name)).copied();

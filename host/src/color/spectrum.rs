@@ -3,7 +3,7 @@
 use super::ColorError;
 use serde::{Deserialize, Serialize};
 
-/// What a spectrum is beyond its first and last sample.
+/// The extrapolation of a spectrum beyond its first and last sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Extrapolation {
@@ -13,7 +13,7 @@ pub enum Extrapolation {
     Held,
 }
 
-/// Where the samples are.
+/// The wavelengths of the samples.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Grid {

@@ -104,7 +104,7 @@ impl WavelengthSets {
         self.at[wavelength_set.min(self.at.len() - 1)]
     }
 
-    /// What light looks like: linear sRGB. Its mean over all wavelength sets is exact.
+    /// Linear sRGB of light. Its mean over all wavelength sets is exact.
     #[inline]
     pub fn to_srgb(&self, wavelength_set: usize, light: Channels) -> DVec3 {
         if !self.spectral {
@@ -170,7 +170,7 @@ impl WavelengthSets {
         [red, green, blue]
     }
 
-    /// What light is multiplied with, 0 and more.
+    /// A factor of light, 0 and more.
     pub fn filter(&self, color: &Color) -> SpectralTable {
         match color {
             Color::Bands(bands) if bands.max_element() > 1.0 => {

@@ -24,7 +24,7 @@ pub struct CriticalPoint {
     pub gap: f64,
     /// Unit vectors in the tangent plane along which the distance bends most and least.
     pub directions: [DVec3; 2],
-    /// Its second derivatives along these, 1 / model unit; the greater magnitude first.
+    /// Second derivatives of the distance along these directions, 1 / model unit; the greater magnitude first.
     pub curvatures: [f64; 2],
 }
 

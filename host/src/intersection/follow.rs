@@ -17,11 +17,11 @@ const SHORTEST: f64 = 1e-6;
 /// How following a curve ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// Where it began.
+    /// At its beginning.
     Closed,
-    /// Where it was to end.
+    /// At the end that was given.
     Left,
-    /// Where no step was possible any more.
+    /// At a point from which no step was possible any more.
     Lost,
 }
 

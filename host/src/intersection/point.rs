@@ -1,4 +1,4 @@
-//! What is known of a curve of intersection.
+//! Curves of intersection, their points, and how accurate they are.
 
 use crate::mesh::Polylines;
 use glam::{DVec2, DVec3};
@@ -19,7 +19,7 @@ impl Default for CurvePrecision {
     }
 }
 
-/// Where on a sheet a point is.
+/// The place of a point on a sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SheetCoordinates {
     /// A triangle that is near.
@@ -37,10 +37,10 @@ impl SheetCoordinates {
     }
 }
 
-/// What is special about a point.
+/// A mark of a special point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
-    /// Nothing.
+    /// An ordinary point.
     Regular,
     /// The curve goes over from one surface of a sheet to another. The point stands there twice, once on either.
     Corner,
@@ -85,7 +85,7 @@ pub enum Inaccuracy {
 /// A point of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurvePoint {
-    /// Where it is, model units: the middle between the points of both surfaces.
+    /// The position, model units: the middle between the points of both surfaces.
     pub position: DVec3,
     /// The parameters on both.
     pub coordinates: [SheetCoordinates; 2],
@@ -95,7 +95,7 @@ pub struct CurvePoint {
     pub tangent: DVec3,
     /// The angle between the tangent planes of the surfaces, degrees, 0..=90.
     pub angle: f64,
-    /// What is special about it.
+    /// The mark of the point.
     pub mark: Mark,
     /// The reason for which it is not accurate, if it is not.
     pub inaccuracy: Option<Inaccuracy>,
@@ -111,12 +111,12 @@ pub struct Branch {
 }
 
 impl Branch {
-    /// Its length as a polyline, model units.
+    /// The length as a polyline, model units.
     pub fn length(&self) -> f64 {
         self.positions().windows(2).map(|pair| pair[0].distance(pair[1])).sum()
     }
 
-    /// Its positions; if it is closed, the first once more at the end.
+    /// The positions; if it is closed, the first once more at the end.
     pub fn positions(&self) -> Vec<DVec3> {
         let again = self.points.first().filter(|_| self.is_closed);
         self.points.iter().chain(again).map(|point| point.position).collect()
@@ -155,7 +155,7 @@ impl Intersection {
         self.branches.iter().flat_map(|branch| &branch.points).chain(&self.touching)
     }
 
-    /// Its curves as runs of lines.
+    /// The curves as runs of lines.
     pub fn polylines(&self) -> Polylines {
         let mut lines = Polylines::default();
         for mut run in self.branches.iter().map(Branch::positions) {

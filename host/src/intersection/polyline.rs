@@ -21,14 +21,14 @@ pub struct TrianglePolyline {
     pub is_closed: bool,
 }
 
-/// What the triangles tell.
+/// The polylines of the triangles, and pairs of them whose surfaces may touch.
 #[derive(Clone, Debug, Default)]
 pub struct TrianglePolylines {
     /// The polylines.
     pub polylines: Vec<TrianglePolyline>,
     /// Pairs of triangles whose surfaces may touch, one for each triangle and surface of the other sheet.
     pub near: Vec<[u32; 2]>,
-    /// Pairs looked at.
+    /// Pairs tested.
     pub pairs: usize,
     /// Pairs that overlap in one plane.
     pub coincident: usize,

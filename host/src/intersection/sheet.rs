@@ -95,7 +95,7 @@ impl<'a> PreparedSheet<'a> {
         Some((number, self.sheet.surfaces.get(number as usize)?.as_ref()?))
     }
 
-    /// Where a point near a triangle is taken to be on its surface.
+    /// The place on its surface of a point near a triangle.
     pub fn coordinates(&self, triangle: u32, at: DVec3) -> SheetCoordinates {
         let [a, b, c] = weights(self.sheet.mesh.corners(triangle as usize), at);
         match self.surface(triangle) {

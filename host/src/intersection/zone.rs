@@ -16,7 +16,7 @@ const COINCIDENT: f64 = 1e-7;
 /// Critical points nearer to each other than this part of the reach are one.
 const SAME: f64 = 1e-3;
 
-/// What a critical point of the distance is for the curves around it.
+/// The kind of a critical point of the distance, for the curves around it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ZoneKind {
     /// The surfaces touch, and part all around.
@@ -36,13 +36,13 @@ pub enum ZoneKind {
 pub struct Zone {
     pub center: CriticalPoint,
     pub kind: ZoneKind,
-    /// Where the surfaces are farther apart than half of this, model units, triangles are trusted.
+    /// Distance between the surfaces, model units, from half of which on triangles are trusted.
     level: f64,
-    /// What the triangles are away from the surfaces, or the surfaces from each other.
+    /// The distance of the triangles from the surfaces, or of the surfaces from each other.
     pub error: f64,
     /// How far it reaches at most.
     pub extent: f64,
-    /// Of the triangles.
+    /// The reach of the triangles.
     pub reach: f64,
 }
 
@@ -101,7 +101,7 @@ impl CriticalPoint {
         CurvePoint { tangent, ..NewtonPoint { inaccuracy: failure, residual, ..self.newton_point() }.point(mark) }
     }
 
-    /// As a beginning of other points.
+    /// The critical point as a beginning of other points.
     pub fn newton_point(&self) -> NewtonPoint {
         NewtonPoint {
             at: self.at,
@@ -123,7 +123,7 @@ impl CriticalPoint {
 /// A critical point, with what its triangles are.
 struct ZoneCandidate {
     critical: CriticalPoint,
-    /// What the triangles are away from the surfaces.
+    /// The distance of the triangles from the surfaces.
     error: f64,
     reach: f64,
 }

@@ -16,7 +16,8 @@ impl<N> Arithmetic for N where N: Clone + From<f64> + Add<Output = N> + Sub<Outp
 
 /// Half the distance from 1 to the next number: the relative error of one operation.
 const UNIT: f64 = f64::EPSILON / 2.0;
-/// What the errors may be too small by, since they are rounded themselves; far more than any formula here gathers.
+/// Factor by which error bounds are enlarged, since they are rounded themselves; far more than any formula here
+/// gathers.
 const SLACK: f64 = 1.0 + 1e-12;
 
 /// A rounded number and a bound on its distance from the true one.

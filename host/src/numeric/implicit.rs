@@ -28,7 +28,7 @@ pub enum PointDefinition {
 }
 
 impl PointDefinition {
-    /// Where two lines of one plane cross; they must not be parallel.
+    /// The crossing of two lines of one plane; they must not be parallel.
     pub fn crossing(one: [DVec3; 2], two: [DVec3; 2]) -> PointDefinition {
         // A plane through the second along an axis: one along which the lines are seen to cross, the more squarely the
         // better.
@@ -114,7 +114,7 @@ impl ImplicitPoint {
         self.errors == DVec3::ZERO
     }
 
-    /// What defines it.
+    /// The definition of the point.
     pub fn definition(&self) -> &PointDefinition {
         &self.definition
     }

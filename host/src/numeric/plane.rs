@@ -10,7 +10,8 @@ pub struct Plane {
     pub corners: [DVec3; 3],
     /// Twice the area vector of the triangle between them, rounded.
     pub normal: DVec3,
-    /// Of each coordinate of the normal, the sum of the sizes of the two products that it is the difference of.
+    /// The rounding scale of each coordinate of the normal: the sum of the sizes of the two products whose difference
+    /// it is.
     sizes: DVec3,
     /// The axis that it is square to, if roundings leave no doubt of its normal.
     level: Option<usize>,

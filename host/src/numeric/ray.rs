@@ -7,9 +7,9 @@ use glam::DVec3;
 /// The direction need not have unit length, but must be finite and not zero; `t` counts in its length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it begins.
+    /// The point where the ray begins.
     pub origin: DVec3,
-    /// Where it goes.
+    /// The direction of the ray, of any length.
     pub direction: DVec3,
 }
 
@@ -20,7 +20,7 @@ impl Ray {
     }
 }
 
-/// Where a ray hits a triangle.
+/// A hit of a ray on a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// Parameter along the ray.

@@ -28,9 +28,9 @@ pub struct TriangleReference {
 /// Terminal nodes in the order of their codes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Leaves {
-    /// Their codes, sorted; none contains another.
+    /// Codes of the nodes, sorted; none contains another.
     pub codes: Vec<LocationalCode>,
-    /// Where the triangles of each end in `triangles`; the next one begins there.
+    /// Ends of the triangles of each node in `triangles`; the next one begins there.
     pub ends: Vec<usize>,
     /// Triangles, leaf by leaf, ascending in each.
     pub triangles: Vec<u32>,
@@ -53,7 +53,7 @@ impl Leaves {
         self.ends.extend(other.ends[nodes].iter().map(|end| end - first + offset));
     }
 
-    /// Where the triangles of some successive nodes lie in `triangles`.
+    /// The range of the triangles of some successive nodes in `triangles`.
     pub fn range(&self, nodes: Range<usize>) -> Range<usize> {
         let end = |node: usize| if node == 0 { 0 } else { self.ends[node - 1] };
         end(nodes.start)..end(nodes.end)
@@ -88,7 +88,7 @@ pub struct Nodes {
     pub leaves: Leaves,
 }
 
-/// What every cell needs to know.
+/// Builder of terminal nodes: the cube, the triangles and the limits of division.
 #[derive(Clone, Copy)]
 pub struct OctreeBuilder<'a> {
     /// The modelling cube.

@@ -46,8 +46,8 @@ impl BvhSubset<'_> {
     }
 }
 
-/// As many boxes as are under a box, coordinate by coordinate, to be compared at once. Where there are fewer, the last
-/// are empty.
+/// A group of boxes, as many as are under a box, coordinate by coordinate, to be compared at once. Where there are
+/// fewer, the last are empty.
 #[derive(Clone, Debug)]
 struct Group {
     min: [f64x4; 3],
@@ -138,7 +138,7 @@ impl TriangleBvh {
         TriangleBvh::filed(order, boxes)
     }
 
-    /// Those of the triangles that `is_kept` accepts.
+    /// A BVH over those of the triangles that `is_kept` accepts.
     pub fn only(&self, is_kept: impl Fn(u32) -> bool) -> TriangleBvh {
         let kept = |place: &usize| is_kept(self.order[*place]);
         let places: Vec<usize> = (0..self.order.len()).filter(kept).collect();
@@ -173,12 +173,12 @@ impl TriangleBvh {
         self.levels.last().map_or(Bounds::EMPTY, |top| top[0].union())
     }
 
-    /// All of them.
+    /// The subset of all triangles.
     pub fn all(&self) -> BvhSubset<'_> {
         BvhSubset { sorted: self, lanes: Vec::new() }
     }
 
-    /// Those of the triangles that `is_in` accepts, to be found among all.
+    /// The subset of the triangles that `is_in` accepts, to be found among all.
     pub fn part(&self, is_in: impl Fn(u32) -> bool) -> BvhSubset<'_> {
         let lanes = |all: &[bool]| all.iter().rev().fold(0, |lanes, is_in| lanes << 1 | u8::from(*is_in));
         let mut of_level: Vec<bool> = self.order.iter().map(|&triangle| is_in(triangle)).collect();
@@ -196,7 +196,7 @@ impl TriangleBvh {
         self.pairs_if(&other.all(), |_, _| true)
     }
 
-    /// Such pairs with triangles of a part of another set that `keep` accepts.
+    /// Pairs as of [`TriangleBvh::pairs`], with triangles of a part of another set that `keep` accepts.
     pub fn pairs_if(&self, part: &BvhSubset, keep: impl Fn(u32, u32) -> bool + Sync) -> Vec<[u32; 2]> {
         let (Some(one), Some(two)) = (self.top(), part.sorted.top()) else { return Vec::new() };
         let open = |pair: Pair, found: &mut Vec<_>| {

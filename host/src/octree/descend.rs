@@ -13,8 +13,8 @@ use glam::DVec3;
 /// Entries of the stack that need no allocation.
 const STACK: usize = 32;
 
-/// What is still to be visited: where the ray enters it, as bits, above what it is. So the nearer is the lesser, since
-/// no length is negative.
+/// A child that is still to be visited: where the ray enters it, as bits, above its reference. So the nearer is the
+/// lesser, since no length is negative.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Entry(u64);
 

@@ -36,7 +36,7 @@ pub trait Lanes: Copy {
     fn most(self, other: Self) -> Self;
     /// This number where the other is positive, and its negative elsewhere.
     fn signed_by(self, other: Self) -> Self;
-    /// Where `self <= other`.
+    /// Lanes where `self <= other`.
     fn is_at_most(self, other: Self) -> u32;
 }
 
@@ -128,8 +128,9 @@ pub use wide::AvxLanes;
 
 #[cfg(target_arch = "x86_64")]
 mod wide {
-    //! SAFETY of all that is unsafe here: [`AvxLanes`] is made and used only in functions that are compiled for AVX2 and FMA,
-    //! which are called only where the processor has them. Loads and stores go to memory of the right size and alignment.
+    //! SAFETY of all that is unsafe here: [`AvxLanes`] is made and used only in functions that are compiled for AVX2
+    //! and FMA, which are called only where the processor has them. Loads and stores go to memory of the right size and
+    //! alignment.
 
     use super::{Eight, Lanes};
     use std::arch::x86_64::*;

@@ -14,7 +14,7 @@ pub struct Nearest {
     pub triangle: u32,
     /// The point.
     pub point: DVec3,
-    /// Its distance, model units.
+    /// Distance to the point, model units.
     pub distance: f64,
 }
 
@@ -41,8 +41,8 @@ impl TriangleBvh {
     }
 }
 
-/// The Hausdorff distance of two surfaces, as far as some of their points tell: how far a point of either can be from the
-/// other, in units of the positions. 0 if one of them has no triangles.
+/// The Hausdorff distance of two surfaces, as far as some of their points tell: how far a point of either can be from
+/// the other, in units of the positions. 0 if one of them has no triangles.
 ///
 /// - `one`, `two`: all of their vertices count.
 /// - `most`: of each at most so many points are measured, vertices and middles of triangles, evenly chosen.

@@ -4,7 +4,7 @@ use super::lanes::{Eight, LANES, Lanes};
 use super::prepared_ray::SinglePrecisionRay;
 use glam::DVec3;
 
-/// What rounding the corners may add to the size of a triangle.
+/// Growth of the size of a triangle by rounding its corners, at the most.
 const ROUNDING: f32 = 1.0 / (1_u32 << 22) as f32;
 
 /// The place of a corner that is not there.
@@ -129,7 +129,7 @@ impl Packet {
     }
 }
 
-/// Where corners lie beside the ray.
+/// Coordinates of corners beside the ray.
 #[inline(always)]
 fn across<L: Lanes>(corners: &[Eight; 3], frame: &SinglePrecisionRay) -> (L, L) {
     let [x, y, z] = frame.axes;
@@ -141,7 +141,7 @@ fn across<L: Lanes>(corners: &[Eight; 3], frame: &SinglePrecisionRay) -> (L, L) 
     (across(x), across(y))
 }
 
-/// Where corners lie along the ray.
+/// Coordinates of corners along the ray.
 #[inline(always)]
 fn along<L: Lanes>(corners: &[Eight; 3], frame: &SinglePrecisionRay) -> L {
     L::load(&corners[frame.axes[2]]).times_minus(L::splat(frame.sign_z), L::splat(frame.base_z))

@@ -1,4 +1,4 @@
-//! Where to divide items, so that rays have little work.
+//! Partition of items, so that rays have little work.
 
 use wide::f32x4;
 
@@ -8,7 +8,7 @@ use super::lanes::LANES;
 /// Bins along each axis.
 const BINS: usize = 16;
 
-/// So many items or fewer are given to half as many bins, since looking at these takes longer than filling them.
+/// So many items or fewer are given to half as many bins, since testing these takes longer than filling them.
 const FEW_ITEMS: usize = 32;
 
 /// Successive items as one.
@@ -27,7 +27,7 @@ pub struct ItemGroup {
 impl ItemGroup {
     const NOTHING: Self = Self { items: 0, weight: 0, around: Item::EMPTY, centres: Item::EMPTY };
 
-    /// All of some items.
+    /// The group of some items.
     pub fn of(items: &[Item]) -> Self {
         let mut part = Self::NOTHING;
         items.iter().for_each(|item| {
@@ -64,7 +64,7 @@ pub fn divide(items: &mut [Item], part: &ItemGroup) -> [ItemGroup; 2] {
     })
 }
 
-/// What lies in each bin, by axis.
+/// Items of each bin, by axis.
 struct Bins<const N: usize> {
     around: [[Item; N]; 3],
     weight: [[u32; N]; 3],

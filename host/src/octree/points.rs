@@ -21,7 +21,7 @@ pub struct SortedPoints {
     codes: Vec<u64>,
     /// Local coordinates, 0..=1 in the cube, for each axis; behind them some that are nowhere.
     positions: [Vec<f32>; 3],
-    /// Where the points of each cube of the table's level begin.
+    /// Begin of the points of each cube of the table's level.
     table: Vec<u32>,
 }
 
@@ -32,7 +32,7 @@ pub struct NearbyPoints {
     pub reach: f64,
     /// How many there are.
     pub count: usize,
-    /// Where they are, cube by cube.
+    /// Runs of the points, cube by cube.
     pub runs: [Range<u32>; 8],
 }
 
@@ -92,7 +92,8 @@ impl SortedPoints {
         self.cube.origin + local * self.cube.side
     }
 
-    /// The points around a place: within a radius, or within a half, a quarter and so on of it, so that there are not many.
+    /// The points around a place: within a radius, or within a half, a quarter and so on of it, so that there are not
+    /// many.
     ///
     /// - `most`: so many are not many.
     pub fn nearby(&self, place: DVec3, radius: f64, most: usize) -> NearbyPoints {
@@ -124,8 +125,8 @@ impl SortedPoints {
     /// Gives the points around a place that are within a flat disc there: the number of each, and the square of its
     /// distance along the disc, sides of the cube.
     ///
-    /// - `normal`: of the disc, unit length. `squares`: of its radius, and of how far above and below a point may be, sides
-    ///   of the cube.
+    /// - `normal`: of the disc, unit length. `squares`: of its radius, and of how far above and below a point may be,
+    ///   sides of the cube.
     pub fn within(
         &self,
         around: &NearbyPoints,

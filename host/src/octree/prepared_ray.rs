@@ -33,7 +33,7 @@ pub struct PreparedRay {
     pub shear: Shear,
     /// The part that counts.
     pub chord: Chord,
-    /// What tests in single precision need of the ray.
+    /// The ray as tests in single precision need it.
     pub single: SinglePrecisionRay,
 }
 
@@ -133,7 +133,7 @@ pub struct SinglePrecisionRay {
     pub axes: [usize; 3],
     /// Slopes over the longest axis as coordinates grow, by axis.
     pub shear: [f32; 4],
-    /// Where the line of the ray hits zero of the longest axis, by axis.
+    /// Where the line of the ray hits the plane of zero of the longest axis, by axis.
     pub beside: [f32; 4],
     /// The sign of its direction along the longest axis times where it begins there.
     pub base_z: f32,
@@ -141,15 +141,15 @@ pub struct SinglePrecisionRay {
     pub sign_z: f32,
     /// By how much a coordinate may be off, sides of the cube.
     pub tolerance: f32,
-    /// What a tolerance and a size make of an edge function's error.
+    /// Factor from a tolerance and a size to the error of an edge function.
     pub error_scale: f32,
     /// One over the slope, by axis.
     pub inverse: [f32; 4],
-    /// What is to be added to a coordinate times the inverse to get the length to the near side of a box, which is
-    /// moved towards the ray by the tolerance; by axis.
+    /// Summand that makes a coordinate times the inverse the length to the near side of a box, which is moved towards
+    /// the ray by the tolerance; by axis.
     pub near: [f32; 4],
-    /// What is to be added to a coordinate times the inverse to get the length to the far side of a box, which is moved
-    /// away by the tolerance; by axis.
+    /// Summand that makes a coordinate times the inverse the length to the far side of a box, which is moved away by
+    /// the tolerance; by axis.
     pub far: [f32; 4],
     /// Whether the ray goes down, by axis.
     pub down: [bool; 3],

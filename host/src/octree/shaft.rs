@@ -9,7 +9,7 @@ use glam::DVec3;
 
 /// By how much boxes are widened, in sides of the modelling cube: single precision places corners to 2^-24 of it.
 const WIDER: f64 = 1e-6;
-/// What covers a shaft does so with this to spare, as a fraction.
+/// Margin of a triangle that covers a shaft, as a fraction.
 const SPARE: f64 = 1e-6;
 
 /// All triangles that a ray from one box to another may hit.
@@ -36,12 +36,12 @@ impl Shaft {
     }
 }
 
-/// What lies between two boxes.
+/// The contents of a shaft between two boxes.
 #[derive(Clone, Debug)]
 pub enum ShaftContents {
     /// A triangle that stands before all of one box for all of the other.
     Covered,
-    /// These triangles.
+    /// These triangles, none of which covers it.
     Some(Shaft),
     /// More triangles than were asked for.
     Many,

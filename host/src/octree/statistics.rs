@@ -57,7 +57,7 @@ impl Octree {
             + size_of_val(self.objects.as_slice())
     }
 
-    /// What the octree holds, terminal nodes included.
+    /// The statistics of the octree, terminal nodes included.
     pub fn statistics(&self) -> Statistics {
         let mut depth_histogram = vec![0; self.depth as usize + 1];
         for code in &self.leaves().codes {

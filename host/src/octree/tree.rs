@@ -12,7 +12,7 @@ use super::settings::{OctreeSettings, Walk};
 use super::wide_bvh::WideBvh;
 use crate::numeric::bounds::Bounds;
 
-/// Where a point lies.
+/// The location of a point in the octree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Location {
     /// In a voxel that holds boundary surface.
@@ -23,7 +23,7 @@ pub enum Location {
     Empty {
         /// The largest empty cube of the octree around the point.
         code: LocationalCode,
-        /// Its level: its side is 2^(N - level) voxels.
+        /// The level of that cube: its side is 2^(N - level) voxels.
         level: u32,
     },
     /// Outside the modelling cube.

@@ -63,7 +63,7 @@ impl Child {
 pub struct BvhNode {
     /// By axis, then low and high.
     bounds: [[Eight; 2]; 3],
-    /// What is in each.
+    /// The child in each box.
     pub children: [Child; LANES],
 }
 
@@ -82,7 +82,7 @@ impl BvhNode {
         self.children[lane] = child;
     }
 
-    /// Its boxes, in local coordinates, and what is in each.
+    /// The boxes, in local coordinates, and the child in each.
     pub fn boxes(&self) -> impl Iterator<Item = (Bounds, Child)> {
         let corner = |side: usize, lane: usize| {
             DVec3::from_array([0, 1, 2].map(|axis| f64::from(self.bounds[axis][side].0[lane])))

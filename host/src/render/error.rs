@@ -18,7 +18,7 @@ pub enum RenderError {
     Material {
         /// The object.
         object: String,
-        /// What is wrong with the material.
+        /// The fault of the material.
         source: MaterialError,
     },
     /// The view flattens space to a line or a point, or is not finite.

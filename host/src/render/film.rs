@@ -1,4 +1,4 @@
-//! What the samples of all pixels add up to.
+//! Films: the sums of the samples of all pixels.
 
 use super::features::PixelFeatures;
 use super::tally::{PixelSample, RadianceByClass, Tally};
@@ -56,7 +56,7 @@ impl AdaptiveSampling {
 
 /// A row of a film.
 pub(super) struct FilmRow<'a> {
-    /// Its pixels.
+    /// The pixels of the row.
     pub(super) tallies: &'a mut [Tally],
     /// The sums of each class of light, if they are kept.
     classes: Option<&'a mut [RadianceByClass]>,
@@ -213,7 +213,7 @@ impl Film {
         Ok(picture)
     }
 
-    /// Of each pixel, whether it or one beside it has a greater relative error than asked for.
+    /// Whether each pixel, or one beside it, has a greater relative error than asked for.
     pub fn uncertain(&self, target: f64) -> Vec<bool> {
         let (width, height) = (self.width as usize, self.height as usize);
         let errors: Vec<f64> = self.tallies.iter().map(Tally::relative_error).collect();

@@ -5,7 +5,7 @@ use crate::color::Channels;
 /// A part of the light that comes to surfaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum IrradiancePart {
-    /// All of it.
+    /// All of the light.
     All,
     /// Only what other surfaces reflect.
     Indirect,

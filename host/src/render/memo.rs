@@ -15,7 +15,7 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// What such a file begins with; the last byte is the version.
+/// The first bytes of such a file; the last one is the version.
 const MAGIC: [u8; 8] = *b"PERISM\x00\x01";
 /// Bytes before the first record.
 const HEAD: u64 = 12;
@@ -31,14 +31,14 @@ pub struct Memo {
     state: Mutex<MemoState>,
 }
 
-/// Where the file stands.
+/// The state of the file.
 #[derive(Debug)]
 enum MemoState {
-    /// What was computed before is read, up to a byte.
+    /// The results of before are read, up to a byte.
     Reading(BufReader<File>, u64),
-    /// What is computed is written.
+    /// New results are written.
     Writing(File),
-    /// It could not be written, and is left as it is.
+    /// The file could not be written, and is left as it is.
     Broken,
 }
 

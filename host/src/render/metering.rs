@@ -1,15 +1,15 @@
 //! The exposure meter: how many stops make a scene come out well.
 //!
-//! A pilot picture of few pixels and samples, always the same ones, is rendered of each view that is metered. The meter sees
-//! the luminances of its pixels; lamps in sight do not count, and the sky only where there is nothing else. The scene alone
-//! decides: the size of the picture, its seed and its samples do not, so that parts and previews of a picture are exposed as
-//! the whole is.
+//! A pilot picture of few pixels and samples, always the same ones, is rendered of each view that is metered. The meter
+//! sees the luminances of its pixels; lamps in sight do not count, and the sky only where there is nothing else. The
+//! scene alone decides: the size of the picture, its seed and its samples do not, so that parts and previews of a
+//! picture are exposed as the whole is.
 //!
 //! # Source
-//! Reinhard 2003, *Parameter estimation for photographic tone reproduction*: the mean of the logarithms goes to a key that
-//! tells light scenes from dark ones. *Ours*: the key differs by half as much, the middle of the picture counts more than its
-//! corners, darkest and brightest are means over a tenth of the pixels, and the brightest pixels are not led beyond the white
-//! of the tone curve as long as the rest does not become too dark.
+//! Reinhard 2003, *Parameter estimation for photographic tone reproduction*: the mean of the logarithms goes to a key
+//! that tells light scenes from dark ones. *Ours*: the key differs by half as much, the middle of the picture counts
+//! more than its corners, darkest and brightest are means over a tenth of the pixels, and the brightest pixels are not
+//! led beyond the white of the tone curve as long as the rest does not become too dark.
 
 use super::tally::Tally;
 use super::{Film, RenderError, RenderOrder, Renderer, Watch};
@@ -24,7 +24,7 @@ use std::num::NonZeroUsize;
 const SIDE: u32 = 64;
 /// Samples in each of its pixels.
 const SAMPLES: u32 = 8;
-/// Its seed.
+/// Seed of a pilot picture.
 const SEED: u64 = 1;
 /// Longer sides of pilot pictures are so many times the shorter one at most.
 const MOST_ASPECT: u32 = 4;
@@ -53,7 +53,8 @@ pub struct Meter {
 }
 
 impl Meter {
-    /// - `settings`: of the scene, whose width and height tell the sides of its pictures, whatever size they are made in.
+    /// - `settings`: of the scene, whose width and height tell the sides of its pictures, whatever size they are made
+    ///   in.
     /// - `display`: how pictures are shown. `threads`: as in [`RenderOrder`].
     pub fn new(settings: &Settings, display: &DisplayTransform, threads: Option<NonZeroUsize>) -> Meter {
         let shorter = settings.image.width.min(settings.image.height).max(1);
@@ -64,8 +65,8 @@ impl Meter {
         Meter { width: side(settings.image.width), height: side(settings.image.height), display: *display, threads }
     }
 
-    /// The exposure of pictures, stops: that which the display transform sets, or what the meter finds. Where there is no
-    /// light in sight, or the work is stopped, the meter finds 0.
+    /// The exposure of pictures, stops: that which the display transform sets, or what the meter finds. Where there is
+    /// no light in sight, or the work is stopped, the meter finds 0.
     ///
     /// - `renderer`: that of the pictures. `prepared`: the scene that it renders.
     ///
@@ -117,7 +118,7 @@ pub fn stops_of_picture(picture: &Picture, tone: Tone) -> f64 {
     seen.stops(tone).unwrap_or_default()
 }
 
-/// Where a pixel looks.
+/// The target of a pixel.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum PixelTarget {
     Surface,

@@ -34,7 +34,7 @@ pub struct RenderOrder {
 }
 
 impl RenderOrder {
-    /// What the scene's settings ask for, on every core.
+    /// The order that the scene's settings ask for, on every core.
     pub fn of(settings: &Settings) -> RenderOrder {
         let ImageSettings { width, height, samples, filter, seed } = settings.image;
         RenderOrder {

@@ -1,4 +1,4 @@
-//! What every renderer does.
+//! The interface of every renderer.
 
 use super::error::RenderError;
 use super::order::RenderOrder;
@@ -8,7 +8,7 @@ use crate::scene::View;
 
 /// A renderer that has taken up a scene and can make pictures of it.
 pub trait Renderer: Send + Sync {
-    /// What of a scene pictures of a view do not show, in words.
+    /// Features of a scene that pictures of a view do not show, in words.
     fn left_out(&self, view: &View) -> Vec<&'static str>;
 
     /// Renders one view.

@@ -27,15 +27,15 @@ pub enum Technique {
     Radiosity,
 }
 
-/// What is known of a renderer.
+/// A row of the table of renderers.
 pub struct RendererRow {
     /// The technique that the row describes.
     pub technique: Technique,
-    /// Its name on the command line.
+    /// The name on the command line.
     pub option: &'static str,
-    /// Its name in tables and sentences.
+    /// The name in tables and sentences.
     pub word: &'static str,
-    /// What it is good for.
+    /// A summary for help texts.
     pub help: &'static str,
     /// Whether it adds samples to pixels one by one: errors, seconds, a state to continue with, single pixels and
     /// denoising can then be asked for.
@@ -122,12 +122,12 @@ pub const RENDERERS: [RendererRow; 4] = [
     },
 ];
 
-/// What a renderer is prepared for.
+/// The task of a renderer: what it is prepared for.
 #[derive(Clone, Copy)]
 pub struct Task<'a> {
     /// The scene, with settings as [`RendererRow::require`] left them.
     pub prepared: &'a Prepared,
-    /// What of it is needed.
+    /// The plan of what is needed of the scene.
     pub plan: &'a Plan,
     /// Where photons are stored beyond the renderer; nowhere without one.
     pub photon_store: Option<&'a PhotonStore>,
@@ -147,7 +147,7 @@ impl<'a> Task<'a> {
 pub struct PreparedRenderer<'a> {
     /// The renderer, with its world.
     pub renderer: AnyRenderer<'a>,
-    /// What it took to find the light that diffuse surfaces send each other, if that was found before.
+    /// The report of the light that diffuse surfaces send each other, if that was found before.
     pub radiosity: Option<radiosity::RadiosityReport>,
 }
 
@@ -160,7 +160,7 @@ pub enum AnyRenderer<'a> {
 }
 
 impl<'a> AnyRenderer<'a> {
-    /// As any renderer.
+    /// The renderer, as any.
     pub fn any(&self) -> &(dyn Renderer + 'a) {
         match self {
             AnyRenderer::BySamples(tracer) => &**tracer,
@@ -178,7 +178,7 @@ impl<'a> AnyRenderer<'a> {
 }
 
 impl Technique {
-    /// What is known of it.
+    /// Its row of the table.
     pub fn row(self) -> &'static RendererRow {
         &RENDERERS[self as usize]
     }

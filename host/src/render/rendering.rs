@@ -19,7 +19,7 @@ pub struct Rendering {
     pub rays: RayCounts,
     /// How many spans were drawn; none by ray tracing.
     pub spans: SpanCounts,
-    /// What became of the flux of the photons that were traced first, if any were.
+    /// The balance of the flux of the photons that were traced first, if any were.
     pub flux_balance: Option<FluxBalance>,
     /// Wall-clock time, seconds.
     pub seconds: f64,
@@ -98,9 +98,9 @@ impl std::ops::Add for RayCounts {
 /// Spans of samples by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct SpanCounts {
-    /// Of triangles that may be seen.
+    /// Spans of triangles that may be seen.
     pub surfaces: u64,
-    /// Of shadow polygons.
+    /// Spans of shadow polygons.
     pub shadows: u64,
 }
 

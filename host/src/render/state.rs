@@ -30,7 +30,7 @@ pub(super) fn after(every: Duration, begin: Instant) -> Instant {
     now + every.max((now - begin) * LEAST_WORK)
 }
 
-/// What such a file begins with; the version follows.
+/// The first bytes of such a file; the version follows.
 const MAGIC: [u8; 7] = *b"PERISF\x00";
 /// The versions of films without and with features for a denoiser.
 const WITHOUT_FEATURES: u8 = 4;
@@ -58,26 +58,26 @@ pub enum StateError {
     File {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the system.
         source: std::io::Error,
     },
-    /// It is none, or is damaged.
+    /// The file is no state, or is damaged.
     #[error("{path}: {problem}")]
     Damaged {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The fault of the file.
         problem: String,
     },
-    /// It is of another scene or order.
+    /// The state is of another scene or order.
     #[error("{path} is the state of other work: {what}; remove the file to begin anew")]
     Other {
         /// The file.
         path: PathBuf,
-        /// What is other.
+        /// The part that differs.
         what: &'static str,
     },
-    /// It cannot be written.
+    /// The state cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
     /// There is no film of that size.
@@ -85,7 +85,7 @@ pub enum StateError {
     Size(#[from] PictureError),
 }
 
-/// What stands before the pixels.
+/// The head of the file, before the pixels.
 #[derive(Serialize, Deserialize)]
 struct Head {
     fingerprint: Fingerprint,
@@ -107,7 +107,7 @@ pub struct RenderState {
 }
 
 impl Fingerprint {
-    /// Of a scene and how it is to be rendered.
+    /// The fingerprint of a scene and how it is to be rendered.
     pub fn of(scene: &Scene, prepared: &Prepared, order: &RenderOrder) -> Fingerprint {
         let checksum = |bytes: &[u8]| crc32fast::hash(bytes);
         let mut scene = scene.clone();
@@ -136,7 +136,7 @@ impl Fingerprint {
         crc32fast::hash(format!("{} {} {more}", self.scene, self.geometry).as_bytes())
     }
 
-    /// What of it differs from another.
+    /// The first part that differs from another fingerprint.
     fn difference(&self, other: &Fingerprint) -> Option<&'static str> {
         let parts = [
             (self.order != other.order, "its size, seed or background differs"),

@@ -18,18 +18,18 @@ pub(super) const SHARING: u32 = 8;
 /// concentrated: by mirrors, glass and highlights (S and G).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PathClass {
-    /// Of lamps and skies, straight or by narrow scattering alone.
+    /// Light of lamps and skies, straight or by narrow scattering alone.
     Emitted,
-    /// By one broad scattering, straight from the lamp; narrow ones may follow.
+    /// Light by one broad scattering, straight from the lamp; narrow ones may follow.
     Direct,
-    /// By narrow scattering first, and then one broad; narrow ones may follow.
+    /// Light by narrow scattering first, and then one broad; narrow ones may follow.
     Caustic,
-    /// By several broad ones, and ambient light.
+    /// Light by several broad ones, and ambient light.
     Indirect,
 }
 
 impl PathClass {
-    /// All of them, in the order of their numbers.
+    /// All classes, in the order of their numbers.
     pub const ALL: [PathClass; 4] = [PathClass::Emitted, PathClass::Direct, PathClass::Caustic, PathClass::Indirect];
 
     /// The word for it in layers.
@@ -46,7 +46,7 @@ impl PathClass {
 /// Radiance of each class, linear sRGB.
 pub type RadianceByClass = [DVec3; PathClass::ALL.len()];
 
-/// What is known of a pixel.
+/// The sums over the samples of a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, bytemuck::Zeroable)]
 pub struct Tally {
     /// Sum of radiance, linear sRGB.

@@ -6,16 +6,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// How much of a stage of the work is done.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// What is done, `0..=all`.
+    /// The part that is done, `0..=all`.
     pub done: f64,
     /// All that is to be done.
     pub all: f64,
-    /// What is counted, such as `samples`.
+    /// The unit that is counted, such as `samples`.
     pub unit: &'static str,
 }
 
 impl Progress {
-    /// So many of so many.
+    /// Progress of so many of so many.
     pub fn of(done: u64, all: u64, unit: &'static str) -> Progress {
         Progress { done: done as f64, all: all as f64, unit }
     }
@@ -30,7 +30,7 @@ pub struct Watch<'a> {
     pub progress: &'a (dyn Fn(Progress) + Sync),
     /// Called when another stage of the work begins, with words such as `while rendering`.
     pub stage: &'a (dyn Fn(&'static str) + Sync),
-    /// Where results of long computations are kept, if anywhere.
+    /// The memo in which results of long computations are kept, if there is one.
     pub memo: Option<&'a Memo>,
 }
 

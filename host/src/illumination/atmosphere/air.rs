@@ -77,7 +77,7 @@ impl Air {
         Air { scattering: [air, haze.map(|taken| SCATTERED * taken)], extinction: [air, haze, ozone], scaled, sun: SUN }
     }
 
-    /// What haze scatters, at 1 for all it does, without what goes straight on.
+    /// The part of what haze scatters that does not go straight on.
     pub(super) const TURNED: f64 = 1.0 - STRAIGHT;
 }
 

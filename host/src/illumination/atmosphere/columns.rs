@@ -4,7 +4,7 @@ use super::air::{Amounts, density};
 
 /// Radius of the earth, km.
 pub(super) const GROUND: f64 = 6360.0;
-/// Where the atmosphere ends, km from the middle of the earth.
+/// The end of the atmosphere, km from the middle of the earth.
 pub(super) const TOP: f64 = 6460.0;
 /// Rows of the table: heights.
 const HEIGHTS: usize = 64;

@@ -19,16 +19,17 @@ pub struct Atmosphere {
     pub turbidity: f64,
     /// The part of the light that the ground reflects, 0..=1.
     pub albedo: f64,
-    /// Of the eye over the ground, metres, 0..=50,000.
+    /// Altitude of the eye over the ground, metres, 0..=50,000.
     pub altitude: f64,
-    /// Of the sun over the horizon, radians, -π/2..=π/2.
+    /// Elevation of the sun over the horizon, radians, -π/2..=π/2.
     pub elevation: f64,
 }
 
 /// A clear sky.
 #[derive(Clone, Debug)]
 pub struct ClearSky {
-    /// Radiance, W/(m² sr nm): rows from straight up to straight down, in each from the direction of the sun all around.
+    /// Radiance, W/(m² sr nm): rows from straight up to straight down, in each from the direction of the sun all
+    /// around.
     pub radiance: Vec<Spectral>,
     /// Irradiance of a surface that faces the sun by the sun alone, W/(m² nm).
     pub sun: Spectral,

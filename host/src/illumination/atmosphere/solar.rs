@@ -1,4 +1,4 @@
-//! Where the sun is.
+//! The position of the sun.
 
 use std::f64::consts::TAU;
 

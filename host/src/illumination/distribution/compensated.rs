@@ -38,7 +38,7 @@ pub struct Compensated {
     mean_lost: f64,
     /// The pdf, over the place in the table, of what is emitted again.
     emitted: Vec<f64>,
-    /// Its integral up to the end of each interval; empty if nothing is lost.
+    /// The integral of that pdf up to the end of each interval; empty if nothing is lost.
     below: Vec<f64>,
 }
 
@@ -101,7 +101,7 @@ impl Compensated {
         0.01 * self.roughness.min(1.0 / self.roughness)
     }
 
-    /// Where a cosine has its place in the table, 0..=1: even steps below the scale, and even ratios above it.
+    /// The place of a cosine in the table, 0..=1: even steps below the scale, and even ratios above it.
     fn place(&self, cosine: f64) -> f64 {
         (cosine / self.scale()).asinh() / self.scale().recip().asinh()
     }

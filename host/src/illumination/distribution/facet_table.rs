@@ -17,9 +17,10 @@ const HALVINGS: u32 = 24;
 const TOLERANCE: f64 = 2e-4;
 /// Values below this part of the greatest count as if they were so great.
 const FLOOR: f64 = 1e-6;
-/// Of the table of the area that the facets show to a direction: first intervals, most of them, and the tolerance.
+/// The limits of the table of the area that the facets show to a direction: first intervals, most of them, and the
+/// tolerance.
 const SHOWN: (usize, usize, f64) = (16, 1024, 2e-6);
-/// Where between the ends of an interval errors are measured: not at the middles, which were sampled.
+/// Places between the ends of an interval at which errors are measured: not at the middles, which were sampled.
 const MEASURED: [f64; 2] = [0.276_393_202_250_021, 0.723_606_797_749_979];
 /// Places and weights of Gauss and Legendre's formula of three points, in 0..1.
 const GAUSS: [(f64, f64); 3] =
@@ -45,7 +46,7 @@ pub enum FacetError<E> {
     Function {
         /// The angle, radians.
         angle: f64,
-        /// What the function of the facets says.
+        /// The error of the function.
         source: E,
     },
     /// A value that is negative or not finite.
@@ -56,7 +57,7 @@ pub enum FacetError<E> {
         /// The value.
         value: f64,
     },
-    /// It is 0 everywhere.
+    /// All values are 0.
     #[error("it is 0 at all angles: there are no facets")]
     Nothing,
 }
@@ -83,7 +84,7 @@ pub struct FacetTable {
     error: TableError,
 }
 
-/// What is stored of a table.
+/// The stored fields of a table.
 #[derive(Clone, Serialize, Deserialize)]
 struct Plain {
     name: String,
@@ -201,7 +202,7 @@ impl FacetTable {
         Ok(FacetTable::of(name.into(), area, error))
     }
 
-    /// Of a table that is scaled.
+    /// A table with an area that is scaled.
     fn of(name: String, area: Table, error: TableError) -> FacetTable {
         let mut sum = 0.0;
         let flux = |k: usize| area.gauss(k).map(|[angle, value, weight]| value * weight * PI * (2.0 * angle).sin());

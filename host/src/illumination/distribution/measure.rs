@@ -1,4 +1,4 @@
-//! What a distribution is like, in numbers: its integral, its reciprocity, and whether it is a distribution at all.
+//! Measures of a distribution: its integral, its reciprocity, and whether it is a distribution at all.
 
 use super::{Distribution, DistributionError};
 use crate::numeric::cubature::{Integral, unit_square};

@@ -101,9 +101,9 @@ pub trait Distribution: std::fmt::Debug + Send + Sync {
 
 /// A distribution that ships with the program.
 pub struct DistributionRow {
-    /// What it is called.
+    /// The name.
     pub name: &'static str,
-    /// What it is.
+    /// A summary for tables.
     pub summary: &'static str,
     /// Makes it with a roughness m, the root mean square slope of facets times root 2, 1e-8..=1000.
     pub make: fn(f64) -> Result<Box<dyn Distribution>, DistributionError>,

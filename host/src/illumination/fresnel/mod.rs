@@ -26,9 +26,9 @@ pub const MOST_INDEX: f64 = 1e6;
 /// Parts of the power of light, 0..=1, by its polarisation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Polarised {
-    /// Of light whose electric field lies across the plane of incidence.
+    /// The part of light whose electric field lies across the plane of incidence.
     pub perpendicular: f64,
-    /// Of light whose electric field lies in it.
+    /// The part of light whose electric field lies in it.
     pub parallel: f64,
 }
 

@@ -1,4 +1,4 @@
-//! What every light keeps: what is sampled is what is seen, what leaves it is its power, it is where it says.
+//! The contract of every light: it is seen as it is sampled, what leaves it is its power, and it is where it says.
 
 use super::{EmissionSample, Goniometry, Light, LightOrigin, LightShape, LightSource, SkyDisc, SkyMap};
 use crate::color::{Color, WavelengthSets};
@@ -12,7 +12,7 @@ use std::f64::consts::{PI, TAU};
 
 /// Corners of an emitting triangle.
 const TRIANGLE: [DVec3; 3] = [DVec3::new(-1.0, 2.0, -0.5), DVec3::new(1.5, 2.5, 0.0), DVec3::new(0.0, 2.0, 1.5)];
-/// Where light arrives, on a surface that faces up.
+/// A point where light arrives, on a surface that faces up.
 const POINT: DVec3 = DVec3::new(0.2, 0.1, -0.3);
 
 /// Lights of every kind, all above the point.

@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 #[derive(Clone, Debug)]
 pub(super) struct EnvironmentLight {
     pub(super) sky: Box<Sky>,
-    /// What its map is multiplied with, as light.
+    /// Factor of its map, as light.
     pub(super) strength: SpectralTable,
 }
 

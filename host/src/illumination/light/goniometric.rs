@@ -21,7 +21,7 @@ pub(super) struct GoniometricLight {
     pub(super) axes: DMat3,
     /// Candelas.
     pub(super) table: Arc<Goniometry>,
-    /// What the table is multiplied with.
+    /// Factor of the table.
     pub(super) strength: SpectralTable,
 }
 

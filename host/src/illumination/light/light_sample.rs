@@ -33,7 +33,7 @@ pub struct LightHit {
 /// One of a few fixed points that stand for a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightPoint {
-    /// Where it is; none for light from infinitely far away.
+    /// Position of the point; none for light from infinitely far away.
     pub at: Option<DVec3>,
     /// Towards the light that is infinitely far away, unit length; 0 otherwise.
     pub towards: DVec3,
@@ -54,7 +54,7 @@ pub(super) enum EmittingSides {
 pub enum EmissionSample {
     /// From a place, in many directions.
     Point {
-        /// Where it is.
+        /// Position of the place.
         at: DVec3,
         /// The normal of the surface there, if it is one.
         normal: Option<DVec3>,
@@ -63,7 +63,7 @@ pub enum EmissionSample {
     },
     /// From infinitely far away, in one direction.
     Parallel {
-        /// Where it goes, unit length.
+        /// The direction in which the light goes, unit length.
         direction: DVec3,
         /// Irradiance of a surface that faces it, W/m², over the pdf of the direction.
         irradiance: Channels,

@@ -256,7 +256,7 @@ impl LightShape {
         }
     }
 
-    /// Where a ray hits it, in lengths of the direction, and whether on the side that emits.
+    /// The hit of a ray, in lengths of the direction, and whether it is on the side that emits.
     pub(super) fn intersect(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<(f64, bool)> {
         let Ray { origin, direction } = *ray;
         let within = |t: &f64| t_min < *t && *t < t_max;

@@ -19,7 +19,7 @@ pub(super) struct MeshLight {
 }
 
 impl MeshLight {
-    /// None without area.
+    /// A light of triangles; none without area.
     pub(super) fn new(corners: Vec<[DVec3; 3]>, strength: SpectralTable) -> Option<MeshLight> {
         let mut area = 0.0;
         let mut below: Vec<f64> = Vec::with_capacity(corners.len());

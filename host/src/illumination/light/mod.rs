@@ -43,14 +43,14 @@ use std::sync::Arc;
 pub enum Light {
     /// A point that emits alike in all directions; its irradiance falls with the square of the distance.
     Point {
-        /// Where it is.
+        /// Position of the point.
         at: DVec3,
         /// Radiant intensity, W/sr. A source of power P has P / (4 pi).
         intensity: Color,
     },
     /// Parallel light from infinitely far away.
     Directional {
-        /// Where the light goes; any length but 0.
+        /// The direction in which the light goes; any length but 0.
         direction: DVec3,
         /// Irradiance of a surface that faces the light, W/m².
         irradiance: Color,
@@ -58,9 +58,9 @@ pub enum Light {
     /// A point that emits a cone of light: all of its intensity up to the inner angle, none beyond the outer one, and
     /// t² (3 − 2 t) between, t going from 0 to 1 with the cosine.
     Spot {
-        /// Where it is.
+        /// Position of the point.
         at: DVec3,
-        /// Where the axis of the cone goes; any length but 0.
+        /// The direction of the axis of the cone; any length but 0.
         direction: DVec3,
         /// Radiant intensity on the axis, W/sr.
         intensity: Color,
@@ -71,15 +71,15 @@ pub enum Light {
     },
     /// A luminaire that was measured: a point whose intensity is a table over the directions.
     Luminaire {
-        /// Where it is.
+        /// Position of the luminaire.
         at: DVec3,
-        /// Where its vertical angle is 0: what is down for most; any length but 0.
+        /// The direction of the vertical angle 0: down for most; any length but 0.
         down: DVec3,
         /// About where its horizontal angle is 0; not along `down`.
         front: DVec3,
         /// The table.
         goniometry: Goniometry,
-        /// What the table is multiplied with: a color with Y = 1 leaves its candelas as they are, at 683 for 1 W/sr.
+        /// Factor of the table: a color with Y = 1 leaves its candelas as they are, at 683 for 1 W/sr.
         color: Color,
     },
     /// A surface that emits the same radiance in all directions, and is seen.
@@ -94,14 +94,14 @@ pub enum Light {
         /// Radiance over all directions, latitude and longitude: the first row is up (y), the middle of the rows ahead
         /// (−z), the right quarter right (x). Without it, 1 everywhere.
         map: Option<SkyMap>,
-        /// What the map is multiplied with.
+        /// Factor of the map.
         radiance: Color,
         /// Degrees by which the map is turned about the upright axis, as a right-handed screw turns.
         turned: f64,
     },
 }
 
-/// What a sky looks like that is not the same all around.
+/// The map of a sky that is not the same all around.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SkyMap {
     /// The file of its picture, or what it was made of, for messages.
@@ -135,7 +135,7 @@ pub enum LightError {
     /// A place or a length that is not finite.
     #[error("{what} {value} is not finite")]
     NotFinite {
-        /// Of what.
+        /// The quantity.
         what: &'static str,
         /// Its value.
         value: DVec3,
@@ -143,7 +143,7 @@ pub enum LightError {
     /// A direction without length.
     #[error("{what} {value} has no length")]
     NoLength {
-        /// Of what.
+        /// The quantity.
         what: &'static str,
         /// Its value.
         value: DVec3,
@@ -151,7 +151,7 @@ pub enum LightError {
     /// A strength that is negative or not finite.
     #[error("{what} {least} to {most} is negative or not finite")]
     Strength {
-        /// Of what.
+        /// The quantity.
         what: &'static str,
         /// Its least value.
         least: f64,
@@ -161,9 +161,9 @@ pub enum LightError {
     /// Angles of a cone that is none.
     #[error("a cone of {inner} to {outer} degrees: they must rise and lie within 0 to 180")]
     Cone {
-        /// Where the light begins to fall.
+        /// The angle where the light begins to fall.
         inner: f64,
-        /// Where it ends.
+        /// The angle where it ends.
         outer: f64,
     },
     /// A surface that is flat or too large.
@@ -172,7 +172,7 @@ pub enum LightError {
 }
 
 impl Light {
-    /// Its strength, in the unit of its kind, and what it is called.
+    /// Its strength, in the unit of its kind, and the word for that.
     pub fn strength(&self) -> (&'static str, &Color) {
         match self {
             Light::Point { intensity, .. } | Light::Spot { intensity, .. } => ("its intensity", intensity),
@@ -182,7 +182,7 @@ impl Light {
         }
     }
 
-    /// What it is, in words.
+    /// Words for its kind.
     pub fn words(&self) -> &'static str {
         match self {
             Light::Point { .. } => "a point light",
@@ -217,7 +217,7 @@ impl Light {
         matches!(self, Light::Area { .. } | Light::Sky { .. })
     }
 
-    /// What a sky looks like that is not the same all around.
+    /// The map of a sky that is not the same all around.
     pub fn sky_map(&self) -> Option<&SkyMap> {
         match self {
             Light::Sky { map, .. } => map.as_ref(),

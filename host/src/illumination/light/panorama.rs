@@ -1,8 +1,8 @@
 //! Pictures of all directions: latitude and longitude.
 //!
-//! Rows and columns are those of OpenEXR's latitude-longitude maps as renderers read them: the first row is straight up, the
-//! last straight down, with rows between them at even angles; columns are turns, each at the middle of its part. Between
-//! pixels the radiance is bilinear.
+//! Rows and columns are those of OpenEXR's latitude-longitude maps as renderers read them: the first row is straight
+//! up, the last straight down, with rows between them at even angles; columns are turns, each at the middle of its
+//! part. Between pixels the radiance is bilinear.
 
 use crate::color::{Color, Spectrum};
 use crate::memory;
@@ -15,7 +15,7 @@ use std::path::Path;
 const MOST_WHOLE: usize = 1 << 20;
 /// Bits of the parts of red, green and blue in a packed pixel, and where each begins; the exponent follows.
 const PARTS: [(u32, u32); 3] = [(9, 0), (9, 9), (8, 18)];
-/// Where the exponent begins, and what 0 in it stands for.
+/// The bit where the exponent begins, and the exponent for which 0 in it stands.
 const EXPONENT: (u32, i32) = (26, -24);
 /// The largest exponent.
 const MOST_EXPONENT: i32 = EXPONENT.0 as i32 + 13;
@@ -41,7 +41,8 @@ struct Spectra {
 enum Texels {
     /// Three numbers of 32 bits: twelve bytes a pixel.
     Whole(Vec<[f32; 3]>),
-    /// Four bytes a pixel: parts of the brightest band's power of two, within 1/500 of the brightest band and 1/250 in blue.
+    /// Four bytes a pixel: parts of the brightest band's power of two, within 1/500 of the brightest band and 1/250 in
+    /// blue.
     Packed(Vec<u32>),
 }
 

@@ -63,7 +63,7 @@ impl Portals {
     }
 }
 
-/// What portals chose.
+/// The choice of portals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum PortalChoice {
     /// A direction through one of them, unit length.

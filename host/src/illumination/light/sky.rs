@@ -204,7 +204,7 @@ impl Disc {
     }
 }
 
-/// Where a direction is in the map, 0..1 from the left and from the top.
+/// The place of a direction in the map, 0..1 from the left and from the top.
 fn place(direction: DVec3) -> DVec2 {
     let across = direction.x.atan2(-direction.z) / TAU + 0.5;
     let down = direction.x.hypot(direction.z).atan2(direction.y) / PI;

@@ -74,7 +74,7 @@ impl SphericalRectangle {
     }
 }
 
-/// Of a vector of two coordinates that are neither huge nor tiny.
+/// The length of a vector of two coordinates that are neither huge nor tiny.
 fn length(x: f64, y: f64) -> f64 {
     (x * x + y * y).sqrt()
 }

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 #[derive(Clone, Debug)]
 pub(super) struct SpotLight {
     pub(super) at: DVec3,
-    /// Where the cone goes, unit length.
+    /// The direction of the cone, unit length.
     pub(super) axis: DVec3,
     /// Cosine of the angle where the light begins to fall.
     pub(super) inner: f64,

@@ -15,15 +15,15 @@ use serde::{Deserialize, Serialize};
 /// How a surface reflects, lets through and emits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Material {
-    /// Of what it is.
+    /// The kind of material, with its parameters.
     pub body: MaterialKind,
     /// Radiance that it emits on both sides, W/(m² sr); per nanometre, if a spectrum.
     pub emission: Color,
-    /// What of it is higher than it looks.
+    /// The relief of the surface, if it has one.
     pub relief: Option<Relief>,
 }
 
-/// Of what a surface is.
+/// The kind of a material.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MaterialKind {
@@ -123,7 +123,7 @@ pub struct Transparent {
     pub index: RefractiveIndex,
     /// Roughness m of both sides of its surface, 1e-8..=1000; 0 is polished.
     pub roughness: NumberTexture,
-    /// What is absorbed inside, in one unit of length of the scene: light falls by exp(−absorption).
+    /// Absorption inside, in one unit of length of the scene: light falls by exp(−absorption).
     pub absorption: Color,
     /// Of bodies that are in one place, that of the greatest priority is there; of several with the same, the smallest.
     /// [`Transparent::LIQUID`] of liquids, and 0 of what is solid, if nothing else is said.
@@ -163,7 +163,7 @@ impl RefractiveIndex {
 /// A diffuse ground under a transparent coat.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Coated {
-    /// What the ground reflects, 0..=1.
+    /// Diffuse reflectance of the ground, 0..=1.
     pub diffuse: Paint,
     /// Refractive index of the coat, 1e-6..=1e6.
     pub index: f64,
@@ -217,7 +217,7 @@ impl Default for Material {
     }
 }
 
-/// What a material looks like in three bands: fractions of light, linear sRGB, and the exponent of a highlight.
+/// The looks of a material in three bands: fractions of light, linear sRGB, and the exponent of a highlight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaterialPreview {
     /// Diffusely reflected fraction.
@@ -236,7 +236,7 @@ pub enum MaterialError {
     /// A fraction that is not between 0 and 1.
     #[error("{what} {least} to {most} is not within 0 to 1")]
     Fraction {
-        /// What of the material it is a fraction of.
+        /// The name of the fraction.
         what: &'static str,
         /// Its least value.
         least: f64,
@@ -246,7 +246,7 @@ pub enum MaterialError {
     /// A quantity that is negative or not finite.
     #[error("{what} {least} to {most} is negative or not finite")]
     Negative {
-        /// What the quantity is.
+        /// The name of the quantity.
         what: &'static str,
         /// Its least value.
         least: f64,
@@ -262,9 +262,9 @@ pub enum MaterialError {
     /// No such distribution.
     #[error("no distribution is called \"{name}\"; {advice}")]
     Unknown {
-        /// What was looked for.
+        /// The name that was looked for.
         name: String,
-        /// What it may have meant, or the names that there are.
+        /// The name that it may have meant, or the names that there are.
         advice: String,
     },
     /// A distribution cannot be made.
@@ -398,7 +398,7 @@ impl Material {
         }
     }
 
-    /// What it looks like in three bands, for displays that know no more of a material.
+    /// Its looks in three bands, for displays that know no more of a material.
     pub fn preview(&self) -> MaterialPreview {
         let shine = |roughness: f64| (2.0 / roughness.max(1e-3).powi(2) - 2.0).clamp(1.0, Classic::MOST_EXPONENT);
         let black = MaterialPreview { diffuse: DVec3::ZERO, specular: DVec3::ZERO, exponent: 1.0, mirror: DVec3::ZERO };
@@ -439,7 +439,7 @@ impl Material {
         }
     }
 
-    /// What it is, in a word.
+    /// The word for its kind.
     pub fn word(&self) -> &'static str {
         match self.body {
             MaterialKind::Classic(_) => "classic",

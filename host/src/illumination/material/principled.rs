@@ -8,8 +8,8 @@ use crate::illumination::texture::{NumberTexture, Paint};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// The principled material: a metal, an opaque ground under a clear surface, and a transparent body, in any mixture, under a
-/// coat and with a sheen.
+/// The principled material: a metal, an opaque ground under a clear surface, and a transparent body, in any mixture,
+/// under a coat and with a sheen.
 ///
 /// A white one reflects and lets through all of the light that it gets, whatever the other numbers are.
 ///
@@ -18,8 +18,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Principled {
-    /// What a metal reflects at right angles, an opaque ground all in all, and what a transparent body lets through of light
-    /// that comes in and goes out; 0..=1.
+    /// Reflectance of a metal at right angles, diffuse reflectance of an opaque ground, and transmittance of a
+    /// transparent body for light that comes in and goes out; 0..=1.
     pub base_color: Paint,
     /// The part that is a metal, 0..=1.
     pub metallic: NumberTexture,
@@ -33,9 +33,9 @@ pub struct Principled {
     pub transmission: NumberTexture,
     /// Whether the body is a thin wall: light goes through it and is not bent.
     pub thin: bool,
-    /// What is absorbed inside of a transparent body, in one unit of length of the scene.
+    /// Absorption inside of a transparent body, in one unit of length of the scene.
     pub absorption: Color,
-    /// Of transparent bodies in one place, that of the greatest is there.
+    /// Priority among transparent bodies in one place: that of the greatest is there.
     pub priority: i32,
     /// The part that has a coat, 0..=1.
     pub coat: NumberTexture,

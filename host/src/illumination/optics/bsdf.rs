@@ -137,7 +137,7 @@ pub struct Bsdf {
     pub(super) straight_transmission: Option<StraightTransmission>,
     /// Radiance that it emits; none if it does not.
     pub emission: Option<SpectralTable>,
-    /// What is inside, where it is transparent.
+    /// The medium inside, where it is transparent.
     pub interior: Option<InteriorMedium>,
     /// The direction along which it is brushed.
     pub brushed_along: Option<DVec3>,
@@ -161,12 +161,12 @@ impl StraightTransmission {
     }
 }
 
-/// What is behind the surface of a transparent body.
+/// The medium behind the surface of a transparent body.
 #[derive(Clone, Debug)]
 pub struct InteriorMedium {
     /// Its refractive index.
     pub index: SpectralTable,
-    /// What it absorbs in a unit of length.
+    /// Absorption in a unit of length.
     pub absorption: SpectralTable,
     /// Whether the index differs with the wavelength.
     pub disperses: bool,
@@ -280,7 +280,7 @@ impl Bsdf {
         (pdf > 0.0 && weight.is_finite()).then_some(BsdfSample { weight, pdf: Some(pdf), is_broad, ..drawn })
     }
 
-    /// What ambient light, the same radiance from everywhere, adds: its reflected fraction.
+    /// The reflected fraction of ambient light, the same radiance from everywhere.
     pub fn ambient(&self, context: &ShadingContext) -> Channels {
         self.ambient.as_ref().map_or_else(|| self.diffuse_albedo(context), |ambient| ambient.of(context))
     }

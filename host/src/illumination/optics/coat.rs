@@ -19,13 +19,13 @@ const STEPS: usize = 64;
 const TOLERANCE: f64 = 1e-5;
 const MOST_EVALUATIONS: u32 = 20_000;
 
-/// What a coat reflects.
+/// The reflection of a coat.
 #[derive(Clone, Debug)]
 pub(super) struct CoatReflection {
     surface: Dielectric,
-    /// None where it is polished.
+    /// The facets; none where it is polished.
     facets: Option<Microfacet>,
-    /// What facets do not reflect, at even steps of the root of the cosine; empty where it is polished.
+    /// Transmittance of facets, at even steps of the root of the cosine; empty where it is polished.
     through: Vec<f64>,
 }
 
@@ -57,7 +57,7 @@ impl CoatReflection {
         self.surface.reflectance(cosine).mean()
     }
 
-    /// What is let through to the ground.
+    /// Transmittance to the ground.
     fn through(&self, cosine: f64) -> f64 {
         if self.through.is_empty() {
             return self.surface.transmittance(cosine).mean();

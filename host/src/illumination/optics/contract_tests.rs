@@ -1,4 +1,4 @@
-//! What every lobe keeps: samples follow their pdf (chi-squared), reciprocity, no more light than comes, flags.
+//! The contract of every lobe: samples follow their pdf (chi-squared), reciprocity, no more light than comes, flags.
 
 use super::lobe::{Flags, Lobe};
 use super::lobes::AnyLobe;

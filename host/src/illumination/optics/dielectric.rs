@@ -50,7 +50,7 @@ fn by_lane(context: &ShadingContext, value: impl Fn(usize) -> f64) -> Channels {
     }
 }
 
-/// What the lanes reflect at a facet.
+/// Reflectance of a facet in the lanes.
 pub(super) fn reflected(context: &ShadingContext, cosine: f64) -> Channels {
     by_lane(context, |lane| interface(context, lane).map_or(0.0, |s| s.reflectance(cosine).mean()))
 }
@@ -91,7 +91,7 @@ impl Lobe for SmoothDielectric {
         1.0
     }
 
-    /// What is reflected and what comes through.
+    /// Specular samples of reflection and of transmission.
     fn specular_samples(&self, context: &ShadingContext) -> [Option<BsdfSample>; 2] {
         let view = context.view;
         let fraction = reflected(context, view.z);

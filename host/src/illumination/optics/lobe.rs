@@ -13,23 +13,23 @@ pub(super) const NARROW: f64 = 1.5;
 pub(super) struct Flags(u8);
 
 impl Flags {
-    /// Nothing of all.
+    /// No flag.
     pub(super) const NONE: Flags = Flags(0);
-    /// It is a delta lobe: it scatters to single directions only, as a mirror or a smooth interface does.
+    /// Delta: it scatters to single directions only, as a mirror or a smooth interface does.
     pub(super) const DELTA: Flags = Flags(1);
-    /// It is broad: it scatters light about everywhere.
+    /// Broad: it scatters light about everywhere.
     pub(super) const BROAD: Flags = Flags(2);
-    /// It reflects light alike to everywhere.
+    /// Diffuse: it reflects light alike to everywhere.
     pub(super) const DIFFUSE: Flags = Flags(4);
-    /// Its value is one for all light from above.
+    /// Even: its value is one for all light from above.
     pub(super) const EVEN: Flags = Flags(8);
-    /// It reflects nothing, wherever.
+    /// Black: it reflects nothing, wherever.
     pub(super) const BLACK: Flags = Flags(16);
-    /// It lets light straight through, and does nothing else.
+    /// Straight: it lets light straight through, and does nothing else.
     pub(super) const STRAIGHT: Flags = Flags(32);
-    /// It is a polished interface, through which light goes in one direction.
+    /// Clear: it is a polished interface, through which light goes in one direction.
     pub(super) const CLEAR: Flags = Flags(64);
-    /// It reflects, and lets light straight through, as a polished pane does.
+    /// Pane: it reflects, and lets light straight through, as a polished pane does.
     pub(super) const PANE: Flags = Flags(128);
 
     /// Whether it has all of some flags.
@@ -38,7 +38,7 @@ impl Flags {
         self.0 & flags.0 == flags.0
     }
 
-    /// Those that hold.
+    /// These flags if they hold, else none.
     pub(super) fn when(self, holds: bool) -> Flags {
         if holds { self } else { Flags::NONE }
     }

@@ -36,7 +36,7 @@ struct Level {
     texels: Texels,
 }
 
-/// What the numbers of an image mean.
+/// The meaning of the numbers of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ImageContent {
     /// Fractions of light.
@@ -140,7 +140,7 @@ impl Image {
         Image { name, levels: Arc::new(levels), range: Arc::default() }
     }
 
-    /// What it is called: the name of its file.
+    /// The name: that of its file.
     pub fn name(&self) -> &str {
         &self.name
     }

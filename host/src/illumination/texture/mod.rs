@@ -77,13 +77,13 @@ pub struct TextureMapping {
     pub solid: bool,
     /// Size of one repetition.
     pub size: DVec3,
-    /// Where it begins.
+    /// The point where it begins.
     pub at: DVec3,
     /// Its y direction; any length but 0.
     pub up: DVec3,
 }
 
-/// What of a surface is higher than it looks.
+/// The relief of a surface: what of it is higher than it looks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Relief {
@@ -120,11 +120,11 @@ pub enum TextureError {
     /// A number of the pattern is out of range.
     #[error("{what} {value} of a pattern is not {range}")]
     Number {
-        /// What the number is.
+        /// The name of the number.
         what: &'static str,
         /// Its value.
         value: f64,
-        /// What it must be.
+        /// The range in which it must be.
         range: &'static str,
     },
     /// A number is told by a spectrum, which has no brightness of its own.

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 /// Most octaves of noise.
 const MOST_OCTAVES: u32 = 16;
-/// Where in a ring of wood the late wood ends and the next year begins.
+/// The place in a ring of wood where the late wood ends and the next year begins.
 const YEAR: f64 = 0.85;
 
 /// The kind of a pattern, of which one repetition has the size 1.
@@ -157,7 +157,7 @@ fn mean_of_ring() -> f64 {
     YEAR / 4.0 + (1.0 - YEAR) / 2.0
 }
 
-/// What is left of a wave of period 1 in the mean over a width; nothing beyond one period.
+/// Amplitude of a wave of period 1 in the mean over a width; 0 beyond one period.
 fn sinc(width: f64) -> f64 {
     let x = std::f64::consts::PI * width;
     if width >= 1.0 {

@@ -10,7 +10,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 pub enum NumberTexture {
     /// One everywhere.
     Constant(f64),
-    /// What a pattern tells at each place.
+    /// A number that a pattern tells at each place.
     Varying(Box<Varying>),
 }
 
@@ -19,7 +19,7 @@ pub enum NumberTexture {
 pub struct Varying {
     /// The pattern.
     pub pattern: Pattern,
-    /// What of it counts.
+    /// The band of it that counts.
     pub band: Band,
     /// The number where the pattern is black.
     pub from: f64,
@@ -27,7 +27,7 @@ pub struct Varying {
     pub to: f64,
 }
 
-/// What of the three bands of a pattern tells a number.
+/// The band of a pattern that tells a number.
 ///
 /// Maps of glTF hold roughness in their green band and metalness in the blue one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -4,7 +4,7 @@ use glam::DVec3;
 use protocol::raster::light_of_srgb;
 use std::sync::LazyLock;
 
-/// What a fraction of 1 is in sixteen bits.
+/// The number of sixteen bits for a fraction of 1.
 const WHOLE: f64 = 65_535.0;
 /// Bits of the bands of a packed pixel, and where each begins.
 const PACKED: [(u32, u32); 3] = [(11, 0), (11, 11), (10, 22)];
@@ -43,7 +43,8 @@ pub(super) enum TexelStorage {
     Numbers,
     /// One number for all bands, rounded to 1/65535.
     Grey,
-    /// Three bands, rounded to 1/65535; those of large images to 1/1000 of what they are, or 1/4000000 where that is more.
+    /// Three bands, rounded to 1/65535; those of large images to 1/1000 of what they are, or 1/4000000 where that is
+    /// more.
     Bands,
 }
 
@@ -102,8 +103,8 @@ impl Texels {
         }
     }
 
-    /// Sets a pixel to fractions, of which what is below 0 or above 1 is cut off. Bytes take the nearest fraction of their
-    /// table.
+    /// Sets a pixel to fractions, of which what is below 0 or above 1 is cut off. Bytes take the nearest fraction of
+    /// their table.
     pub(super) fn set(&mut self, index: usize, fractions: DVec3) {
         let fractions = fractions.clamp(DVec3::ZERO, DVec3::ONE);
         match self {

@@ -137,7 +137,7 @@ impl Halves {
         })
     }
 
-    /// What both filtered halves say of a pixel together, in each band.
+    /// The mean of both filtered halves of a pixel, by their shares, in each band.
     pub(super) fn mixed(&self, [one, two]: &[RgbPlanes; 2], pixel: usize) -> [f32; 3] {
         let share = self.share.of(pixel);
         from_fn(|band| share * one[band].of(pixel) + (1.0 - share) * two[band].of(pixel))

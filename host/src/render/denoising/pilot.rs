@@ -24,7 +24,7 @@ const WORTH: f64 = 0.15;
 
 /// The windows whose pixels are tried.
 pub(super) struct Pilot {
-    /// Of each pixel, row by row, whether it is quiet or outside of the windows.
+    /// Whether each pixel, row by row, is quiet or outside of the windows.
     pub(super) quiet: Vec<bool>,
     width: usize,
     /// The error that is small enough, as a part of the error of what was not filtered.

@@ -23,7 +23,8 @@ pub(super) struct PixelPlane {
 impl PixelPlane {
     /// A plane of numbers that are found pixel by pixel.
     ///
-    /// - `size`: columns and rows. `margin`: how far it goes beyond each edge, pixels; without one, lanes cannot be read.
+    /// - `size`: columns and rows. `margin`: how far it goes beyond each edge, pixels; without one, lanes cannot be
+    ///   read.
     /// - `value`: of the pixel of a number, counted row by row.
     pub(super) fn new([width, height]: [usize; 2], margin: usize, value: impl Fn(usize) -> f32 + Sync) -> PixelPlane {
         let stride = if margin == 0 { width } else { margin + width.next_multiple_of(LANES) + margin };
@@ -61,7 +62,7 @@ impl PixelPlane {
         &self.values
     }
 
-    /// Where among all numbers that of a column and a row is; both may be beyond an edge.
+    /// The index among all numbers of a column and a row; both may be beyond an edge.
     #[inline(always)]
     pub(super) fn place(&self, x: isize, y: isize) -> usize {
         let margin = self.margin as isize;

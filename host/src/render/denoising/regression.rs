@@ -29,7 +29,7 @@ const TILE_HEIGHT: usize = 32;
 /// Rousselle, Knaus and Zwicker 2012, who take 0.45 for means; planes bear less: at 0.35 the errors to the eye (FLIP)
 /// are least at four samples a pixel.
 const BANDWIDTH: f32 = 0.35;
-/// What is added to variances, of pictures whose mean is 1.
+/// Summand of variances, of pictures whose mean is 1.
 const LEAST_VARIANCE: f32 = 1e-8;
 /// A neighbor counts less if its variance is more than so many times the mean over the patch: it hit rare light.
 const MOST_VARIANCE: f32 = 8.0;
@@ -143,7 +143,7 @@ impl Lanes {
         Lanes([value; LANES])
     }
 
-    /// Those of a row, from a place on.
+    /// The numbers of a row, from a place on.
     #[inline(always)]
     fn read(values: &[f32], place: usize) -> Lanes {
         let mut lanes = [0.0; LANES];
@@ -160,7 +160,7 @@ impl Lanes {
         Lanes(result)
     }
 
-    /// This times another, and a third is added.
+    /// The product with another, and a third is added.
     #[inline(always)]
     fn times_plus(self, factor: Lanes, sum: Lanes) -> Lanes {
         let mut result = self.0;
@@ -191,7 +191,7 @@ struct Filtering<'a> {
     picture: &'a NoisyPicture,
     other: &'a NoisyPicture,
     features: &'a FeaturePlanes,
-    /// Of each pixel of the rows, whether it is quiet.
+    /// Whether each pixel of the rows is quiet.
     quiet: &'a [bool],
     /// Its first column and row.
     at: [usize; 2],
@@ -401,7 +401,7 @@ fn fit(
     right[last].map(|band| band.times(matrix[last][last]).each(band, |value, _| value.max(0.0)))
 }
 
-/// What the normal equations of some pixels in a row are summed up of.
+/// The regression of some pixels in a row: what its normal equations are summed up of.
 struct Regression<'a> {
     bands: [&'a [f32]; 3],
     /// The features.

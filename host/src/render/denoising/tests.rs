@@ -10,7 +10,7 @@ use rand_pcg::Pcg64Mcg;
 
 const NEVER: &(dyn Fn() -> bool + Sync) = &|| false;
 
-/// What a pixel really is: its radiance, albedo and normal.
+/// The truth of a pixel: its radiance, albedo and normal.
 type Truth<'a> = &'a dyn Fn(f64, f64) -> (DVec3, DVec3, DVec3);
 
 /// A film of some samples a pixel, whose radiance is that of the truth times a number of mean 1 and a deviation.

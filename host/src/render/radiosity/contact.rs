@@ -1,4 +1,4 @@
-//! Where surfaces touch or pass through each other: elements end there, so that none is partly inside of something.
+//! Contacts: where surfaces touch or pass through each other, elements end, so that none is partly inside of something.
 
 use super::hierarchy::{Hierarchy, normal_and_area};
 use super::visibility::VisibilityTester;
@@ -26,7 +26,7 @@ const STEEP: f64 = 0.7;
 pub(super) struct Contacts {
     /// For each triangle of the scene those that lead over it; empty if there are none at all.
     of: Vec<Vec<[DVec3; 2]>>,
-    /// And those where another surface rises steeply, inside or at its edges.
+    /// Those lines where another surface rises steeply, inside or at its edges.
     creases: Vec<Vec<[DVec3; 2]>>,
     tolerance: f64,
 }

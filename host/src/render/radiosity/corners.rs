@@ -47,11 +47,11 @@ impl ElementCorner {
 #[derive(Default)]
 pub(super) struct ElementCorners {
     at: HashMap<[u64; 3], Vec<(DVec3, u32)>>,
-    /// Each once.
+    /// All corners, each once.
     pub(super) all: Vec<ElementCorner>,
-    /// Those of each leaf.
+    /// The corners of each leaf.
     pub(super) of: Vec<[u32; 3]>,
-    /// Of each leaf, how alike normals must be.
+    /// For each leaf, how alike normals must be.
     like: Vec<f64>,
 }
 
@@ -80,7 +80,7 @@ impl ElementCorners {
         corners
     }
 
-    /// Where a face cluster looks out.
+    /// Adds the corner of a face cluster: its central point, from which it looks out.
     fn put_faces(&mut self, hierarchy: &Hierarchy, leaf: u32) {
         let [at, normal] = hierarchy.central(leaf);
         self.of.push([self.all.len() as u32; 3]);

@@ -14,7 +14,7 @@ const MOST_ELEMENTS: usize = 2_000_000;
 /// Nodes with what is known of them.
 pub(super) struct Elements<'a> {
     pub(super) hierarchy: Hierarchy,
-    /// Of each node: its reflectance, the irradiance by lights, and that by other elements.
+    /// Reflectance of each node, irradiance by lights, and irradiance by other elements.
     pub(super) reflectance: Vec<Channels>,
     pub(super) direct: Vec<Channels>,
     pub(super) indirect: Vec<Channels>,
@@ -29,7 +29,7 @@ pub(super) struct Elements<'a> {
     shadows: bool,
 }
 
-/// What is known of one node.
+/// The known quantities of one node.
 #[derive(Serialize, Deserialize)]
 struct Known {
     reflectance: Channels,
@@ -147,7 +147,7 @@ impl<'a> Elements<'a> {
         Known { reflectance: reflectance(visibility, patch, (node.corners, node.middle)), mean, corner_light: around }
     }
 
-    /// What is known of a face cluster: light of lights at its points, all else by its triangles.
+    /// The known quantities of a face cluster: light of lights at its points, all else by its triangles.
     fn known_of_faces(&self, visibility: &VisibilityTester<'_>, cluster: u32) -> Known {
         let hierarchy = &self.hierarchy;
         if hierarchy.nodes[cluster as usize].is_dark {

@@ -1,4 +1,4 @@
-//! What elements exchange, as a symmetric operator over the hierarchy: each link is one number for both directions.
+//! The exchange of elements, as a symmetric operator over the hierarchy: each link is one number for both directions.
 //!
 //! Light that a node sends is the mean over its leaves, and what it receives is spread evenly over them: with P the
 //! matrix that takes means and G that of the links, leaves exchange M = Pᵀ G P, symmetric whatever the links are.
@@ -24,7 +24,7 @@ fn within(goal: f64, row: f64, area: f64) -> f64 {
     goal.clamp(row / MOST_CHANGE, row * MOST_CHANGE).min(area)
 }
 
-/// As many rays tell how much light is lost in a neighbourhood.
+/// Rays of a neighbourhood that together tell how much light is lost there.
 const NEIGHBOURING_RAYS: u64 = 2048;
 
 /// Leaf visibility: what leaves see in directions that are as dense as their cosine.
@@ -60,7 +60,7 @@ pub(super) struct Exchange<'a> {
     /// For each leaf, the factor that balances it, and what it exchanges with itself so that its row is right.
     factor: Vec<f64>,
     own: Vec<f64>,
-    /// Of each leaf, whether no ray of many around it is lost.
+    /// For each leaf, whether no ray of many around it is lost.
     pub(super) is_closed: Vec<bool>,
 }
 
@@ -180,7 +180,7 @@ impl<'a> Exchange<'a> {
         self.own.iter().zip(&areas).map(|(own, area)| own.abs() / area).collect()
     }
 
-    /// What the rows should add up to: 1 where no ray of many in the neighbourhood is lost, else what leaves see.
+    /// The goals of the rows: 1 where no ray of many in the neighbourhood is lost, else what leaves see.
     fn goals(&mut self, leaf_visibility: &LeafVisibility) -> Vec<f64> {
         let nodes = &self.hierarchy.nodes;
         // Of each node: rays, and whether one is lost.

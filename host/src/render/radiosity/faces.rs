@@ -12,7 +12,7 @@ use rustc_hash::FxHashMap as HashMap;
 const ALIKE: f64 = 0.5;
 /// How far the light of a face cluster is spread, in the greatest radii of face clusters.
 const REACH: f64 = 2.5;
-/// What is added to the variance of places, in squares of that, so that few of them tell no gradient.
+/// Summand of the variance of places, in squares of that, so that few of them tell no gradient.
 const DAMPED: f64 = 3e-3;
 
 /// A place where light is known: in a face cluster, or at a corner that one shares with an element.

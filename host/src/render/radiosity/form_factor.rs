@@ -1,7 +1,7 @@
 //! Form factors of flat polygons that nothing stands between, as exchange areas: A F, the same from both sides.
 //!
-//! Far apart, a product of Gauss rules over both polygons; near or touching, Lambert's and Stokes' contour integral, of which
-//! one half is known in closed form and the other is found adaptively.
+//! Far apart, a product of Gauss rules over both polygons; near or touching, Lambert's and Stokes' contour integral, of
+//! which one half is known in closed form and the other is found adaptively.
 
 use crate::numeric::cubature::GAUSS;
 use glam::DVec3;
@@ -15,7 +15,8 @@ const ROUGH: f64 = 1e-3;
 /// Rounding error of the integral over an edge, in units of the square of the size of the polygons.
 const ROUNDING: f64 = 1e-14;
 
-/// Points of the rule of degree 5 in a triangle, as weights of two corners, with the part of the area that each stands for.
+/// Points of the rule of degree 5 in a triangle, as weights of two corners, with the part of the area that each stands
+/// for.
 ///
 /// # Source
 /// Radon 1948.
@@ -82,7 +83,7 @@ impl Convex {
         self.corners().iter().map(|corner| corner.distance(middle)).fold(0.0, f64::max)
     }
 
-    /// What of it lies before a plane.
+    /// The part of it before a plane.
     fn before(&self, point: DVec3, normal: DVec3) -> Convex {
         let height = |corner: DVec3| (corner - point).dot(normal);
         let mut part = Convex::new(&[]);
@@ -111,7 +112,8 @@ impl Convex {
 
 /// The form factor from an element at a point to a polygon, 0..=1, without what is below the element's horizon.
 ///
-/// F = 1/2π Σ β n·Γ over the edges, β the angle under which an edge is seen and Γ the unit normal of the plane through it.
+/// F = 1/2π Σ β n·Γ over the edges, β the angle under which an edge is seen and Γ the unit normal of the plane through
+/// it.
 ///
 /// - `normal`: unit length. The polygon counts from both sides.
 ///
@@ -128,7 +130,8 @@ pub(super) fn from_point(point: DVec3, normal: DVec3, polygon: &Convex) -> f64 {
     (above.edges().map(edge).sum::<f64>().abs() / TAU).min(1.0)
 }
 
-/// What a unit area at one point exchanges with a unit area at another: cos cos / (π r²), 0 where one is behind the other.
+/// The exchange of a unit area at one point with a unit area at another: cos cos / (π r²), 0 where one is behind the
+/// other.
 pub(super) fn kernel([a, a_normal]: [DVec3; 2], [b, b_normal]: [DVec3; 2]) -> f64 {
     let offset = b - a;
     let square = offset.length_squared();
@@ -263,8 +266,8 @@ mod tests {
         2.0 * sum / (PI * x * y)
     }
 
-    /// Two rectangles with a common edge, square to each other: Howell's catalogue, C-14. From that of a height `h` to that
-    /// of a width `w`, per unit of the common edge.
+    /// Two rectangles with a common edge, square to each other: Howell's catalogue, C-14. From that of a height `h` to
+    /// that of a width `w`, per unit of the common edge.
     fn perpendicular(h: f64, w: f64) -> f64 {
         let (hh, ww) = (h * h, w * w);
         let r = (hh + ww).sqrt();

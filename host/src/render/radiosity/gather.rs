@@ -18,7 +18,7 @@ use rayon::prelude::*;
 
 /// Light below this part of the error of a link is sampled with one ray instead of some.
 const LITTLE: f64 = 0.5;
-/// What parts of a node send may differ by so much of it.
+/// The greatest difference of what parts of a node send, as a part of it.
 const UNEVEN: f64 = 0.1;
 
 /// Gathers light.
@@ -92,7 +92,7 @@ impl CornerViews<'_> {
 }
 
 impl<'g> Gatherer<'g, '_> {
-    /// What each corner sees, divided the more the more what is seen differs.
+    /// Corner views of all corners, divided the more the more what is seen differs.
     ///
     /// - `sent`: about what each node sends, W/m².
     pub(super) fn views(

@@ -25,7 +25,7 @@ pub(super) const POINTS: usize = 4;
 /// No node.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// What there are sums and means of: a number, or one for each lane.
+/// A quantity that has sums and means: a number, or one for each lane.
 pub(super) trait Summable: Copy + Default + Send + Sync + Add<Output = Self> + Mul<f64, Output = Self> {}
 
 impl Summable for f64 {}
@@ -54,7 +54,7 @@ pub(super) struct HierarchyNode {
     pub(super) corners: [DVec3; 3],
     /// The middle of its area.
     pub(super) middle: DVec3,
-    /// All of it is so near to the middle.
+    /// Radius around the middle that holds all of it.
     pub(super) radius: f64,
     /// Unit normal, of a cluster the mean one.
     pub(super) normal: DVec3,
@@ -64,7 +64,7 @@ pub(super) struct HierarchyNode {
     /// The first of its children, 0 if there are none.
     pub(super) child: u32,
     pub(super) children: u32,
-    /// Of which patch it is; [`NONE`] for a cluster.
+    /// The patch that it is a part of; [`NONE`] for a cluster.
     pub(super) patch: u32,
     /// Whether its children are halves, or what lines made of it, and not its quarters.
     pub(super) is_cut: bool,
@@ -216,7 +216,7 @@ impl Hierarchy {
         hierarchy
     }
 
-    /// That of the points of a cluster which is the nearest to its middle.
+    /// The point of a cluster that is the nearest to its middle.
     pub(super) fn central(&self, cluster: u32) -> [DVec3; 2] {
         let middle = self.nodes[cluster as usize].middle;
         let [first, others @ ..] = self.points(cluster);

@@ -48,7 +48,7 @@ pub(super) fn lit_hierarchy(
     hierarchy
 }
 
-/// Of each node that is a leaf, whether no light comes to it.
+/// Whether each node that is a leaf gets no light.
 fn dark(
     visibility: &VisibilityTester<'_>,
     hierarchy: &Hierarchy,

@@ -70,7 +70,7 @@ const BENT: f64 = 4.0;
 #[derive(Clone, Debug)]
 pub struct Radiosity {
     light: SurfaceLight,
-    /// What it took.
+    /// The report of its solution.
     pub report: RadiosityReport,
 }
 

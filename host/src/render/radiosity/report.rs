@@ -1,8 +1,8 @@
-//! What a solution took, how good it is, and where the light went.
+//! A report of a solution: what it took, how good it is, and where the light went.
 
 use serde::Serialize;
 
-/// What a solution took, how good it is, and where the light went.
+/// A report of a solution: what it took, how good it is, and where the light went.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct RadiosityReport {
     /// Sides of triangles that light may come to.
@@ -23,14 +23,14 @@ pub struct RadiosityReport {
     pub absorbed: f64,
     /// Flux that leaves them and comes to no other element.
     pub escaped: f64,
-    /// What is left of the flux that arrived: the error of the balance.
+    /// The rest of the flux that arrived: the error of the balance.
     pub left: f64,
     /// Wall-clock time, seconds.
     pub seconds: f64,
 }
 
 impl RadiosityReport {
-    /// It in words, a line each.
+    /// The report in words, a line each.
     pub fn lines(&self) -> [String; 2] {
         let RadiosityReport { patches, elements, links, steps, solver_error, unbalanced, seconds, .. } = *self;
         let RadiosityReport { arrived, absorbed, escaped, left, .. } = *self;

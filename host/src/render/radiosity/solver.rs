@@ -29,7 +29,7 @@ pub(super) struct SolvedIrradiance {
     pub(super) error: f64,
 }
 
-/// What is to be solved.
+/// The system of equations.
 struct System<'a> {
     exchange: &'a Exchange<'a>,
     areas: Vec<f64>,

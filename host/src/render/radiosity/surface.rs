@@ -18,9 +18,9 @@ pub(super) struct SurfaceLight {
     hierarchy: Hierarchy,
     /// The patch of each side of each triangle, outer and inner; [`NONE`] where no light comes.
     patch_of: Vec<[u32; 2]>,
-    /// Of each node that is a leaf, its corners among the values; [`NONE`] where no light comes.
+    /// For each node that is a leaf, its corners among the values; [`NONE`] where no light comes.
     corners: Vec<[u32; 3]>,
-    /// Of each patch that is part of a face cluster, its corners among the values; [`NONE`] where no light comes.
+    /// For each patch that is part of a face cluster, its corners among the values; [`NONE`] where no light comes.
     of_faces: Vec<[u32; 3]>,
     /// Irradiance by lights, and by other elements.
     values: Vec<[Channels; 2]>,

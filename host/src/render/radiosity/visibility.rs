@@ -21,14 +21,14 @@ pub(super) struct VisibilityTester<'a> {
     pub(super) world: &'a World<'a>,
     pub(super) clearance: f64,
     seed: u64,
-    /// Where what was found is kept, if anywhere.
+    /// The memo in which results are kept, if there is one.
     memo: Option<&'a Memo>,
 }
 
-/// What is seen from an element in a direction.
+/// The target of a ray from an element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum RayTarget {
-    /// Nothing: light escapes.
+    /// No target: light escapes.
     Nothing,
     /// A lamp that is no object.
     Lamp,
@@ -44,7 +44,7 @@ impl<'a> VisibilityTester<'a> {
         VisibilityTester { world, clearance, seed: prepared.settings.image.seed, memo }
     }
 
-    /// What a function finds of each item, on all threads; see [`Memo::map`].
+    /// Maps a function over items, on all threads; see [`Memo::map`].
     pub(super) fn map<T: Sync, R: Serialize + DeserializeOwned + Send>(
         &self,
         items: &[T],

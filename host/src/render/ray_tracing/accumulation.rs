@@ -33,12 +33,12 @@ fn pool(order: &RenderOrder) -> Result<ThreadPool, RenderError> {
     Ok(ThreadPoolBuilder::new().num_threads(order.threads.map_or(0, |n| n.get())).build()?)
 }
 
-/// What accumulating samples took.
+/// The work of accumulating samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accumulated {
     /// How many rays were traced.
     pub rays: RayCounts,
-    /// What became of the flux of the photons that were traced first, if any were.
+    /// The balance of the flux of the photons that were traced first, if any were.
     pub flux_balance: Option<FluxBalance>,
     /// Whether it was not stopped from outside.
     pub complete: bool,

@@ -69,7 +69,7 @@ fn compare(found: &[(f64, f64)], expected: impl Fn(f64) -> f64, smooth: &[[f64; 
     assert!(mean < 0.03 && count > 9.0, "{mean} {count}");
 }
 
-/// Where the straight line through some points comes to 0.
+/// The zero of the straight line through some points.
 fn zero(points: &[(f64, f64)]) -> f64 {
     let mean = |of: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / points.len() as f64;
     let (x, y) = (mean(&|p| p.0), mean(&|p| p.1));
@@ -182,7 +182,7 @@ fn a_prism_turns_each_wavelength_as_snell_and_sellmeier_tell() {
     }
 }
 
-/// What became of parallel light on something over a wide floor, as parts of what hit it first.
+/// The flux balance of parallel light on something over a wide floor, as parts of what hit it first.
 fn parts(thing: Object, direction: DVec3) -> FluxBalance {
     let floor = block(DVec3::new(200.0, 0.1, 200.0), DVec3::new(0.0, -10.0, 0.0), diffuse(0.5));
     let light = Light::Directional { direction, irradiance: Color::grey(1.0) };

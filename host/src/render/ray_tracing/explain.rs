@@ -11,15 +11,15 @@ use serde::Serialize;
 pub struct PathNote {
     /// How many path segments came before.
     pub depth: u32,
-    /// What happened, in words.
+    /// The event, in words.
     pub what: String,
-    /// Where, if at an element, scene units.
+    /// The position, if at an element, scene units.
     pub at: Option<DVec3>,
-    /// What it adds to the radiance at the camera, at the wavelengths or in the bands of the sample.
+    /// Radiance that it adds at the camera, at the wavelengths or in the bands of the sample.
     pub adds: Option<Vec<f64>>,
 }
 
-/// Where notes go; nowhere for most samples.
+/// A log of notes; none for most samples.
 pub(super) struct PathLog<'a>(Option<&'a mut Vec<PathNote>>);
 
 impl<'a> PathLog<'a> {

@@ -73,9 +73,9 @@ pub struct Explanation {
     pub sample: u32,
     /// The wavelengths that it carries, nm; none if it carries red, green and blue.
     pub wavelengths: Option<Vec<f64>>,
-    /// What happened, in order.
+    /// Notes of the events, in order.
     pub notes: Vec<PathNote>,
-    /// Its radiance, linear sRGB.
+    /// Radiance of the sample, linear sRGB.
     pub radiance: [f64; 3],
 }
 

@@ -1,4 +1,5 @@
-//! Facts about transparent bodies that overlap, touch and nearly touch: closed forms of stacks of slabs and nested spheres.
+//! Facts about transparent bodies that overlap, touch and nearly touch: closed forms of stacks of slabs and nested
+//! spheres.
 
 use super::tests::{diffuse, object, red, scene, trace};
 use super::*;
@@ -46,7 +47,7 @@ fn passed(mut objects: Vec<Object>, degrees: f64) -> f64 {
     red(&trace(&scene, Some(View::Camera(view)), false, 1), 0, 0)
 }
 
-/// What comes through layers one upon the other, the uppermost first: each its index, thickness and absorption.
+/// Transmittance of layers one upon the other, the uppermost first: each its index, thickness and absorption.
 ///
 /// Light goes to and fro between interfaces as the geometric series says, and no phases are known.
 fn through(layers: &[[f64; 3]], degrees: f64) -> f64 {

@@ -23,7 +23,7 @@ fn of(principled: Principled) -> Material {
     MaterialKind::Principled(Box::new(principled)).into()
 }
 
-/// As bright as cells of a checker: a number from one to another.
+/// A number that varies in cells of a checker, from one to another.
 fn cells(from: f64, to: f64) -> NumberTexture {
     let paints = vec![Paint::grey(0.0), Paint::grey(1.0)];
     let laying = TextureMapping { solid: true, size: DVec3::splat(0.6), ..TextureMapping::default() };

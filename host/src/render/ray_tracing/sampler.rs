@@ -3,7 +3,7 @@
 use crate::numeric::sequence::SobolSequence;
 use crate::picture::Filter;
 
-/// What a random number is for.
+/// A dimension of the sampler: what a random number is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u64)]
 pub(super) enum SampleDimension {
@@ -21,7 +21,7 @@ pub(super) enum SampleDimension {
     Direction,
     /// Points of lights: one dimension for each from here on.
     Lights,
-    /// When the sample is taken; beyond all lights.
+    /// The time of the sample; beyond all lights.
     Time = 1 << 31,
 }
 
@@ -31,7 +31,7 @@ pub(super) struct PathSampler {
     sequence: SobolSequence,
     index: u32,
     of: u32,
-    /// When the sample is taken, from the middle of the time in which the shutter is open.
+    /// The time of the sample, from the middle of the time in which the shutter is open.
     pub(super) time: f64,
 }
 

@@ -100,11 +100,11 @@ impl PathHistory {
 /// The scattering events of a path segment since the last lobe that was not delta.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum LastScattering {
-    /// None: the last lobe was not delta.
+    /// No other scattering: the last lobe was not delta.
     NonDelta,
-    /// It went through polished interfaces only.
+    /// Scattering by polished interfaces only.
     ClearInterface,
-    /// Others.
+    /// Other delta scattering.
     Other,
 }
 

@@ -132,7 +132,7 @@ fn ball_and_mirror() -> Scene {
 }
 
 #[test]
-fn rays_from_the_eye_alone_find_the_same_light() {
+fn paths_from_the_camera_alone_find_the_same_light() {
     let mut scene = ball_and_mirror();
     scene.settings.image.samples = 64;
     let found = two_way(&scene, None, 2);

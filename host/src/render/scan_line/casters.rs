@@ -28,7 +28,7 @@ pub(super) struct Silhouette {
     pub(super) ends: [u32; 2],
     /// How often turned triangles go along it, less those that go against it.
     pub(super) weight: i32,
-    /// Of which [`Casters::group`] they are.
+    /// The group of its triangles: see [`Casters::group`].
     pub(super) group: u8,
 }
 
@@ -53,7 +53,7 @@ impl<'a> Casters<'a> {
         casters
     }
 
-    /// What a triangle lets through: 0 for nothing.
+    /// The group of a triangle, by what it lets through: 0 for nothing.
     pub(super) fn group(&self, triangle: u32) -> u8 {
         self.groups.get(triangle as usize).copied().unwrap_or(0)
     }

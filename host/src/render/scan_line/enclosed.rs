@@ -20,7 +20,7 @@ pub(super) struct ShadowVolumes<'a> {
     facing: &'a [i8],
     /// The axis of the line, and the two across.
     axes: [usize; 3],
-    /// Of what is infinitely far up: in how many volumes it is, by group.
+    /// The number of volumes around what is infinitely far up, by group.
     above: Vec<i32>,
     grid: Option<Grid>,
 }
@@ -87,7 +87,7 @@ impl<'a> ShadowVolumes<'a> {
         }
     }
 
-    /// What is infinitely far up is in the volumes of the triangles above the light.
+    /// The numbers of volumes around what is infinitely far up: those of the triangles above the light.
     fn above(&self, groups: usize) -> Vec<i32> {
         let mut counts = vec![0; groups];
         if let LightPosition::Point(at) = self.light {

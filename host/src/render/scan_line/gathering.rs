@@ -173,7 +173,8 @@ impl<'a> Shader<'a> {
     }
 }
 
-/// Where a line of sight hits the plane of a triangle, moved towards its centroid until no weight is below the least.
+/// The hit of a line of sight on the plane of a triangle, moved towards its centroid until no weight is below the
+/// least.
 fn plane_hit(ray: &Ray, [a, b, c]: [DVec3; 3], triangle: u32, least: f64) -> Option<Hit> {
     const THIRD: f64 = 1.0 / 3.0;
     let (across, up, from) = (b - a, c - a, ray.origin - a);

@@ -3,7 +3,7 @@
 use crate::illumination::light::LightPoint;
 use glam::DVec3;
 
-/// Where light comes from.
+/// The position of a point of a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum LightPosition {
     Point(DVec3),

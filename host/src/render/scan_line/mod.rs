@@ -73,19 +73,19 @@ pub struct ScanLine<'a> {
     /// Transmittance of each group of casters, by wavelength set; the first is opaque.
     group_transmittance: Vec<Vec<Channels>>,
     lamps: Vec<LampPoint>,
-    /// None without a sky, and where a solution is shown.
+    /// The light of skies; none without a sky, and where a solution is shown.
     sky_light: Option<SkyLight>,
     /// In the place of lamps and shadows.
     solution: Option<Arc<dyn IndirectLight>>,
 }
 
-/// What the threads share while a picture is made.
+/// The work that the threads share while a picture is made.
 struct PictureWork<'a> {
     shader: Shader<'a>,
     facets: &'a ScreenTriangles<'a>,
     shadows: &'a [Shadow],
     offsets: &'a [f64],
-    /// Where the samples of a pixel lie in it.
+    /// Places of the samples of a pixel in it.
     places: Vec<[f64; 2]>,
     handed: i32,
     width: usize,

@@ -1,5 +1,4 @@
-//! Where in the picture a shadow polygon can stand before something: what lies beyond all that is seen need not be
-//! drawn.
+//! The reach of shadow polygons in the picture: what lies beyond all that is seen need not be drawn.
 
 use super::screen::{Screen, Viewpoint, cut};
 use super::spans::PictureRegion;

@@ -162,7 +162,7 @@ impl Screen {
         self.rows.map(|row| row.dot(point))
     }
 
-    /// What is infinitely far away in a direction.
+    /// The corner of a point infinitely far away in a direction.
     pub(super) fn direction(&self, direction: DVec3) -> ClipCorner {
         self.rows.map(|row| row.truncate().dot(direction))
     }
@@ -180,7 +180,7 @@ impl Screen {
             .fold(0, |bits, p| bits | 1 << p)
     }
 
-    /// Where a corner is in the picture, if no plane cuts it off.
+    /// The point of a corner in the picture, if no plane cuts it off.
     pub(super) fn point(corner: &ClipCorner) -> ScreenPoint {
         ScreenPoint { x: corner[0] / corner[3], y: corner[1] / corner[3], near: corner[2] / corner[3] }
     }

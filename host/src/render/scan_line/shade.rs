@@ -148,7 +148,8 @@ impl<'a> Shader<'a> {
         }
     }
 
-    /// What all samples of a pixel get, if they see one opaque triangle, or nothing, by the light of the same lamps.
+    /// The light of all samples of a pixel, if they see one opaque triangle, or nothing, by the light of the same
+    /// lamps.
     fn single(
         &self,
         pixel: &StripPixel<'_>,

@@ -17,7 +17,7 @@ pub(super) struct LampContribution {
     pub(super) lamp: usize,
     /// At the wavelengths of the shading context.
     pub(super) radiance: Channels,
-    /// What to add to the count of the surface's own group: its light arrives on the other side.
+    /// Summand of the count of the surface's own group: its light arrives on the other side.
     pub(super) turned: i32,
     /// In how many opaque volumes it is, where that is not left to the samples.
     pub(super) known: Option<bool>,
@@ -26,13 +26,13 @@ pub(super) struct LampContribution {
 /// The line of sight of a sample.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SampleSight {
-    /// Where its parts begin.
+    /// The begin of its parts.
     pub(super) begin: usize,
     /// The first sample of the pixel that gets the same light.
     pub(super) like: usize,
     /// How many of its parts are before a light that is no object, if it sees one.
     pub(super) before_light: Option<usize>,
-    /// What it gets, summed over the wavelength sets, if it is not like another.
+    /// The light of the sample, summed over the wavelength sets, if it is not like another.
     pub(super) light: DVec3,
 }
 
@@ -58,7 +58,7 @@ pub(super) struct Shader<'a> {
     pub(super) has_sky: bool,
     /// Whether lines of sight are parallel.
     pub(super) is_parallel: bool,
-    /// What is seen where there is nothing, if it is the same everywhere.
+    /// The light where there is nothing, if it is the same everywhere.
     pub(super) background: Option<DVec3>,
 }
 

@@ -1,9 +1,9 @@
 //! Crow's shadow volumes in the picture: how many of them each surface that is seen is in.
 //!
 //! From the eye to the surface, every shadow polygon in front of it leads into a volume or out of one. The sides behind
-//! silhouettes are enough: nothing that throws a shadow stands between the eye and what it sees, but for passable surfaces and
-//! what is nearer than the near plane, which are counted, too. A surface is never compared with its own triangle, so that
-//! none shadows itself by rounding.
+//! silhouettes are enough: nothing that throws a shadow stands between the eye and what it sees, but for passable
+//! surfaces and what is nearer than the near plane, which are counted, too. A surface is never compared with its own
+//! triangle, so that none shadows itself by rounding.
 //!
 //! # Source
 //! Crow 1977, shadow algorithms for computer graphics; the multiplicity of edges after Bergeron 1986.
@@ -21,7 +21,7 @@ use rayon::prelude::*;
 /// A shadow polygon.
 struct ShadowPolygon {
     outline: ClippedPolygon,
-    /// Where it may stand before something.
+    /// The part of the picture in which it may stand before something.
     within: PictureRegion,
     /// How many volumes are entered where it is seen to turn clockwise.
     weight: i32,
@@ -29,7 +29,7 @@ struct ShadowPolygon {
 }
 
 impl ShadowPolygon {
-    /// Its first and last line.
+    /// The first and last line of the polygon.
     fn lines(&self) -> [f64; 2] {
         let [first, last] = lines_of(self.outline.corners());
         [first.max(self.within.lines.start as f64), last.min(self.within.lines.end as f64)]

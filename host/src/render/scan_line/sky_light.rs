@@ -8,7 +8,7 @@ use glam::DVec3;
 
 /// Directions by which a sky is summed up, for each wavelength set.
 const DIRECTIONS: u32 = 4096;
-/// What a cosine around the normal leaves of spherical harmonics of degree 0, 1 and 2.
+/// Factors of the cosine around the normal on spherical harmonics of degree 0, 1 and 2.
 const COSINE_KERNEL: [f64; 9] = [1.0, 2.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0, 0.25, 0.25, 0.25, 0.25, 0.25];
 
 /// The irradiance of all skies of a scene, discs aside, by the direction of the normal.
@@ -26,7 +26,7 @@ pub(super) struct SkyLight {
 }
 
 impl SkyLight {
-    /// That of the lights that are prepared; none without a sky.
+    /// The light of the skies that are prepared; none without a sky.
     pub(super) fn new(appearance: &Appearance<'_>) -> Option<SkyLight> {
         let skies: Vec<&LightSource> =
             appearance.sources.iter().map(|(_, source)| source).filter(|source| source.is_sky()).collect();

@@ -46,7 +46,7 @@ pub(super) struct SampleLines {
     pub(super) range: Range<usize>,
     /// Columns.
     pub(super) width: usize,
-    /// Where the samples of each lie in their pixels.
+    /// Places of the samples of each line in their pixels.
     offsets: [f64; MOST_LINES],
 }
 
@@ -58,7 +58,7 @@ pub(super) struct PictureRegion {
 }
 
 impl PictureRegion {
-    /// All of it.
+    /// All of the picture.
     pub(super) const ALL: PictureRegion = PictureRegion { columns: 0..usize::MAX, lines: 0..usize::MAX };
 }
 
@@ -70,7 +70,7 @@ impl SampleLines {
         SampleLines { offsets: std::array::from_fn(offset), range, width }
     }
 
-    /// Where the samples of a line lie in their pixels.
+    /// Places of the samples of a line in their pixels.
     #[inline]
     pub(super) fn offset(&self, line: usize) -> f64 {
         self.offsets[line - self.range.start]

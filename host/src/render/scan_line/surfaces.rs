@@ -10,9 +10,9 @@ use std::ops::Range;
 
 /// Triangles of one curved object that share a pixel are lit as one if their normals differ by less (cosine).
 const SMOOTH: f64 = 0.94;
-/// And flat ones if they lie in one plane.
+/// Cosine above which flat triangles lie in one plane, and are lit as one.
 const FLAT: f64 = 1.0 - 1e-12;
-/// And if their depths differ by less than this part of them.
+/// Triangles are lit as one only if their depths differ by less than this part of them.
 const BESIDE: f64 = 0.01;
 
 /// A pixel of a strip.
@@ -22,9 +22,9 @@ pub(super) struct StripPixel<'p> {
     /// Its first sample in the strip, and how far the next are apart.
     pub(super) first: usize,
     pub(super) stride: usize,
-    /// Where its samples lie in it.
+    /// Places of its samples in it.
     pub(super) places: &'p [[f64; 2]],
-    /// Where they lie in the mean, and what part of all each of them is.
+    /// The mean of these places, and the part of all that each of them is.
     pub(super) mean: [f64; 2],
     pub(super) part: f64,
 }
@@ -45,13 +45,13 @@ impl StripPixel<'_> {
         [self.at[0] as f64 + self.mean[0], self.at[1] as f64 + self.mean[1]]
     }
 
-    /// Where a sample is in the picture.
+    /// The place of a sample in the picture.
     pub(super) fn place(&self, i: usize) -> [f64; 2] {
         [self.at[0] as f64 + self.places[i][0], self.at[1] as f64 + self.places[i][1]]
     }
 }
 
-/// What a sample sees: which surface of the pixel, and where its counts are.
+/// A fragment of a sample: the surface of the pixel, and the place of its counts.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SampleFragment {
     pub(super) surface: usize,

@@ -49,7 +49,7 @@ impl BandLists {
         BandLists { begins, numbers }
     }
 
-    /// Those of a band.
+    /// The numbers of a band.
     pub(super) fn of(&self, band: usize) -> &[u32] {
         &self.numbers[self.begins[band] as usize..self.begins[band + 1] as usize]
     }
@@ -77,25 +77,25 @@ pub(super) struct PassableLayer {
     pub(super) sample: u32,
     pub(super) near: f64,
     pub(super) triangle: u32,
-    /// As [`Span::turns`].
+    /// The sense of rotation, as [`Span::turns`].
     pub(super) turns: i32,
 }
 
 /// Columns of a tile of a strip.
 const TILE: usize = 32;
 
-/// What the samples of a strip see.
+/// A strip of the picture: what its samples see.
 #[derive(Default)]
 pub(super) struct Strip {
     /// For each sample, line by line, the nearness of its opaque surface, minus infinity if there is none.
     pub(super) near: Vec<f64>,
-    /// Its triangle.
+    /// The triangle of each.
     pub(super) triangles: Vec<u32>,
     /// For each tile of columns, the least nearness of what its samples see, infinite where there is nothing.
     farthest: Vec<f64>,
     /// Passable surfaces, sample by sample from the nearest.
     pub(super) layers: Vec<PassableLayer>,
-    /// Where the layers of each sample begin, if there are any at all.
+    /// The begin of the layers of each sample, if there are any at all.
     pub(super) begins: Vec<u32>,
     /// Spans that were drawn.
     pub(super) spans: u64,
@@ -146,7 +146,7 @@ impl<'a> ScreenTriangles<'a> {
         ScreenTriangles { prepared, points, triangles: facets, outlines, bands, passable }
     }
 
-    /// Where a vertex is in the picture; worth nothing for one that is cut off.
+    /// The point of a vertex in the picture; worth nothing for one that is cut off.
     pub(super) fn point(&self, vertex: u32) -> ScreenPoint {
         self.points[vertex as usize]
     }

@@ -112,7 +112,7 @@ fn parts<'d>(triangle: [DVec3; 3], piece: &TrianglePiece, sides: Sides<'d>) -> V
     }
 }
 
-/// What surfaces look like in the light of a solution.
+/// Shading of tiles: the looks of surfaces in the light of a solution.
 pub(super) struct TileShading<'a> {
     pub(super) solution: &'a Radiosity,
     pub(super) appearance: &'a Appearance<'a>,

@@ -71,7 +71,7 @@ pub(in crate::render) struct PhotonMapper<'a> {
     surfaces: SmoothSurfaces,
     /// Triangles that occlude light.
     opaque: TriangleBvh,
-    /// Those around what mirrors or refracts, and then other targets of lamps.
+    /// Bounding spheres around what mirrors or refracts, and then other targets of lamps.
     spheres: Vec<BoundingSphere>,
     bodies: usize,
     lamps: Vec<PhotonSource>,
@@ -376,7 +376,7 @@ pub fn greatest_gather_radius(prepared: &Prepared) -> f64 {
 }
 
 impl PhotonEstimator<'_> {
-    /// What became of all flux that was sent.
+    /// The flux balance of the pass.
     pub(in crate::render) fn balance(&self) -> FluxBalance {
         self.pass.balance
     }

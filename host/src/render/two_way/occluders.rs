@@ -16,7 +16,7 @@ const OVERLAP: f64 = 1e-6;
 pub(super) struct PlanarDisc {
     middle: DVec3,
     above: DVec3,
-    /// Of the plane, unit length.
+    /// Two axes of the plane, unit length.
     pub(super) axes: [DVec3; 2],
     radius: f64,
 }
@@ -34,14 +34,14 @@ impl PlanarDisc {
         PlanarDisc { middle, above, axes, radius }
     }
 
-    /// What the disc reaches to.
+    /// A box that holds the disc.
     pub(super) fn bounds(&self) -> Bounds {
         let [x, y] = self.axes.map(|axis| axis * axis);
         let reach = (x + y).map(f64::sqrt) * self.radius;
         Bounds { min: self.middle - reach, max: self.middle + reach }
     }
 
-    /// Where a triangle cuts the disc; none if it does not, or only touches it from below.
+    /// The segment in which a triangle cuts the disc; none if it does not, or only touches it from below.
     pub(super) fn cut(&self, corners: [DVec3; 3]) -> Option<OccluderSegment> {
         let offsets = corners.map(|corner| corner - self.middle);
         let heights = offsets.map(|offset| offset.dot(self.above));
@@ -85,7 +85,7 @@ impl OccluderSegment {
 /// The visible part of discs around a place: what is on its surface and in sight of it, disc by disc.
 pub(super) struct VisibleParts {
     parts: Vec<Part>,
-    /// Of each part those borders that are before its wall; without walls all of them.
+    /// For each part those borders that are before its wall; without walls all of them.
     borders: Vec<[DVec2; 2]>,
 }
 
@@ -93,7 +93,7 @@ pub(super) struct VisibleParts {
 struct Part {
     /// The nearest wall.
     wall: Option<[DVec2; 2]>,
-    /// Where the borders of the next part begin.
+    /// The begin of the borders of the next part.
     end: usize,
 }
 
@@ -158,7 +158,7 @@ impl VisibleParts {
     }
 }
 
-/// Where two segments cross, if they do.
+/// The crossing of two segments, if they cross.
 fn crossing([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> Option<DVec2> {
     let side = |p: DVec2, q: DVec2, r: DVec2| (q - p).perp_dot(r - p);
     let (s, t) = (side(c, d, a), side(c, d, b));
@@ -166,14 +166,14 @@ fn crossing([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> Option<DVec2> {
     is_between.then(|| a.lerp(b, s / (s - t)))
 }
 
-/// Where a ray from the origin hits a segment, if it does.
+/// The distance at which a ray from the origin hits a segment, in lengths of its direction, if it does.
 fn along([a, b]: [DVec2; 2], way: DVec2) -> Option<f64> {
     let is_between = (a.perp_dot(way) >= 0.0) == (way.perp_dot(b) >= 0.0);
     let distance = along_line([a, b], way);
     (is_between && distance > 0.0).then_some(distance)
 }
 
-/// Where it hits its line.
+/// The distance at which it hits the line of the segment.
 fn along_line([a, b]: [DVec2; 2], way: DVec2) -> f64 {
     a.perp_dot(b - a) / way.perp_dot(b - a)
 }

@@ -46,7 +46,7 @@ pub(super) struct PhotonMap {
     /// Flux of each lane, those of one after those of the other.
     flux: Vec<f32>,
     lanes: usize,
-    /// Their mean.
+    /// Mean flux over the lanes.
     strength: Vec<f32>,
     /// How many photons a fine estimate takes, at the most.
     most: usize,
@@ -77,7 +77,7 @@ pub(super) enum GatherDetail {
     Fine,
     /// Few photons will do, as for one of the many places that light what is seen.
     Coarse,
-    /// So many that little noise is left.
+    /// So many photons that little noise is left.
     Smooth,
 }
 
@@ -90,7 +90,7 @@ pub(super) struct GatherContext<'a> {
     /// The largest disc, scene units.
     pub(super) reach: f64,
     pub(super) detail: GatherDetail,
-    /// What the areas of discs are multiplied with.
+    /// Factor of the areas of discs.
     pub(super) shrink: f64,
 }
 
@@ -143,7 +143,7 @@ impl Sums {
 
 /// The photons of an estimate.
 struct Gathered {
-    /// Their numbers, and the squares of their distances, sides of the cube.
+    /// Numbers of the photons, and the squares of their distances, sides of the cube.
     near: Vec<(u32, f32)>,
     /// The square of the radius of the disc in which they are, sides of the cube.
     square: f64,

@@ -31,7 +31,7 @@ const FORM: u32 = 1;
 /// Marks photons that were scattered broadly; wavelength sets are fewer.
 const HAD_BROAD: u8 = 0x80;
 
-/// Where the photons of a scene are stored.
+/// A store of the photons of a scene in a database.
 #[derive(Clone, Debug)]
 pub struct PhotonStore {
     path: PathBuf,

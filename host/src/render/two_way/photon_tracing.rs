@@ -36,7 +36,7 @@ pub(super) struct Photon {
     pub(super) flux: Channels,
     /// The side of a surface on which it arrived, as [`side_of`] numbers them.
     pub(super) side: u32,
-    /// Its wavelength set.
+    /// The wavelength set of the photon.
     pub(super) wavelength_set: u8,
     /// Whether it was scattered broadly before.
     pub(super) had_broad: bool,
@@ -47,7 +47,7 @@ pub(super) fn side_of(surface: u32, outside: bool) -> u32 {
     surface << 1 | u32::from(outside)
 }
 
-/// What became of the flux that was sent out, W: the mean over the wavelengths or bands.
+/// The balance of the flux that was sent out, W: the mean over the wavelengths or bands.
 ///
 /// `sent`, `rescattered` and `gained` together are all the others together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -79,7 +79,7 @@ pub struct FluxBalance {
 }
 
 impl FluxBalance {
-    /// What is missing on one side, as a part of all.
+    /// The difference of both sides, as a part of all.
     pub fn residual(&self) -> f64 {
         let arrived = self.straight + self.stored + self.absorbed + self.escaped + self.stopped;
         (self.sent + self.rescattered + self.gained - arrived).abs() / self.sent.max(f64::MIN_POSITIVE)
@@ -152,15 +152,15 @@ pub(super) struct PhotonSampler {
     index: u32,
 }
 
-/// What a random number is for.
+/// A dimension of the sampler: what a random number is for.
 #[derive(Clone, Copy, Debug)]
 #[repr(u64)]
 pub(super) enum PhotonDimension {
-    /// Where the photon leaves the lamp.
+    /// The point where the photon leaves the lamp.
     Start,
     /// The direction of its emission.
     Aim,
-    /// Its wavelength set, and its time.
+    /// The wavelength set of the photon, and its time.
     Wavelengths,
     /// The lobe that scatters it, and the lane that is left where wavelengths separate.
     Choice,

@@ -141,7 +141,7 @@ impl<'a> Appearance<'a> {
         &self.bsdfs[self.bsdf_of[object as usize][material as usize] as usize]
     }
 
-    /// What is inside a material of an object, if it is transparent.
+    /// The medium inside a material of an object, if it is transparent.
     pub(in crate::render) fn interior(&self, object: u32, material: u32) -> Option<&InteriorMedium> {
         self.bsdf(object, material).interior.as_ref()
     }

@@ -28,7 +28,7 @@ pub(in crate::render) struct BoundedRay {
 /// Amanatides 1984, ray tracing with cones; as Akenine-Möller and others 2021 use them to filter textures.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::render) struct RayCone {
-    /// Where the ray begins.
+    /// The width where the ray begins.
     pub(in crate::render) width: f64,
     /// Growth of the width in each unit of length.
     pub(in crate::render) growth: f64,
@@ -75,7 +75,7 @@ impl CameraRays {
         Some(CameraRays { corner: [x_min, y_max], step, kind, part: 0.0 })
     }
 
-    /// Where a camera is; none for views along parallel lines and by matrices.
+    /// The position of a camera; none for views along parallel lines and by matrices.
     pub(in crate::render) fn place(&self) -> Option<DVec3> {
         match self.kind {
             Kind::Camera { from, .. } => Some(from),

@@ -11,7 +11,7 @@ use glam::DVec3;
 /// much again. The rest is safety: one part in 10^14 of the coordinate.
 const CLEARANCE_ULPS: f64 = 32.0;
 
-/// What is known where a ray hits.
+/// The surface element where a ray hits: position, normals, and origins of further rays.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::render) struct SurfaceElement {
     /// On the triangle, with the rounding errors of its coordinates, or on the exact surface behind it.
@@ -24,11 +24,11 @@ pub(in crate::render) struct SurfaceElement {
     pub(in crate::render) horizon: DVec3,
     /// Whether the viewer is on the outer side of the triangle.
     pub(in crate::render) outside: bool,
-    /// Where a ray that leaves on the side of the viewer begins: on the triangle, or on the exact surface before it.
+    /// Origin of a ray that leaves on the side of the viewer: on the triangle, or on the exact surface before it.
     pub(in crate::render) leave: DVec3,
-    /// Where a ray that goes through begins: always on the triangle.
+    /// Origin of a ray that goes through: always on the triangle.
     pub(in crate::render) through: DVec3,
-    /// Where a ray towards a light begins: on the curved surface that the triangle stands for, if it bulges out.
+    /// Origin of a ray towards a light: on the curved surface that the triangle stands for, if it bulges out.
     pub(in crate::render) leave_curved: DVec3,
     /// How far from the triangle rays begin that leave it or go through, scene units.
     pub(in crate::render) clearance: f64,

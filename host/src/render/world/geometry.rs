@@ -73,7 +73,7 @@ impl<'a> World<'a> {
         self.still().map(|still| &still.octree)
     }
 
-    /// What stands still, if anything does.
+    /// The octree of what stands still, if anything does.
     fn still(&self) -> Option<&SceneOctree> {
         self.acceleration.still.as_ref()
     }
@@ -190,7 +190,7 @@ impl<'a> World<'a> {
         })
     }
 
-    /// Where a ray hit an element: where a point stands for the surface, not all rays come to one place.
+    /// The position where a ray hit an element: where a point stands for the surface, not all rays come to one place.
     pub(in crate::render) fn hit_position(&self, interaction: &SurfaceInteraction<'_>, ray: &Ray) -> DVec3 {
         self.points.as_ref().map_or(interaction.element.position, |_| ray.at(interaction.t))
     }

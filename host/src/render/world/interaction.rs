@@ -13,7 +13,7 @@ pub(in crate::render) enum RayHit<'a> {
     Surface(SurfaceInteraction<'a>),
     /// A surface that emits, and which of the lights it is.
     Light(usize, LightHit),
-    /// Nothing.
+    /// No hit.
     Nothing,
 }
 

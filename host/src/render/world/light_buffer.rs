@@ -35,7 +35,7 @@ pub(in crate::render) enum Occluders {
     Dark,
     /// These triangles, if any.
     Few(Box<Shaft>),
-    /// More of them.
+    /// More triangles than these.
     Many,
 }
 

@@ -92,7 +92,7 @@ impl<T: Copy + Send + Sync + Add<Output = T> + Mul<f64, Output = T>> Table<T> {
         table
     }
 
-    /// Where a cosine has its place, 0..=1: half of the places are spread evenly, half of them by even ratios.
+    /// The place of a cosine, 0..=1: half of the places are spread evenly, half of them by even ratios.
     fn place(&self, cosine: f64) -> f64 {
         0.5 * (cosine + (cosine / self.scale).asinh() / self.scale.recip().asinh())
     }
@@ -140,7 +140,7 @@ fn half_square(of: impl Fn([f64; 2]) -> f64) -> f64 {
 /// A surface of facets, or a polished one: what it reflects and refracts once.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct AlbedoInterface {
-    /// None where it is polished.
+    /// The roughness; none where it is polished.
     pub(super) roughness: Option<f64>,
     /// From outside.
     pub(super) surface: Dielectric,
@@ -157,11 +157,11 @@ fn slanted(cosine: f64) -> DVec3 {
     DVec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine)
 }
 
-/// What a coat reflects, over the cosine.
+/// Albedo of a coat, over the cosine.
 #[derive(Clone, Debug)]
 pub(super) struct CoatAlbedo {
     interface: AlbedoInterface,
-    /// None where it is polished.
+    /// The table; none where it is polished.
     table: Option<Table<f64>>,
 }
 
@@ -197,12 +197,12 @@ fn reflected(view: DVec3, roughness: DVec2, point: [f64; 2]) -> Option<(DVec3, D
     (cosine > 0.0 && light.z > 0.0).then_some((facet, light))
 }
 
-/// What facets of one roughness reflect and let through under a coat, on both sides.
+/// Albedo of facets of one roughness under a coat, on both sides.
 #[derive(Clone, Debug)]
 pub(super) struct Albedo {
     interface: AlbedoInterface,
     coat: Option<CoatAlbedo>,
-    /// None where they are polished.
+    /// The tables of both sides; none where the facets are polished.
     tables: Option<[Table<DirectionalAlbedos>; 2]>,
     means: [DirectionalAlbedos; 2],
     /// The mean of Fresnel's term from outside, from inside, and of a pane of two interfaces.
@@ -253,7 +253,7 @@ impl Albedo {
         albedo
     }
 
-    /// What the coat reflects of the light from all around.
+    /// Albedo of the coat for light from all around.
     pub(super) fn coat(&self, cosine: f64) -> f64 {
         self.coat.as_ref().map_or(0.0, |coat| coat.at(cosine))
     }
@@ -363,7 +363,7 @@ impl Albedo {
     }
 }
 
-/// What a pane of two interfaces reflects, of which each reflects a part.
+/// Reflectance of a pane of two interfaces, of which each reflects a part.
 pub(super) fn pane(reflected: f64) -> f64 {
     2.0 * reflected / (1.0 + reflected)
 }

@@ -10,12 +10,12 @@ use super::surface::{PrincipledSurface, PrincipledValues};
 pub(super) struct MissingEnergy {
     pub(super) opaque: f64,
     pub(super) metal: f64,
-    /// Of a transparent one, on the side that is meant.
+    /// The missing energy of a transparent one, on the side that is meant.
     pub(super) clear: f64,
 }
 
 impl PrincipledSurface {
-    /// What is missing at a cosine on a side.
+    /// The missing energy at a cosine on a side.
     pub(super) fn missing(&self, at: &PrincipledValues, seen: InterfaceSide, cosine: f64) -> MissingEnergy {
         let [outside, side] = match seen {
             InterfaceSide::Outside => [self.albedo.at(seen, cosine); 2],

@@ -31,7 +31,7 @@ pub(in crate::illumination::optics) struct PrincipledSurface {
     pub(super) index: f64,
     /// Whether the body is a thin wall, which bends nothing.
     pub(super) thin: bool,
-    /// None where it is polished.
+    /// The facets with their roughness; none where it is polished.
     facets: Option<(Microfacet, DVec2)>,
     coat_surface: Dielectric,
     coat_facets: Option<Microfacet>,
@@ -43,15 +43,15 @@ pub(in crate::illumination::optics) struct PrincipledSurface {
 pub(in crate::illumination::optics) enum PrincipledPart {
     /// The rim of the cloth.
     Sheen,
-    /// What the coat reflects.
+    /// The reflection of the coat.
     Coat,
-    /// What facets reflect and refract once.
+    /// The reflection and refraction of facets, once.
     Facets,
     /// Diffuse: the color of the ground, and the missing energy of the others.
     Spread,
 }
 
-/// Its numbers at a footprint.
+/// The numbers of a principled surface at a footprint.
 pub(super) struct PrincipledValues {
     pub(super) side: InterfaceSide,
     pub(super) metallic: f64,
@@ -74,9 +74,9 @@ pub(super) struct FacetFresnel {
     through: Channels,
 }
 
-/// What a principled surface is made of, beside what may change from place to place.
+/// The parameters of a principled surface that do not change from place to place.
 pub(in crate::illumination::optics) struct PrincipledParameters {
-    /// Of the body and of the coat.
+    /// Refractive indices, of the body and of the coat.
     pub(in crate::illumination::optics) index: f64,
     pub(in crate::illumination::optics) coat_index: f64,
     /// m; none where it is polished.
@@ -220,7 +220,7 @@ impl PrincipledSurface {
         }
     }
 
-    /// What the coat leaves of what facets send.
+    /// Transmittance of the coat over what facets send.
     ///
     /// - `cosine`: of the viewer or the light, whichever is outside and nearer to the surface.
     fn under(&self, at: &PrincipledValues, cosine: f64) -> f64 {
@@ -281,12 +281,12 @@ impl PrincipledSurface {
         if value.is_finite() { value } else { Channels::ZERO }
     }
 
-    /// What is no cloth.
+    /// The part that is no cloth.
     fn beside_cloth(&self, at: &PrincipledValues) -> Channels {
         Channels::ONE - at.cloth * (1.0 - at.clear())
     }
 
-    /// What facets send to the viewer by one reflection or refraction.
+    /// The value of facets by one reflection or refraction.
     fn once(&self, at: &PrincipledValues, context: &ShadingContext, light: DVec3) -> Channels {
         let view = context.view;
         let Some(((facets, m), facet)) = self.facets.as_ref().zip(self.facet(context, light)) else {
@@ -449,7 +449,7 @@ impl PrincipledSurface {
         [reflection, refraction.filter(|sample| sample.weight.max() > 0.0)]
     }
 
-    /// What comes through a polished surface, as if it were not bent.
+    /// Transmittance of a polished surface, as if it did not bend light.
     pub(in crate::illumination::optics) fn straight_transmittance(&self, context: &ShadingContext) -> Channels {
         let at = self.at(context);
         self.fresnel(&at, context, context.view.z).through * self.under(&at, context.view.z)
