@@ -1,7 +1,7 @@
 //! From a colour to a smooth reflectance between 0 and 1 that has it under D65.
 //!
-//! The reflectance is a sigmoid of a quadratic in the wavelength. Its three coefficients are found by Gauss and Newton's
-//! iteration, damped, along a path of colours from grey to the one that is asked for.
+//! The reflectance is a sigmoid of a quadratic in the wavelength. Its three coefficients are found by Gauss and
+//! Newton's iteration, damped, along a path of colours from grey to the one that is asked for.
 
 use super::observer::{VISIBLE, functions};
 use super::{ColorError, Extrapolation, Spectrum, integral, shipped, srgb};
@@ -33,8 +33,8 @@ pub struct SmoothReflectance {
 pub struct Fit {
     /// The reflectance.
     pub reflectance: SmoothReflectance,
-    /// Distance from the colour that was asked for, in linear sRGB. Below 1e-7 for all colours of sRGB, most of them below
-    /// 1e-13; greater for colours that no surface has.
+    /// Distance from the colour that was asked for, in linear sRGB. Below 1e-7 for all colours of sRGB, most of them
+    /// below 1e-13; greater for colours that no surface has.
     pub error: f64,
 }
 

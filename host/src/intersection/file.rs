@@ -5,8 +5,8 @@ use super::{CurvePoint, Intersection};
 /// The points of some intersections as comma-separated values, with a header line.
 ///
 /// A row for each point: the names of both sides; the branch, counted from 0, and whether it is closed, both empty for
-/// points in which surfaces only touch; position, surfaces and parameters, residual, tangent, angle in degrees, mark and
-/// failure.
+/// points in which surfaces only touch; position, surfaces and parameters, residual, tangent, angle in degrees, mark
+/// and failure.
 pub fn csv(intersections: &[([String; 2], &Intersection)]) -> String {
     let mut text = String::from(
         "first,second,branch,closed,x,y,z,surface 1,u1,v1,surface 2,u2,v2,residual,tangent x,tangent y,tangent z,angle,mark,failure\n",

@@ -42,8 +42,8 @@ impl SobolSequence {
 
 /// The second dimension of Sobol's sequence, bits in reverse: Pascal's triangle modulo 2.
 ///
-/// Bit j is the sum of all bits i of the index for which i over j is odd, which by Lucas' theorem are those whose number has
-/// all the bits of j: a sum over supersets, one bit of the numbers at a time.
+/// Bit j is the sum of all bits i of the index for which i over j is odd, which by Lucas' theorem are those whose
+/// number has all the bits of j: a sum over supersets, one bit of the numbers at a time.
 #[inline]
 fn sobol(index: u32) -> u32 {
     let steps = [(1, 0x5555_5555), (2, 0x3333_3333), (4, 0x0f0f_0f0f), (8, 0x00ff_00ff), (16, 0x0000_ffff_u32)];

@@ -26,8 +26,8 @@ impl Cube {
         Self { origin: low + (high - low) * 0.5 - DVec3::splat(side * 0.5), side }
     }
 
-    /// Whether the numbers are those of a cube: a side that is a power of two as [`Cube::around`] makes it, and a finite
-    /// origin.
+    /// Whether the numbers are those of a cube: a side that is a power of two as [`Cube::around`] makes it, and a
+    /// finite origin.
     pub fn is_sound(&self) -> bool {
         self.origin.is_finite() && self.side > 0.0 && power_of_two_above(self.side * 0.75) == self.side
     }

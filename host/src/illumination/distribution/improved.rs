@@ -1,7 +1,7 @@
 //! Cook and Torrance's highlight as the 1988 paper improves it.
 //!
-//! The division by N·L is gone, so that it stays finite at grazing incidence. What is missing is the change 4 (V·H) from
-//! the solid angle of the normal to that of the viewer: for smooth facets its integral is 4 (N·L), not 1.
+//! The division by N·L is gone, so that it stays finite at grazing incidence. What is missing is the change 4 (V·H)
+//! from the solid angle of the normal to that of the viewer: for smooth facets its integral is 4 (N·L), not 1.
 
 use super::cook_torrance::{pdf, sample};
 use super::{Distribution, DistributionError, SlopeDistribution, checked_roughness};

@@ -20,8 +20,8 @@ pub(super) fn inverse_of_visible(cosine: f64, sine: f64, uniform: f64) -> f64 {
     let top = if cosine >= STEEPEST * sine { STEEPEST } else { cosine / sine };
     let wanted = uniform * below(top, bell(top));
     let (mut low, mut high) = (-STEEPEST, top);
-    // From straight above they are those of a Gaussian; from the horizon a part exp(-x²) of them is seen. Where the slope is
-    // that of the direction itself nothing is seen, and no step leads away.
+    // From straight above they are those of a Gaussian; from the horizon a part exp(-x²) of them is seen. Where the
+    // slope is that of the direction itself nothing is seen, and no step leads away.
     let flat = 0.5 * INVERSE_ROOT_OF_PI * sine / (0.5 * INVERSE_ROOT_OF_PI * sine + cosine);
     let from_horizon = -(-uniform.max(f64::MIN_POSITIVE).ln()).max(0.0).sqrt();
     let begin = guess(uniform) * (1.0 - flat) + from_horizon * flat;
@@ -34,8 +34,8 @@ pub(super) fn inverse_of_visible(cosine: f64, sine: f64, uniform: f64) -> f64 {
         } else {
             low = x;
         }
-        // Halley's step: Newton's, and how the slope changes along it, by half at the most. Or half of the bracket where the
-        // step leaves it.
+        // Halley's step: Newton's, and how the slope changes along it, by half at the most. Or half of the bracket
+        // where the step leaves it.
         let seen = cosine - x * sine;
         let newton = excess / (seen * here);
         let change = (newton * (x + 0.5 * sine / seen)).max(-0.5);

@@ -1,12 +1,12 @@
 //! A solution by radiosity as tiles: pieces of surfaces with a colour at each corner, to be looked at from anywhere by
 //! whoever mixes colours between corners and knows no light.
 //!
-//! A tile is an element of the solution, or as many of them as make up one of its triangles, if mixing the colours of that
-//! triangle's corners comes near enough. Where a neighbour has a corner on an edge of a tile, so has the tile: there are no
-//! cracks.
+//! A tile is an element of the solution, or as many of them as make up one of its triangles, if mixing the colours of
+//! that triangle's corners comes near enough. Where a neighbour has a corner on an edge of a tile, so has the tile:
+//! there are no cracks.
 //!
-//! *Not modelled*: what depends on the direction of view. Mirrors are black, what light goes straight through is left out, a
-//! sky is background. Patterns finer than elements are looked up at corners only.
+//! *Not modelled*: what depends on the direction of view. Mirrors are black, what light goes straight through is left
+//! out, a sky is background. Patterns finer than elements are looked up at corners only.
 
 mod points;
 #[cfg(test)]
@@ -131,8 +131,8 @@ impl Grid {
     }
 }
 
-/// The corners of all pieces with those that neighbours have on their edges. Divides pieces that would have too many. Of a
-/// piece that is next to nothing, fewer than three are left.
+/// The corners of all pieces with those that neighbours have on their edges. Divides pieces that would have too many.
+/// Of a piece that is next to nothing, fewer than three are left.
 fn outlines(pieces: &mut [Vec<TrianglePiece>], grid: Grid) -> Vec<Vec<Vec<TileCorner>>> {
     loop {
         let mut keys: Vec<[i64; 3]> =
