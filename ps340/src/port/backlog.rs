@@ -52,12 +52,12 @@ impl Backlog {
     ///
     /// - Returns false if the queue is full, or there is no number for one more queue; the message stays.
     #[inline(always)]
-    pub(super) fn push(&mut self, lent: &mut QueueHandle, message: &mut Value) -> bool {
-        if *lent == QueueHandle::NOTHING {
+    pub(super) fn push(&mut self, handle: &mut QueueHandle, message: &mut Value) -> bool {
+        if *handle == QueueHandle::NOTHING {
             let Some(number) = self.free.pop().or_else(|| self.more()) else { return false };
-            *lent = QueueHandle(number);
+            *handle = QueueHandle(number);
         }
-        let ring = &mut self.queues[lent.0 as usize];
+        let ring = &mut self.queues[handle.0 as usize];
         if ring.length + 1 >= MAX_QUEUE {
             return false;
         }
@@ -69,46 +69,46 @@ impl Backlog {
     ///
     /// - Returns false if there is no message.
     #[inline(always)]
-    pub(super) fn pop(&mut self, lent: &mut QueueHandle, to: &mut Value) -> bool {
-        match self.queues.get_mut(lent.0 as usize) {
+    pub(super) fn pop(&mut self, handle: &mut QueueHandle, to: &mut Value) -> bool {
+        match self.queues.get_mut(handle.0 as usize) {
             Some(ring) if ring.length > 0 => {
                 ring.pop(to);
                 true
             }
             _ => {
-                self.take_back(lent);
+                self.take_back(handle);
                 false
             }
         }
     }
 
     /// Moves the message that came last to a slot, if there is one; the others go with the queue.
-    pub(super) fn pop_last(&mut self, lent: &mut QueueHandle, to: &mut Value) {
-        if let Some(last) = self.queues.get_mut(lent.0 as usize).and_then(Ring::last) {
+    pub(super) fn pop_last(&mut self, handle: &mut QueueHandle, to: &mut Value) {
+        if let Some(last) = self.queues.get_mut(handle.0 as usize).and_then(Ring::last) {
             moves::shift(last, to);
         }
-        self.take_back(lent);
+        self.take_back(handle);
     }
 
     /// The messages, the first first.
-    pub(super) fn messages(&self, lent: QueueHandle) -> impl Iterator<Item = &Value> {
-        self.queues.get(lent.0 as usize).into_iter().flat_map(Ring::messages)
+    pub(super) fn messages(&self, handle: QueueHandle) -> impl Iterator<Item = &Value> {
+        self.queues.get(handle.0 as usize).into_iter().flat_map(Ring::messages)
     }
 
     /// How many messages there are.
-    pub(super) fn length(&self, lent: QueueHandle) -> usize {
-        self.queues.get(lent.0 as usize).map_or(0, |ring| ring.length)
+    pub(super) fn length(&self, handle: QueueHandle) -> usize {
+        self.queues.get(handle.0 as usize).map_or(0, |ring| ring.length)
     }
 
     /// Takes a queue back, with whatever is in it.
     #[inline(never)]
-    pub(super) fn take_back(&mut self, lent: &mut QueueHandle) {
-        if let Some(ring) = self.queues.get_mut(lent.0 as usize) {
+    pub(super) fn take_back(&mut self, handle: &mut QueueHandle) {
+        if let Some(ring) = self.queues.get_mut(handle.0 as usize) {
             if ring.length > 0 || ring.slots.len() > RETAINED_SLOTS {
                 *ring = Ring::default();
             }
-            self.free.push(lent.0);
-            *lent = QueueHandle::NOTHING;
+            self.free.push(handle.0);
+            *handle = QueueHandle::NOTHING;
         }
     }
 
@@ -164,7 +164,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_queue_that_came_back_is_lent_again() {
+    fn a_queue_that_came_back_is_handed_out_again() {
         let mut backlog = Backlog::new();
         let (mut a, mut b, mut place) = (QueueHandle::NOTHING, QueueHandle::NOTHING, PLACEHOLDER);
         assert!(!backlog.pop(&mut a, &mut place));

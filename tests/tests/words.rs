@@ -1,0 +1,156 @@
+//! One meaning a word: the page of words and the code agree, type names mean one thing, retired words stay away.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use tests::source_tree::{CRATES, code, comments, read, root, sources};
+
+/// The page of words.
+fn page() -> String {
+    read(&root().join("host/docs/words.md"))
+}
+
+/// What stands in back quotes.
+fn names(line: &str) -> impl Iterator<Item = &str> {
+    line.split('`').skip(1).step_by(2)
+}
+
+/// The identifiers of a text.
+fn identifiers(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|c: char| !(c.is_alphanumeric() || c == '_')).filter(|word| !word.is_empty())
+}
+
+/// The words of an identifier, in small letters: `PathSegment` and `path_segment` are path and segment.
+fn words_of(identifier: &str) -> Vec<String> {
+    let mut words = vec![String::new()];
+    let mut before = '_';
+    for c in identifier.chars() {
+        if c == '_' || (c.is_uppercase() && before.is_lowercase()) {
+            words.push(String::new());
+        }
+        if c != '_' {
+            words.last_mut().expect("one at least").extend(c.to_lowercase());
+        }
+        before = c;
+    }
+    words.retain(|word| !word.is_empty());
+    words
+}
+
+/// All source files of the workspace.
+fn files() -> Vec<PathBuf> {
+    CRATES.iter().flat_map(|one| sources(&root().join(one.folder))).collect()
+}
+
+#[test]
+fn every_name_on_the_page_of_words_stands_in_the_code() {
+    let known: BTreeSet<String> = files()
+        .iter()
+        .flat_map(|path| identifiers(&code(&read(path))).map(str::to_owned).collect::<Vec<_>>())
+        .collect();
+    let modules: BTreeSet<String> =
+        files().iter().filter_map(|path| Some(path.file_stem()?.to_string_lossy().into_owned())).collect();
+    let page = page();
+    let rows: Vec<&str> = page.lines().filter(|line| line.starts_with("- **")).collect();
+    assert!(rows.len() >= 120, "{} words", rows.len());
+    let is_known = |name: &str| known.contains(name) || modules.contains(name);
+    let strange: Vec<String> = rows
+        .iter()
+        .flat_map(|row| names(row).flat_map(identifiers).map(move |name| (row, name)))
+        .filter(|(_, name)| !is_known(name))
+        .map(|(row, name)| format!("{name}: {row}"))
+        .collect();
+    assert!(strange.is_empty(), "not in the code:\n{}", strange.join("\n"));
+    let mut words: Vec<&str> = rows.iter().filter_map(|row| row.split("**").nth(1)).collect();
+    words.sort_unstable();
+    assert_eq!(words.windows(2).find(|pair| pair[0] == pair[1]), None, "a word with two meanings");
+}
+
+/// The types of a file that may leave it.
+fn public_types(code: &str) -> Vec<String> {
+    let mut types = Vec::new();
+    for line in code.lines().map(str::trim_start) {
+        let Some(rest) = line.strip_prefix("pub") else { continue };
+        let rest = match rest.strip_prefix('(') {
+            Some(rest) => rest.split_once(')').map_or("", |(_, rest)| rest),
+            None => rest,
+        };
+        let mut words = rest.split_whitespace().skip_while(|word| *word == "unsafe");
+        if matches!(words.next(), Some("struct" | "enum" | "trait" | "type" | "union")) {
+            types.extend(words.next().and_then(|word| identifiers(word).next()).map(str::to_owned));
+        }
+    }
+    types
+}
+
+#[test]
+fn a_type_name_that_leaves_its_file_means_one_thing_in_its_crate() {
+    let source = "pub(super) struct A(u8);\nstruct B;\n    pub type C<T> = T;\npub unsafe trait D {}";
+    assert_eq!(public_types(source), ["A", "C", "D"]);
+    let mut faults = Vec::new();
+    for one in CRATES {
+        let mut meanings: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
+        for path in sources(&root().join(one.folder)) {
+            for name in public_types(&code(&read(&path))) {
+                meanings.entry(name).or_default().push(path.clone());
+            }
+        }
+        let twice = meanings.into_iter().filter(|(_, paths)| paths.len() > 1);
+        faults.extend(twice.map(|(name, paths)| format!("{} in {paths:?}", name)));
+    }
+    assert!(faults.is_empty(), "one name, several things:\n{}", faults.join("\n"));
+}
+
+/// A retired word and the folder where it does not come back.
+struct Retired {
+    word: String,
+    instead: String,
+    folder: PathBuf,
+}
+
+/// The rows `| word, word | instead | folder, folder |` of the last table of the page.
+fn retired(page: &str) -> Vec<Retired> {
+    let table = page.split_once("## Retired").expect("a table of retired words").1;
+    let mut all = Vec::new();
+    for row in table.lines().filter(|line| line.starts_with("| ")).skip(1) {
+        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+        let [_, words, instead, folders, _] = cells[..] else { panic!("no row of three cells: {row}") };
+        for word in words.split(", ") {
+            for folder in names(folders) {
+                let folder = root().join(folder);
+                assert!(folder.is_dir(), "there is no folder {}", folder.display());
+                all.push(Retired { word: word.to_owned(), instead: instead.to_owned(), folder });
+            }
+        }
+    }
+    all
+}
+
+/// The lines on which a retired word stands, in code or comments, alone or as a part of a name, once or several.
+fn uses_of(word: &str, source: &str) -> Vec<usize> {
+    let plural = format!("{word}s");
+    let is_it = |found: &String| *found == word || *found == plural;
+    let has = |line: &str| identifiers(line).any(|name| words_of(name).iter().any(is_it));
+    let lines = |text: &str| text.lines().zip(1..).filter(|(line, _)| has(line)).map(|(_, number)| number).collect();
+    let (mut all, in_code): (Vec<usize>, Vec<usize>) = (lines(&comments(source)), lines(&code(source)));
+    all.extend(in_code);
+    all
+}
+
+#[test]
+fn retired_words_do_not_come_back() {
+    assert_eq!(uses_of("comb", "let a = 1; // of combs\nlet c = \"comb\";\nlet of_comb = 2;"), [1, 3]);
+    assert_eq!(uses_of("comb", "let combine = \"comb\"; // to combine"), [0; 0]);
+    let retired = retired(&page());
+    assert!(retired.len() >= 20, "{} retired words", retired.len());
+    let mut faults = Vec::new();
+    for path in files() {
+        let source = read(&path);
+        let here = |row: &&Retired| Path::starts_with(&path, &row.folder);
+        for Retired { word, instead, .. } in retired.iter().filter(here) {
+            let place = path.display();
+            let lines = uses_of(word, &source).into_iter();
+            faults.extend(lines.map(|line| format!("{place}:{line}: {word}; say {instead}")));
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
