@@ -1,7 +1,7 @@
 //! Rays down the index, nearest child first.
 
 #[cfg(target_arch = "x86_64")]
-use super::lanes::AvxLanes;
+use super::lanes::{Avx, AvxLanes};
 use super::lanes::{LANES, Lanes, ScalarLanes, prefetch};
 use super::packet::Packet;
 use super::prepared_ray::PreparedRay;
@@ -80,15 +80,22 @@ pub fn nearest(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64, count: &mut W
     #[cfg(target_arch = "x86_64")]
     {
         #[target_feature(enable = "avx2,fma")]
-        fn nearest_wide(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64, count: &mut WalkCount) -> Option<Hit> {
-            nearest_by::<AvxLanes>(octree, ray, [t_min, t_max], count)
+        fn nearest_wide(
+            avx: Avx,
+            octree: &Octree,
+            ray: &Ray,
+            t_min: f64,
+            t_max: f64,
+            count: &mut WalkCount,
+        ) -> Option<Hit> {
+            nearest_by::<AvxLanes>(avx, octree, ray, [t_min, t_max], count)
         }
-        if is_wide() {
-            // SAFETY: the processor has AVX2 and FMA, all that this function asks for.
-            return unsafe { nearest_wide(octree, ray, t_min, t_max, count) };
+        if let Some(avx) = Avx::detected() {
+            // SAFETY: `avx` proves that the processor has AVX2 and FMA, all that this function asks for.
+            return unsafe { nearest_wide(avx, octree, ray, t_min, t_max, count) };
         }
     }
-    nearest_by::<ScalarLanes>(octree, ray, [t_min, t_max], count)
+    nearest_by::<ScalarLanes>((), octree, ray, [t_min, t_max], count)
 }
 
 /// Says whether anything is hit with `t_min < t < t_max`.
@@ -97,23 +104,29 @@ pub fn is_any(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64) -> bool {
     #[cfg(target_arch = "x86_64")]
     {
         #[target_feature(enable = "avx2,fma")]
-        fn is_any_wide(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64) -> bool {
-            is_any_by::<AvxLanes>(octree, ray, [t_min, t_max])
+        fn is_any_wide(avx: Avx, octree: &Octree, ray: &Ray, t_min: f64, t_max: f64) -> bool {
+            is_any_by::<AvxLanes>(avx, octree, ray, [t_min, t_max])
         }
-        if is_wide() {
-            // SAFETY: the processor has AVX2 and FMA, all that this function asks for.
-            return unsafe { is_any_wide(octree, ray, t_min, t_max) };
+        if let Some(avx) = Avx::detected() {
+            // SAFETY: `avx` proves that the processor has AVX2 and FMA, all that this function asks for.
+            return unsafe { is_any_wide(avx, octree, ray, t_min, t_max) };
         }
     }
-    is_any_by::<ScalarLanes>(octree, ray, [t_min, t_max])
+    is_any_by::<ScalarLanes>((), octree, ray, [t_min, t_max])
 }
 
 /// The nearest triangle that a ray hits, as [`nearest`] finds it, with given instructions.
 #[inline(always)]
-pub fn nearest_by<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2], count: &mut WalkCount) -> Option<Hit> {
+pub fn nearest_by<L: Lanes>(
+    proof: L::Proof,
+    octree: &Octree,
+    ray: &Ray,
+    limits: [f64; 2],
+    count: &mut WalkCount,
+) -> Option<Hit> {
     let line = PreparedRay::new(ray, &octree.cube, limits[0], limits[1])?;
     let mut search = Search::new(octree, &line, limits[0], limits[1], false);
-    search.descend::<L, false>();
+    search.descend::<L, false>(proof);
     let (hit, work) = search.found();
     *count = work;
     hit
@@ -121,9 +134,9 @@ pub fn nearest_by<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2], count:
 
 /// Whether a ray hits any triangle, as [`is_any`] tells, with given instructions.
 #[inline(always)]
-pub fn is_any_by<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2]) -> bool {
+pub fn is_any_by<L: Lanes>(proof: L::Proof, octree: &Octree, ray: &Ray, limits: [f64; 2]) -> bool {
     let line = PreparedRay::new(ray, &octree.cube, limits[0], limits[1]);
-    line.is_some_and(|line| Search::new(octree, &line, limits[0], limits[1], true).descend::<L, true>())
+    line.is_some_and(|line| Search::new(octree, &line, limits[0], limits[1], true).descend::<L, true>(proof))
 }
 
 /// Gives all hits with `t_min < t < t_max`, in no order, until one is enough; says whether one was.
@@ -132,22 +145,28 @@ pub fn each(octree: &Octree, ray: &Ray, t_min: f64, t_max: f64, enough: impl FnM
     #[cfg(target_arch = "x86_64")]
     {
         #[target_feature(enable = "avx2,fma")]
-        fn each_wide(octree: &Octree, ray: &Ray, limits: [f64; 2], enough: impl FnMut(Hit) -> bool) -> bool {
-            each_by::<AvxLanes>(octree, ray, limits, enough)
+        fn each_wide(avx: Avx, octree: &Octree, ray: &Ray, limits: [f64; 2], enough: impl FnMut(Hit) -> bool) -> bool {
+            each_by::<AvxLanes>(avx, octree, ray, limits, enough)
         }
-        if is_wide() {
-            // SAFETY: the processor has AVX2 and FMA, all that this function asks for.
-            return unsafe { each_wide(octree, ray, [t_min, t_max], enough) };
+        if let Some(avx) = Avx::detected() {
+            // SAFETY: `avx` proves that the processor has AVX2 and FMA, all that this function asks for.
+            return unsafe { each_wide(avx, octree, ray, [t_min, t_max], enough) };
         }
     }
-    each_by::<ScalarLanes>(octree, ray, [t_min, t_max], enough)
+    each_by::<ScalarLanes>((), octree, ray, [t_min, t_max], enough)
 }
 
 #[inline(always)]
-fn each_by<L: Lanes>(octree: &Octree, ray: &Ray, limits: [f64; 2], mut enough: impl FnMut(Hit) -> bool) -> bool {
+fn each_by<L: Lanes>(
+    proof: L::Proof,
+    octree: &Octree,
+    ray: &Ray,
+    limits: [f64; 2],
+    mut enough: impl FnMut(Hit) -> bool,
+) -> bool {
     let Some(line) = PreparedRay::new(ray, &octree.cube, limits[0], limits[1]) else { return false };
     let mut search = Search::new(octree, &line, limits[0], limits[1], true);
-    search.visit::<L>(|search, packet| search.any_of_packet::<L>(packet, &mut enough))
+    search.visit::<L>(proof, |search, packet| search.any_of_packet::<L>(proof, packet, &mut enough))
 }
 
 /// As [`each`], among the triangles of some packets.
@@ -163,20 +182,21 @@ pub fn each_in(
     {
         #[target_feature(enable = "avx2,fma")]
         fn each_in_wide(
+            avx: Avx,
             octree: &Octree,
             packets: &[Packet],
             ray: &Ray,
             limits: [f64; 2],
             enough: impl FnMut(Hit) -> bool,
         ) -> bool {
-            each_in_by::<AvxLanes>(octree, packets, ray, limits, enough)
+            each_in_by::<AvxLanes>(avx, octree, packets, ray, limits, enough)
         }
-        if is_wide() {
-            // SAFETY: the processor has AVX2 and FMA, all that this function asks for.
-            return unsafe { each_in_wide(octree, packets, ray, [t_min, t_max], enough) };
+        if let Some(avx) = Avx::detected() {
+            // SAFETY: `avx` proves that the processor has AVX2 and FMA, all that this function asks for.
+            return unsafe { each_in_wide(avx, octree, packets, ray, [t_min, t_max], enough) };
         }
     }
-    each_in_by::<ScalarLanes>(octree, packets, ray, [t_min, t_max], enough)
+    each_in_by::<ScalarLanes>((), octree, packets, ray, [t_min, t_max], enough)
 }
 
 /// As [`is_any`], among the triangles of some packets.
@@ -185,19 +205,20 @@ pub fn is_any_in(octree: &Octree, packets: &[Packet], ray: &Ray, t_min: f64, t_m
     #[cfg(target_arch = "x86_64")]
     {
         #[target_feature(enable = "avx2,fma")]
-        fn is_any_in_wide(octree: &Octree, packets: &[Packet], ray: &Ray, limits: [f64; 2]) -> bool {
-            is_any_in_by::<AvxLanes>(octree, packets, ray, limits)
+        fn is_any_in_wide(avx: Avx, octree: &Octree, packets: &[Packet], ray: &Ray, limits: [f64; 2]) -> bool {
+            is_any_in_by::<AvxLanes>(avx, octree, packets, ray, limits)
         }
-        if is_wide() {
-            // SAFETY: the processor has AVX2 and FMA, all that this function asks for.
-            return unsafe { is_any_in_wide(octree, packets, ray, [t_min, t_max]) };
+        if let Some(avx) = Avx::detected() {
+            // SAFETY: `avx` proves that the processor has AVX2 and FMA, all that this function asks for.
+            return unsafe { is_any_in_wide(avx, octree, packets, ray, [t_min, t_max]) };
         }
     }
-    is_any_in_by::<ScalarLanes>(octree, packets, ray, [t_min, t_max])
+    is_any_in_by::<ScalarLanes>((), octree, packets, ray, [t_min, t_max])
 }
 
 #[inline(always)]
 fn each_in_by<L: Lanes>(
+    proof: L::Proof,
     octree: &Octree,
     packets: &[Packet],
     ray: &Ray,
@@ -206,35 +227,28 @@ fn each_in_by<L: Lanes>(
 ) -> bool {
     let Some(line) = PreparedRay::new(ray, &octree.cube, limits[0], limits[1]) else { return false };
     let search = Search::new(octree, &line, limits[0], limits[1], true);
-    packets.iter().any(|packet| search.any_of_packet::<L>(packet, &mut enough))
+    packets.iter().any(|packet| search.any_of_packet::<L>(proof, packet, &mut enough))
 }
 
 #[inline(always)]
-fn is_any_in_by<L: Lanes>(octree: &Octree, packets: &[Packet], ray: &Ray, limits: [f64; 2]) -> bool {
+fn is_any_in_by<L: Lanes>(proof: L::Proof, octree: &Octree, packets: &[Packet], ray: &Ray, limits: [f64; 2]) -> bool {
     let Some(line) = PreparedRay::new(ray, &octree.cube, limits[0], limits[1]) else { return false };
     let mut search = Search::new(octree, &line, limits[0], limits[1], true);
     let within = line.single.within(search.t_min, search.t_max);
-    packets.iter().any(|packet| search.test::<L, true>(packet, within))
-}
-
-/// Whether the processor has AVX2 and fused multiply-adds.
-#[cfg(target_arch = "x86_64")]
-#[inline]
-fn is_wide() -> bool {
-    std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
+    packets.iter().any(|packet| search.test::<L, true>(proof, packet, within))
 }
 
 impl Search<'_> {
     /// Goes down the index; returns whether it ended at a hit that is enough.
     #[inline(always)]
-    fn descend<L: Lanes, const ANY: bool>(&mut self) -> bool {
+    fn descend<L: Lanes, const ANY: bool>(&mut self, proof: L::Proof) -> bool {
         let within = if ANY { self.ray.single.within(self.t_min, self.t_max) } else { [0.0; 2] };
-        self.visit::<L>(|search, packet| search.test::<L, ANY>(packet, within))
+        self.visit::<L>(proof, |search, packet| search.test::<L, ANY>(proof, packet, within))
     }
 
     /// Visits the packets along the ray, the nearer ones first, until one of them is the last.
     #[inline(always)]
-    fn visit<L: Lanes>(&mut self, mut is_last: impl FnMut(&mut Self, &Packet) -> bool) -> bool {
+    fn visit<L: Lanes>(&mut self, proof: L::Proof, mut is_last: impl FnMut(&mut Self, &Packet) -> bool) -> bool {
         let index = &self.octree.index;
         if index.nodes.is_empty() {
             return false;
@@ -246,7 +260,7 @@ impl Search<'_> {
             match child.place() {
                 Err(place) => {
                     let node = &index.nodes[place];
-                    let (mut lanes, near) = node.meets::<L>(&self.ray.single, self.limit);
+                    let (mut lanes, near) = node.meets::<L>(proof, &self.ray.single, self.limit);
                     if lanes != 0 {
                         let first = lanes.trailing_zeros() as usize & (LANES - 1);
                         lanes &= lanes - 1;
@@ -296,8 +310,8 @@ impl Search<'_> {
 
     /// Gives the hits of a packet until one is enough.
     #[inline(always)]
-    fn any_of_packet<L: Lanes>(&self, packet: &Packet, enough: &mut impl FnMut(Hit) -> bool) -> bool {
-        let (mut lanes, _) = packet.candidates::<L, false>(&self.ray.single, self.limit, [0.0; 2]);
+    fn any_of_packet<L: Lanes>(&self, proof: L::Proof, packet: &Packet, enough: &mut impl FnMut(Hit) -> bool) -> bool {
+        let (mut lanes, _) = packet.candidates::<L, false>(proof, &self.ray.single, self.limit, [0.0; 2]);
         while lanes != 0 {
             let lane = lanes.trailing_zeros() as usize & (LANES - 1);
             lanes &= lanes - 1;
@@ -310,9 +324,9 @@ impl Search<'_> {
 
     /// Tests a packet; returns whether the search is over.
     #[inline(always)]
-    fn test<L: Lanes, const ANY: bool>(&mut self, packet: &Packet, within: [f32; 2]) -> bool {
+    fn test<L: Lanes, const ANY: bool>(&mut self, proof: L::Proof, packet: &Packet, within: [f32; 2]) -> bool {
         self.count.triangles += LANES as u64;
-        let (mut lanes, certain) = packet.candidates::<L, ANY>(&self.ray.single, self.limit, within);
+        let (mut lanes, certain) = packet.candidates::<L, ANY>(proof, &self.ray.single, self.limit, within);
         if ANY && certain != 0 {
             return true;
         }

@@ -12,10 +12,13 @@ pub struct Eight(pub [f32; LANES]);
 ///
 /// Products that are added to may be rounded once or twice, so that no result may depend on the last digit.
 pub trait Lanes: Copy {
+    /// What proves that the processor has the instructions; only with it are there such numbers.
+    type Proof: Copy;
+
     /// One number in every lane.
-    fn splat(x: f32) -> Self;
+    fn splat(proof: Self::Proof, x: f32) -> Self;
     /// Eight numbers.
-    fn load(x: &Eight) -> Self;
+    fn load(proof: Self::Proof, x: &Eight) -> Self;
     /// The numbers lane by lane.
     fn store(self) -> Eight;
     /// Sum.
@@ -69,12 +72,14 @@ impl ScalarLanes {
 }
 
 impl Lanes for ScalarLanes {
+    type Proof = ();
+
     #[inline(always)]
-    fn splat(x: f32) -> Self {
+    fn splat((): (), x: f32) -> Self {
         Self([x; LANES])
     }
     #[inline(always)]
-    fn load(x: &Eight) -> Self {
+    fn load((): (), x: &Eight) -> Self {
         Self(x.0)
     }
     #[inline(always)]
@@ -124,75 +129,96 @@ impl Lanes for ScalarLanes {
 }
 
 #[cfg(target_arch = "x86_64")]
-pub use wide::AvxLanes;
+pub use wide::{Avx, AvxLanes};
 
 #[cfg(target_arch = "x86_64")]
 mod wide {
-    //! SAFETY of all that is unsafe here: [`AvxLanes`] is made and used only in functions that are compiled for AVX2
-    //! and FMA, which are called only where the processor has them. Loads and stores go to memory of the right size and
-    //! alignment.
-
     use super::{Eight, Lanes};
     use std::arch::x86_64::*;
+
+    /// The processor has AVX2 and fused multiply-adds: whoever has one of these has asked it.
+    #[derive(Clone, Copy)]
+    pub struct Avx(());
+
+    impl Avx {
+        /// None where the processor has not.
+        #[inline]
+        pub fn detected() -> Option<Avx> {
+            let has = std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma");
+            has.then_some(Avx(()))
+        }
+    }
 
     /// For processors with AVX2 and fused multiply-adds.
     #[derive(Clone, Copy)]
     pub struct AvxLanes(__m256);
 
+    /// An instruction of AVX2 or FMA on values, none on memory.
+    macro_rules! instruction {
+        ($call:expr) => {
+            // SAFETY: numbers of this kind are made with an `Avx` only, and so the processor has the instruction.
+            unsafe { $call }
+        };
+    }
+
     impl Lanes for AvxLanes {
+        type Proof = Avx;
+
         #[inline(always)]
-        fn splat(x: f32) -> Self {
-            Self(unsafe { _mm256_set1_ps(x) })
+        fn splat(_: Avx, x: f32) -> Self {
+            Self(instruction!(_mm256_set1_ps(x)))
         }
         #[inline(always)]
-        fn load(x: &Eight) -> Self {
+        fn load(_: Avx, x: &Eight) -> Self {
+            // SAFETY: the `Avx` proves that there is the instruction; eight numbers are as large and aligned as it asks for.
             Self(unsafe { _mm256_load_ps(x.0.as_ptr()) })
         }
         #[inline(always)]
         fn store(self) -> Eight {
             let mut eight = Eight([0.0; 8]);
+            // SAFETY: as numbers of this kind there is the instruction; eight numbers are as large and aligned as it asks for.
             unsafe { _mm256_store_ps(eight.0.as_mut_ptr(), self.0) };
             eight
         }
         #[inline(always)]
         fn plus(self, other: Self) -> Self {
-            Self(unsafe { _mm256_add_ps(self.0, other.0) })
+            Self(instruction!(_mm256_add_ps(self.0, other.0)))
         }
         #[inline(always)]
         fn minus(self, other: Self) -> Self {
-            Self(unsafe { _mm256_sub_ps(self.0, other.0) })
+            Self(instruction!(_mm256_sub_ps(self.0, other.0)))
         }
         #[inline(always)]
         fn times(self, other: Self) -> Self {
-            Self(unsafe { _mm256_mul_ps(self.0, other.0) })
+            Self(instruction!(_mm256_mul_ps(self.0, other.0)))
         }
         #[inline(always)]
         fn times_plus(self, other: Self, more: Self) -> Self {
-            Self(unsafe { _mm256_fmadd_ps(self.0, other.0, more.0) })
+            Self(instruction!(_mm256_fmadd_ps(self.0, other.0, more.0)))
         }
         #[inline(always)]
         fn times_minus(self, other: Self, less: Self) -> Self {
-            Self(unsafe { _mm256_fmsub_ps(self.0, other.0, less.0) })
+            Self(instruction!(_mm256_fmsub_ps(self.0, other.0, less.0)))
         }
         #[inline(always)]
         fn times_from(self, other: Self, from: Self) -> Self {
-            Self(unsafe { _mm256_fnmadd_ps(self.0, other.0, from.0) })
+            Self(instruction!(_mm256_fnmadd_ps(self.0, other.0, from.0)))
         }
         #[inline(always)]
         fn least(self, other: Self) -> Self {
-            Self(unsafe { _mm256_min_ps(self.0, other.0) })
+            Self(instruction!(_mm256_min_ps(self.0, other.0)))
         }
         #[inline(always)]
         fn most(self, other: Self) -> Self {
-            Self(unsafe { _mm256_max_ps(self.0, other.0) })
+            Self(instruction!(_mm256_max_ps(self.0, other.0)))
         }
         #[inline(always)]
         fn signed_by(self, other: Self) -> Self {
-            Self(unsafe { _mm256_xor_ps(self.0, _mm256_and_ps(other.0, _mm256_set1_ps(-0.0))) })
+            Self(instruction!(_mm256_xor_ps(self.0, _mm256_and_ps(other.0, _mm256_set1_ps(-0.0)))))
         }
         #[inline(always)]
         fn is_at_most(self, other: Self) -> u32 {
-            unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0)) as u32 }
+            instruction!(_mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0))) as u32
         }
     }
 }

@@ -93,56 +93,59 @@ impl Packet {
     #[inline(always)]
     pub fn candidates<L: Lanes, const ANY: bool>(
         &self,
+        proof: L::Proof,
         frame: &SinglePrecisionRay,
         limit: f32,
         within: [f32; 2],
     ) -> (u32, u32) {
         let [a, b, c] = &self.corners;
-        let ((ax, ay), (bx, by), (cx, cy)) = (across::<L>(a, frame), across::<L>(b, frame), across::<L>(c, frame));
+        let ((ax, ay), (bx, by), (cx, cy)) =
+            (across::<L>(proof, a, frame), across::<L>(proof, b, frame), across::<L>(proof, c, frame));
         let first = cx.times_minus(by, cy.times(bx));
         let second = ax.times_minus(cy, ay.times(cx));
         let third = bx.times_minus(ay, by.times(ax));
-        let tolerance = L::splat(frame.tolerance);
-        let size = L::load(&self.size).plus(tolerance);
-        let error = size.times(L::splat(frame.error_scale));
+        let tolerance = L::splat(proof, frame.tolerance);
+        let size = L::load(proof, &self.size).plus(tolerance);
+        let error = size.times(L::splat(proof, frame.error_scale));
         let low = first.least(second).least(third).plus(error);
         let high = first.most(second).most(third).minus(error);
-        let zero = L::splat(0.0);
+        let zero = L::splat(proof, 0.0);
         let mut lanes = zero.is_at_most(low) | high.is_at_most(zero);
         if lanes == 0 {
             return (0, 0);
         }
-        let (az, bz, cz) = (along::<L>(a, frame), along::<L>(b, frame), along::<L>(c, frame));
+        let (az, bz, cz) = (along::<L>(proof, a, frame), along::<L>(proof, b, frame), along::<L>(proof, c, frame));
         let whole = first.plus(second).plus(third);
         let length = az.times(first).plus(bz.times(second)).plus(cz.times(third)).signed_by(whole);
         let whole = whole.signed_by(whole);
-        let aside = tolerance.plus(tolerance).times(whole).plus(size.times(error.times(L::splat(8.0))));
-        lanes &= length.minus(aside).is_at_most(whole.times(L::splat(limit))) & zero.is_at_most(length.plus(aside));
+        let aside = tolerance.plus(tolerance).times(whole).plus(size.times(error.times(L::splat(proof, 8.0))));
+        lanes &=
+            length.minus(aside).is_at_most(whole.times(L::splat(proof, limit))) & zero.is_at_most(length.plus(aside));
         if !ANY {
             return (lanes, 0);
         }
         let inside = error.is_at_most(first.least(second).least(third))
             | first.most(second).most(third).plus(error).is_at_most(zero);
-        let between = length.plus(aside).is_at_most(whole.times(L::splat(within[1])))
-            & whole.times(L::splat(within[0])).is_at_most(length.minus(aside));
+        let between = length.plus(aside).is_at_most(whole.times(L::splat(proof, within[1])))
+            & whole.times(L::splat(proof, within[0])).is_at_most(length.minus(aside));
         (lanes, inside & between)
     }
 }
 
 /// Coordinates of corners beside the ray.
 #[inline(always)]
-fn across<L: Lanes>(corners: &[Eight; 3], frame: &SinglePrecisionRay) -> (L, L) {
+fn across<L: Lanes>(proof: L::Proof, corners: &[Eight; 3], frame: &SinglePrecisionRay) -> (L, L) {
     let [x, y, z] = frame.axes;
-    let along = L::load(&corners[z]);
+    let along = L::load(proof, &corners[z]);
     let across = |axis: usize| {
-        let beside = L::load(&corners[axis]).minus(L::splat(frame.beside[axis]));
-        L::splat(frame.shear[axis]).times_from(along, beside)
+        let beside = L::load(proof, &corners[axis]).minus(L::splat(proof, frame.beside[axis]));
+        L::splat(proof, frame.shear[axis]).times_from(along, beside)
     };
     (across(x), across(y))
 }
 
 /// Coordinates of corners along the ray.
 #[inline(always)]
-fn along<L: Lanes>(corners: &[Eight; 3], frame: &SinglePrecisionRay) -> L {
-    L::load(&corners[frame.axes[2]]).times_minus(L::splat(frame.sign_z), L::splat(frame.base_z))
+fn along<L: Lanes>(proof: L::Proof, corners: &[Eight; 3], frame: &SinglePrecisionRay) -> L {
+    L::load(proof, &corners[frame.axes[2]]).times_minus(L::splat(proof, frame.sign_z), L::splat(proof, frame.base_z))
 }

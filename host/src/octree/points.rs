@@ -1,6 +1,8 @@
 //! Points sorted by locational code, and those around a place.
 
 use super::cube::Cube;
+#[cfg(target_arch = "x86_64")]
+use super::lanes::Avx;
 use super::{LocationalCode, MAX_DEPTH};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -141,6 +143,7 @@ impl SortedPoints {
             // Products are not rounded together with sums: the result is the same on every processor.
             #[target_feature(enable = "avx2")]
             fn within_wide(
+                _: Avx,
                 points: &SortedPoints,
                 around: &NearbyPoints,
                 places: [[f32; 3]; 2],
@@ -149,9 +152,9 @@ impl SortedPoints {
             ) {
                 points.within_by_blocks(around, places, squares, give);
             }
-            if std::arch::is_x86_feature_detected!("avx2") {
-                // SAFETY: the processor has what the function is compiled for.
-                return unsafe { within_wide(self, around, [local, normal], squares, give) };
+            if let Some(avx) = Avx::detected() {
+                // SAFETY: `avx` proves that the processor has what the function is compiled for.
+                return unsafe { within_wide(avx, self, around, [local, normal], squares, give) };
             }
         }
         self.within_by_blocks(around, [local, normal], squares, give);

@@ -94,28 +94,28 @@ impl BvhNode {
 
     /// The children that the ray may hit up to a limit, one bit each, and where it enters them.
     #[inline(always)]
-    pub fn meets<L: Lanes>(&self, frame: &SinglePrecisionRay, limit: f32) -> (u32, L) {
+    pub fn meets<L: Lanes>(&self, proof: L::Proof, frame: &SinglePrecisionRay, limit: f32) -> (u32, L) {
         let [x, y, z] = &self.bounds;
-        let near_z = near::<L>(z, 2, frame).most(L::splat(0.0));
-        let enter = near::<L>(x, 0, frame).most(near(y, 1, frame)).most(near_z);
-        let far_z = far::<L>(z, 2, frame).least(L::splat(limit));
-        let exit = far::<L>(x, 0, frame).least(far(y, 1, frame)).least(far_z);
+        let near_z = near::<L>(proof, z, 2, frame).most(L::splat(proof, 0.0));
+        let enter = near::<L>(proof, x, 0, frame).most(near(proof, y, 1, frame)).most(near_z);
+        let far_z = far::<L>(proof, z, 2, frame).least(L::splat(proof, limit));
+        let exit = far::<L>(proof, x, 0, frame).least(far(proof, y, 1, frame)).least(far_z);
         (enter.is_at_most(exit), enter)
     }
 }
 
 /// Lengths to the near sides of boxes.
 #[inline(always)]
-fn near<L: Lanes>(sides: &[Eight; 2], axis: usize, frame: &SinglePrecisionRay) -> L {
-    let side = L::load(&sides[usize::from(frame.down[axis])]);
-    side.times_plus(L::splat(frame.inverse[axis]), L::splat(frame.near[axis]))
+fn near<L: Lanes>(proof: L::Proof, sides: &[Eight; 2], axis: usize, frame: &SinglePrecisionRay) -> L {
+    let side = L::load(proof, &sides[usize::from(frame.down[axis])]);
+    side.times_plus(L::splat(proof, frame.inverse[axis]), L::splat(proof, frame.near[axis]))
 }
 
 /// Lengths to the far sides of boxes.
 #[inline(always)]
-fn far<L: Lanes>(sides: &[Eight; 2], axis: usize, frame: &SinglePrecisionRay) -> L {
-    let side = L::load(&sides[usize::from(!frame.down[axis])]);
-    side.times_plus(L::splat(frame.inverse[axis]), L::splat(frame.far[axis]))
+fn far<L: Lanes>(proof: L::Proof, sides: &[Eight; 2], axis: usize, frame: &SinglePrecisionRay) -> L {
+    let side = L::load(proof, &sides[usize::from(!frame.down[axis])]);
+    side.times_plus(L::splat(proof, frame.inverse[axis]), L::splat(proof, frame.far[axis]))
 }
 
 /// The index over items: nodes and packets.

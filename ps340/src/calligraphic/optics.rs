@@ -61,7 +61,7 @@ impl Optics {
         if !(near(stroke.start) && near(stroke.end) && finite) {
             return None;
         }
-        let (mut start, mut end) = (self.to_pixels(stroke.start), self.to_pixels(stroke.end));
+        let (mut start, mut end) = (self.in_pixels(stroke.start), self.in_pixels(stroke.end));
         let (mut first, mut last) = (self.current(stroke.intensity[0]), self.current(stroke.intensity[1]));
         if first <= 0.0 && last <= 0.0 {
             return None;
@@ -120,7 +120,7 @@ impl Optics {
 
     /// A position on the screen in pixels from the upper left corner of the picture.
     #[inline(always)]
-    fn to_pixels(&self, [x, y]: [f32; 2]) -> [f64; 2] {
+    fn in_pixels(&self, [x, y]: [f32; 2]) -> [f64; 2] {
         [f64::from(x).mul_add(self.half, self.center[0]), f64::from(-y).mul_add(self.half, self.center[1])]
     }
 

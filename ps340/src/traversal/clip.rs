@@ -147,7 +147,7 @@ impl ScreenMap {
     /// The stroke between two points of clip space that are inside; none if they have no position on the screen.
     #[inline(always)]
     fn stroke(&self, ends: [DVec4; 2], intensity: [f64; 2], color: [f32; 3]) -> Option<Stroke> {
-        let [a, b] = [self.to_screen(ends[0], intensity[0]), self.to_screen(ends[1], intensity[1])];
+        let [a, b] = [self.screen_point(ends[0], intensity[0]), self.screen_point(ends[1], intensity[1])];
         // One sum instead of six questions: all are small if they are numbers at all.
         if !(a[0] + a[1] + a[2] + b[0] + b[1] + b[2]).is_finite() {
             return None;
@@ -157,7 +157,7 @@ impl ScreenMap {
 
     /// x, y on the screen and the light of a point of clip space with w > 0.
     #[inline(always)]
-    fn to_screen(&self, p: DVec4, intensity: f64) -> [f32; 3] {
+    fn screen_point(&self, p: DVec4, intensity: f64) -> [f32; 3] {
         // One division for three quotients; its rounding vanishes in that of the result, also at the edge.
         let p = if p.w < TINY { p / TINY } else { p };
         let part = 1.0 / p.w;

@@ -17,9 +17,9 @@ fn plain_and_wide_instructions_find_the_same() {
             let ray = if i % 2 == 0 { chord } else { Ray { direction: corner - chord.origin, ..chord } };
             for t_max in [0.3, 1.0, f64::INFINITY] {
                 let hit = octree.closest(&ray, 0.0, t_max);
-                assert_eq!(nearest_by::<ScalarLanes>(&octree, &ray, [0.0, t_max], &mut WalkCount::default()), hit);
+                assert_eq!(nearest_by::<ScalarLanes>((), &octree, &ray, [0.0, t_max], &mut WalkCount::default()), hit);
                 assert_eq!(octree.occluded(&ray, 0.0, t_max), hit.is_some());
-                assert_eq!(is_any_by::<ScalarLanes>(&octree, &ray, [0.0, t_max]), hit.is_some());
+                assert_eq!(is_any_by::<ScalarLanes>((), &octree, &ray, [0.0, t_max]), hit.is_some());
                 hits += usize::from(hit.is_some());
             }
         }

@@ -73,7 +73,7 @@ impl Lattice {
     }
 
     /// The place that a point of the lattice stands for.
-    pub fn from_lattice(&self, point: DVec3) -> DVec3 {
+    pub fn position(&self, point: DVec3) -> DVec3 {
         point.to_array().map(|x| times(x, -self.power)).into()
     }
 
@@ -89,7 +89,7 @@ impl Lattice {
 
     /// Brings a mesh back to where it belongs.
     pub fn bring_back(&self, mesh: &mut Mesh) {
-        mesh.vertices.iter_mut().for_each(|vertex| *vertex = self.from_lattice(*vertex));
+        mesh.vertices.iter_mut().for_each(|vertex| *vertex = self.position(*vertex));
     }
 }
 
@@ -99,20 +99,20 @@ impl SolidError {
         match &mut self {
             SolidError::Mesh(_) | SolidError::TooManyIntersections { .. } | SolidError::BoundsNothing => {}
             SolidError::NotClosed { edges, .. } => {
-                edges.iter_mut().flatten().for_each(|end| *end = lattice.from_lattice(*end));
+                edges.iter_mut().flatten().for_each(|end| *end = lattice.position(*end));
             }
             SolidError::Open { loops } => {
                 for open in loops {
-                    open.near = lattice.from_lattice(open.near);
+                    open.near = lattice.position(open.near);
                     open.length = lattice.length(open.length);
                 }
             }
             SolidError::InsideOut { volume, near, .. } => {
                 *volume = lattice.volume(*volume);
-                *near = lattice.from_lattice(*near);
+                *near = lattice.position(*near);
             }
             SolidError::Crossing { near, .. } | SolidError::SelfIntersecting { near, .. } => {
-                *near = lattice.from_lattice(*near)
+                *near = lattice.position(*near)
             }
         }
         self
