@@ -238,9 +238,11 @@ impl Paint {
     pub fn mean_bands(&self) -> DVec3 {
         match self {
             Paint::Plain(color) => color.bands_of_reflectance(),
-            Paint::Pattern(pattern) => match &pattern.motif {
-                Motif::Image { image } => image.mean(),
-                motif => pattern.paints.iter().zip(motif.mean()).map(|(paint, part)| paint.mean_bands() * part).sum(),
+            Paint::Pattern(pattern) => match pattern.motif.image() {
+                Some(image) => image.mean(),
+                None => {
+                    pattern.paints.iter().zip(pattern.motif.mean()).map(|(paint, part)| paint.mean_bands() * part).sum()
+                }
             },
         }
     }
@@ -273,7 +275,7 @@ impl Pattern {
 
     /// Whether it has its own colors.
     pub fn is_image(&self) -> bool {
-        matches!(self.motif, Motif::Image { .. })
+        self.motif.image().is_some()
     }
 
     /// The height at a footprint, 0..=1.

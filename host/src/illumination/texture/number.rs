@@ -1,6 +1,6 @@
 //! Numbers of a surface that may change from place to place: roughness, metalness, weights.
 
-use super::{Motif, Paint, Pattern, TextureError, TextureFootprint};
+use super::{Paint, Pattern, TextureError, TextureFootprint};
 use crate::color::Color;
 use glam::DVec3;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -153,9 +153,9 @@ fn range(pattern: &Pattern, band: Band) -> [f64; 2] {
         Paint::Plain(color) => [band.of(color_bands(color)); 2],
         Paint::Pattern(pattern) => range(pattern, band),
     };
-    match &pattern.motif {
-        Motif::Image { image } => image.range().map(|bands| band.of(bands)),
-        _ => pattern.paints.iter().map(of).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]).unwrap_or([0.0, 1.0]),
+    match pattern.motif.image() {
+        Some(image) => image.range().map(|bands| band.of(bands)),
+        None => pattern.paints.iter().map(of).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]).unwrap_or([0.0, 1.0]),
     }
 }
 
@@ -211,7 +211,7 @@ impl<'de> Deserialize<'de> for NumberTexture {
 
 #[cfg(test)]
 mod tests {
-    use super::super::TextureMapping;
+    use super::super::{Motif, TextureMapping};
     use super::*;
     use crate::encoding::{Integers, decode, encode};
     use glam::{DVec2, DVec3};

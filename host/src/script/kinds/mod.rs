@@ -10,6 +10,6 @@ mod materials;
 pub(super) use curves::{CurveKind, Loops, SidesKind, Spline};
 pub(super) use lists::{Contours, Indices, Numbers, Objects, PointsKind, RowsOfNumbers};
 pub(super) use materials::{AmountKind, DistributionKind, DistributionValue, FunctionOfAngle, Reflectance};
-pub(super) use numbers::{ANY_NUMBER, Integer, Length, NumberKind, NumberOrText, NumberOrTextValue, number};
+pub(super) use numbers::{ANY_NUMBER, Integer, Length, NumberKind, number};
 pub(super) use vectors::{AxisKind, Factors, Lengths, NamedAxis, Powers, Vector};
-pub(super) use words::{Flag, ObjectKind, ScalarKind, TextKind, Word};
+pub(super) use words::{Flag, NumberOrText, NumberOrTextValue, ObjectKind, ScalarKind, TextKind, Word};

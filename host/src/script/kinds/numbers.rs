@@ -1,6 +1,5 @@
 //! Kinds of numbers.
 
-use super::words::TextKind;
 use crate::script::parameter::{HasDefault, ParameterKind};
 use rhai::Dynamic;
 use std::fmt::Display;
@@ -16,16 +15,6 @@ pub(in crate::script) struct Length;
 /// A whole number within limits, the least and the greatest.
 #[derive(Clone, Copy)]
 pub(in crate::script) struct Integer<T>(pub(in crate::script) T, pub(in crate::script) T);
-
-/// A number within limits, or a string.
-#[derive(Clone, Copy)]
-pub(in crate::script) struct NumberOrText(pub(in crate::script) f64, pub(in crate::script) f64);
-
-/// What a number or a string becomes.
-pub(in crate::script) enum NumberOrTextValue {
-    Number(f64),
-    Text(String),
-}
 
 /// Any finite number.
 pub(in crate::script) const ANY_NUMBER: NumberKind = NumberKind(f64::NEG_INFINITY, f64::INFINITY);
@@ -68,19 +57,6 @@ impl<T: TryFrom<i64> + PartialOrd + Copy + Display> ParameterKind for Integer<T>
     fn read(&self, value: &Dynamic) -> Option<T> {
         let whole = T::try_from(value.as_int().ok()?).ok();
         whole.filter(|whole| (self.0..=self.1).contains(whole))
-    }
-}
-
-impl ParameterKind for NumberOrText {
-    type Value = NumberOrTextValue;
-
-    fn words(&self) -> String {
-        format!("{} or a string", NumberKind(self.0, self.1).words())
-    }
-
-    fn read(&self, value: &Dynamic) -> Option<NumberOrTextValue> {
-        let number = NumberKind(self.0, self.1).read(value).map(NumberOrTextValue::Number);
-        number.or_else(|| TextKind.read(value).map(NumberOrTextValue::Text))
     }
 }
 

@@ -1,6 +1,6 @@
-//! Kinds of words, flags and objects.
+//! Kinds of words, flags, objects, and values of several kinds.
 
-use super::numbers::number;
+use super::numbers::{NumberKind, number};
 use crate::script::handle::Handle;
 use crate::script::parameter::{HasDefault, ParameterKind};
 use rhai::{Dynamic, ImmutableString};
@@ -20,6 +20,16 @@ pub(in crate::script) struct Flag;
 /// A number, a whole number, true or false, or a string.
 #[derive(Clone, Copy)]
 pub(in crate::script) struct ScalarKind;
+
+/// A number within limits, or a string.
+#[derive(Clone, Copy)]
+pub(in crate::script) struct NumberOrText(pub(in crate::script) f64, pub(in crate::script) f64);
+
+/// What a number or a string becomes.
+pub(in crate::script) enum NumberOrTextValue {
+    Number(f64),
+    Text(String),
+}
 
 /// One of some words, each with what it stands for.
 #[derive(Clone, Copy)]
@@ -72,6 +82,19 @@ impl ParameterKind for ScalarKind {
     fn read(&self, value: &Dynamic) -> Option<Dynamic> {
         let is_scalar = value.is_bool() || value.is_string() || number(value).is_some();
         is_scalar.then(|| value.clone())
+    }
+}
+
+impl ParameterKind for NumberOrText {
+    type Value = NumberOrTextValue;
+
+    fn words(&self) -> String {
+        format!("{} or a string", NumberKind(self.0, self.1).words())
+    }
+
+    fn read(&self, value: &Dynamic) -> Option<NumberOrTextValue> {
+        let number = NumberKind(self.0, self.1).read(value).map(NumberOrTextValue::Number);
+        number.or_else(|| TextKind.read(value).map(NumberOrTextValue::Text))
     }
 }
 
