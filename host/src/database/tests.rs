@@ -153,7 +153,7 @@ fn everything_that_ships_is_whole_and_tells_its_source() {
 #[test]
 #[cfg(not(feature = "bunny"))]
 fn a_bunny_that_was_left_out_is_told_with_the_feature() {
-    assert_eq!(shipped::names(Kind::Geometry), [""; 0]);
+    assert_eq!(shipped::names(RecordKind::Geometry), [""; 0]);
     let error = shipped::find(RecordKind::Geometry, "bunny").expect_err("it was left out").to_string();
     assert!(error.contains("feature `bunny`"), "{error}");
 }
