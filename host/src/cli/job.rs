@@ -277,8 +277,8 @@ impl Job<'_> {
         let exposure = format!("exposed by {:+.2} stops", shot.stops);
         self.note("exposure", json!(shot.stops), format_args!("{exposure}"));
         let what = "the ray-traced image of that view";
-        let (made_by, display) = ((self.source, "ray-tracing"), &self.scene.display);
-        let provenance = rendering.provenance(made_by, order.seed, display, shot.stops);
+        let display = &self.scene.display;
+        let provenance = rendering.provenance(self.source, "ray-tracing", order.seed, display, shot.stops);
         for (name, form, picture) in [
             ("raytraced.png", &exposure, &shot.shown),
             ("raytraced.exr", &"linear radiance, coverage as alpha".to_string(), &rendering.picture),

@@ -33,7 +33,8 @@ impl Packet {
     /// Packs up to eight of all triangles; `place` gives the local coordinates of a vertex.
     pub fn new(
         chosen: impl Iterator<Item = u32>,
-        (vertices, all): (&[DVec3], &[[u32; 3]]),
+        vertices: &[DVec3],
+        all: &[[u32; 3]],
         place: impl Fn(u32) -> [f32; 3],
     ) -> Self {
         // Which vertices the points are.

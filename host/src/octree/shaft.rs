@@ -90,7 +90,7 @@ impl Octree {
             return ShaftContents::Many;
         }
         let place = |vertex: u32| self.cube.local(self.vertices[vertex as usize]).as_vec3().to_array();
-        let packet = |chunk: &[u32]| Packet::new(chunk.iter().copied(), (&self.vertices, &self.triangles), place);
+        let packet = |chunk: &[u32]| Packet::new(chunk.iter().copied(), &self.vertices, &self.triangles, place);
         let packets = found.chunks(super::lanes::LANES).map(packet);
         ShaftContents::Some(Shaft { packets: packets.collect(), triangles: found.len() })
     }

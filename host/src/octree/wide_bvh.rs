@@ -281,8 +281,7 @@ impl Builder<'_> {
             let [x, y, z, _] = self.local[vertex as usize].to_array();
             [x, y, z]
         };
-        let packet =
-            |items: &[Item]| Packet::new(items.iter().map(Item::number), (self.vertices, self.triangles), place);
+        let packet = |items: &[Item]| Packet::new(items.iter().map(Item::number), self.vertices, self.triangles, place);
         let first = index.packets.len();
         index.packets.extend(items.chunks(LANES).map(packet));
         Child::packets(first..index.packets.len())

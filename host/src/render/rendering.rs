@@ -35,7 +35,8 @@ impl Rendering {
     /// - `display`: how the picture is shown, exposed by `stops`.
     pub fn provenance(
         &self,
-        (source, renderer): (&str, &str),
+        source: &str,
+        renderer: &str,
         seed: u64,
         display: &DisplayTransform,
         stops: f64,

@@ -31,7 +31,8 @@ impl Contents {
         triangle: u32,
         ray: &Ray,
         weights: [f64; 3],
-        (position, outside): (DVec3, bool),
+        position: DVec3,
+        outside: bool,
     ) -> Option<SurfacePoint> {
         let object = self.object(triangle);
         let (surface, is_turned) = self.exact.surface(object.surfaces_from? + triangle - object.first)?;

@@ -151,9 +151,9 @@ impl Network {
             let object = self.clocks[i];
             let instance = &self.instances[object.index()];
             let Some(clock) = instance.row.and_then(|row| row.clock) else { continue };
-            let ports = self.ports.get_mut(instance.ports).split_at_mut(usize::from(instance.inputs));
+            let (inputs, memory) = self.ports.get_mut(instance.ports).split_at_mut(usize::from(instance.inputs));
             match clock(
-                &mut Firing::new(object, instance.size, ports, &mut outbox, effects, &mut self.string_bytes),
+                &mut Firing::new(object, instance.size, inputs, memory, &mut outbox, effects, &mut self.string_bytes),
                 elapsed,
             ) {
                 Ok(0) => {}
@@ -189,8 +189,15 @@ impl Network {
         observer.fires(object);
         let (inputs, memory) = self.ports.get_mut(instance.ports).split_at_mut(usize::from(instance.inputs));
         let leaving = if instance.strings && self.string_bytes > 0 { leaving_bytes(inputs) } else { 0 };
-        let ports = (&mut *inputs, memory);
-        match (row.behaviour)(&mut Firing::new(object, instance.size, ports, outbox, effects, &mut self.string_bytes)) {
+        match (row.behaviour)(&mut Firing::new(
+            object,
+            instance.size,
+            inputs,
+            memory,
+            outbox,
+            effects,
+            &mut self.string_bytes,
+        )) {
             Ok(()) => {
                 self.string_bytes -= leaving;
                 let active = usize::from(instance.active);

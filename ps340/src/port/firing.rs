@@ -40,7 +40,8 @@ impl<'a> Firing<'a> {
     pub fn new(
         object: ObjectId,
         size: u16,
-        (inputs, memory): (&'a mut [Port], &'a mut [Port]),
+        inputs: &'a mut [Port],
+        memory: &'a mut [Port],
         outbox: &'a mut Outbox,
         effects: &'a mut Vec<Effect>,
         string_bytes: &'a mut usize,

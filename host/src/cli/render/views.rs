@@ -157,7 +157,7 @@ impl ViewBatch<'_> {
         let renderer = self.arguments.renderer.row().option;
         let source = stem(&self.arguments.script);
         let seed = self.prepared.settings.image.seed;
-        let provenance = rendering.provenance((source, renderer), seed, self.display, self.stops);
+        let provenance = rendering.provenance(source, renderer, seed, self.display, self.stops);
         match self.arguments.denoise {
             true => provenance.with("Denoiser", "first-order regression"),
             false => provenance,

@@ -55,7 +55,7 @@ struct Way {
 
 /// Radiance by a random walk with collisions sampled against the densest air (delta tracking), at one node, under a sun
 /// of irradiance 1.
-fn walked(air: &Air, (eye, view, sun): (f64, DVec3, DVec3), albedo: f64, count: u32) -> f64 {
+fn walked(air: &Air, eye: f64, view: DVec3, sun: DVec3, albedo: f64, count: u32) -> f64 {
     let columns = Columns::new();
     let mut stream = RandomStream::new(7, 11);
     let taken = |amounts: &[f64; 3]| extinction(&air.extinction, amounts, GREEN);
@@ -129,7 +129,7 @@ fn light_that_is_scattered_often_is_that_of_a_random_walk() {
         let [elevation, angle, around] = [elevation, zenith, turn].map(f64::to_radians);
         let view = DVec3::new(angle.sin() * around.cos(), angle.cos(), angle.sin() * around.sin());
         let sun = DVec3::new(elevation.cos(), elevation.sin(), 0.0);
-        let expected = walked(&air, (0.05, view, sun), 0.3, 40_000) * air.sun[GREEN];
+        let expected = walked(&air, 0.05, view, sun, 0.3, 40_000) * air.sun[GREEN];
         let found = scattering.radiance(0.05, view, sun)[GREEN];
         assert!((found / expected - 1.0).abs() < most, "{elevation} {zenith} {turn}: {found} {expected}");
     }

@@ -40,7 +40,8 @@ impl Contacts {
     /// - `finest`: a length. `takes_part`: whether a triangle is asked for.
     pub(super) fn new(
         visibility: &VisibilityTester<'_>,
-        (diagonal, finest): (f64, f64),
+        diagonal: f64,
+        finest: f64,
         takes_part: impl Fn(u32) -> bool + Sync,
     ) -> Contacts {
         let prepared = visibility.world.appearance.prepared;

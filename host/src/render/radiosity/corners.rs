@@ -112,7 +112,7 @@ impl ElementCorners {
             for i in if node.is_cluster() { 0..0 } else { 0..3 } {
                 let j = (i + 1) % 3;
                 let ends = [(node.corners[i], numbers[i]), (node.corners[j], numbers[j])];
-                self.hang(ends, (node.normal, *like), &mut edges);
+                self.hang(ends, node.normal, *like, &mut edges);
             }
         }
         edges.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
@@ -123,7 +123,8 @@ impl ElementCorners {
     fn hang(
         &self,
         [(from, a), (to, b)]: [(DVec3, u32); 2],
-        (normal, like): (DVec3, f64),
+        normal: DVec3,
+        like: f64,
         edges: &mut Vec<(f64, [u32; 3])>,
     ) {
         let middle = 0.5 * (from + to);
@@ -132,7 +133,7 @@ impl ElementCorners {
             return;
         }
         edges.push((from.distance(to), [number, a, b]));
-        self.hang([(from, a), (middle, number)], (normal, like), edges);
-        self.hang([(middle, number), (to, b)], (normal, like), edges);
+        self.hang([(from, a), (middle, number)], normal, like, edges);
+        self.hang([(middle, number), (to, b)], normal, like, edges);
     }
 }

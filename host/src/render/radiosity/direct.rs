@@ -93,9 +93,11 @@ impl VisibilityTester<'_> {
     /// - `corners`: what is known already. `may_be_divided`: whether it is longer than the finest.
     pub(super) fn external_light(
         &self,
-        (patch, node): (&RadiosityPatch, &HierarchyNode),
+        patch: &RadiosityPatch,
+        node: &HierarchyNode,
         corners: Option<[ExternalLight; 3]>,
-        (exitance, shadows): (Option<Exitance<'_>>, bool),
+        exitance: Option<Exitance<'_>>,
+        shadows: bool,
         may_be_divided: bool,
     ) -> (CornerLight, ExternalLight) {
         if node.is_dark {
@@ -104,7 +106,7 @@ impl VisibilityTester<'_> {
         }
         let at = |point: DVec3| {
             let point = point + (node.middle - point) * INWARDS;
-            let extra = self.exitance((patch, point), exitance);
+            let extra = self.exitance(patch, point, exitance);
             let direct = match may_be_divided {
                 true => self.light_at([point, node.normal], shadows),
                 false => self.light_roughly([point, node.normal], shadows, 0),
@@ -129,11 +131,7 @@ impl VisibilityTester<'_> {
     }
 
     /// Exitance from elsewhere at a point of a patch, in the lanes that there are.
-    pub(super) fn exitance(
-        &self,
-        (patch, point): (&RadiosityPatch, DVec3),
-        exitance: Option<Exitance<'_>>,
-    ) -> Channels {
+    pub(super) fn exitance(&self, patch: &RadiosityPatch, point: DVec3, exitance: Option<Exitance<'_>>) -> Channels {
         let lanes = self.world.appearance.wavelengths.lanes();
         let extra = exitance.map_or(Channels::ZERO, |of| of(patch.triangle, patch.outside, point));
         Channels(std::array::from_fn(|lane| if lane < lanes { extra.0[lane] } else { 0.0 }))
@@ -197,10 +195,10 @@ impl VisibilityTester<'_> {
                 for wavelength_set in 0..sets {
                     let transmittance = match (shadows, wavelength_set) {
                         (false, _) => Channels::ONE,
-                        (true, 0) => self.world.transmittance(&ray, t_max, (index, None), (0, 0.0)).0,
+                        (true, 0) => self.world.transmittance(&ray, t_max, index, None, 0, 0.0).0,
                         (true, _) if !appearance.has_passable => Channels::ONE,
                         (true, wavelength_set) => {
-                            self.world.transmittance(&ray, t_max, (index, None), (wavelength_set, 0.0)).0
+                            self.world.transmittance(&ray, t_max, index, None, wavelength_set, 0.0).0
                         }
                     };
                     if transmittance == Channels::ZERO {

@@ -44,7 +44,8 @@ impl<'a> Elements<'a> {
     pub(super) fn new(
         hierarchy: Hierarchy,
         visibility: &VisibilityTester<'_>,
-        (exitance, shadows): (Option<Exitance<'a>>, bool),
+        exitance: Option<Exitance<'a>>,
+        shadows: bool,
         finest: f64,
     ) -> Elements<'a> {
         let mut elements = Elements {
@@ -142,8 +143,7 @@ impl<'a> Elements<'a> {
         }
         let patch = &self.hierarchy.patches[node.patch as usize];
         let divisible = self.may_divide(node);
-        let (around, mean) =
-            visibility.external_light((patch, node), corners, (self.exitance, self.shadows), divisible);
+        let (around, mean) = visibility.external_light(patch, node, corners, self.exitance, self.shadows, divisible);
         Known { reflectance: reflectance(visibility, patch, (node.corners, node.middle)), mean, corner_light: around }
     }
 
@@ -166,7 +166,7 @@ impl<'a> Elements<'a> {
             let area = normal_and_area(patch.corners).1;
             let middle = patch.middle();
             reflected += reflectance(visibility, patch, (patch.corners, middle)) * area;
-            extra += visibility.exitance((patch, middle), self.exitance) * area;
+            extra += visibility.exitance(patch, middle, self.exitance) * area;
             all += area;
         }
         let mean = ExternalLight { direct, extra: extra * f64::recip(all) };

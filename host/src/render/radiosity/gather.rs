@@ -132,7 +132,7 @@ impl<'g> Gatherer<'g, '_> {
                         continue;
                     }
                     let is_little = factor * sent[other as usize].max() < LITTLE * self.error;
-                    let seen = if is_clear { 1.0 } else { self.visible_part((number as u32, from), other, is_little) };
+                    let seen = if is_clear { 1.0 } else { self.visible_part(number as u32, from, other, is_little) };
                     if seen > 0.0 {
                         found.push((other, (factor * seen) as f32));
                     }
@@ -173,7 +173,7 @@ impl<'g> Gatherer<'g, '_> {
     }
 
     /// The part of a node that is seen from a corner.
-    fn visible_part(&self, (number, from): (u32, [DVec3; 2]), other: u32, is_little: bool) -> f64 {
+    fn visible_part(&self, number: u32, from: [DVec3; 2], other: u32, is_little: bool) -> f64 {
         let points = self.hierarchy.points(other);
         let (mut seen, mut all) = (0.0, 0.0);
         // The point of it that is tested differs from pair to pair.

@@ -21,12 +21,13 @@ pub(super) fn lit_hierarchy(
     visibility: &VisibilityTester<'_>,
     patches: Vec<RadiosityPatch>,
     contacts: &Contacts,
-    (exitance, shadows): (Option<Exitance<'_>>, bool),
+    exitance: Option<Exitance<'_>>,
+    shadows: bool,
     [finest, coarsest]: [f64; 2],
 ) -> Hierarchy {
     let mut all = Hierarchy::new(patches, finest);
     all.cut(contacts, finest);
-    let is_dark = dark(visibility, &all, (exitance, shadows), coarsest);
+    let is_dark = dark(visibility, &all, exitance, shadows, coarsest);
     all.darken(&is_dark);
     let is_lit = |patch: usize| !all.nodes[all.node_of[patch] as usize].is_dark;
     if (0..all.patches.len()).all(is_lit) {
@@ -52,7 +53,8 @@ pub(super) fn lit_hierarchy(
 fn dark(
     visibility: &VisibilityTester<'_>,
     hierarchy: &Hierarchy,
-    (exitance, shadows): (Option<Exitance<'_>>, bool),
+    exitance: Option<Exitance<'_>>,
+    shadows: bool,
     coarsest: f64,
 ) -> Vec<bool> {
     let nodes = &hierarchy.nodes;
@@ -136,7 +138,8 @@ fn element(hierarchy: &Hierarchy, patch_of: &[[u32; 2]], seen: RayTarget) -> u32
 pub(super) fn leaf_visibility(
     visibility: &VisibilityTester<'_>,
     elements: &Elements<'_>,
-    (leaves, row): (&[u32], Vec<f64>),
+    leaves: &[u32],
+    row: Vec<f64>,
     directions: u32,
 ) -> LeafVisibility {
     let directions = directions.max(1);

@@ -99,15 +99,15 @@ impl Radiosity {
         let diagonal = prepared.bounds.diagonal();
         let finest = (settings.finest * diagonal).max(f64::MIN_POSITIVE);
         let lengths = [finest, COARSEST * finest];
-        let contacts = Contacts::new(&visibility, (diagonal, finest), |t| {
+        let contacts = Contacts::new(&visibility, diagonal, finest, |t| {
             plan.includes_object(prepared.object_of[t as usize] as usize)
         });
         let patches = patches(prepared, plan, &visibility);
-        let hierarchy = lit_patches::lit_hierarchy(&visibility, patches, &contacts, (exitance, shadows), lengths);
+        let hierarchy = lit_patches::lit_hierarchy(&visibility, patches, &contacts, exitance, shadows, lengths);
         if hierarchy.nodes.is_empty() {
             return Ok(Radiosity { light: SurfaceLight::dark(prepared), report: RadiosityReport::default() });
         }
-        let mut elements = Elements::new(hierarchy, &visibility, (exitance, shadows), finest);
+        let mut elements = Elements::new(hierarchy, &visibility, exitance, shadows, finest);
         let mean = elements.mean_irradiance();
         elements.divide_where_light_varies(&visibility, BENT * settings.error * mean, lengths[1]);
         let mut links: Vec<AssessedLink> = Vec::new();
@@ -125,11 +125,11 @@ impl Radiosity {
             let corners = is_last.then(|| ElementCorners::new(prepared, &elements.hierarchy, &leaves));
             let views = corners.as_ref().map(|corners| gatherer.views(&links, corners, &elements.sent));
             let leaf_visibility = views.as_ref().map(|views| {
-                lit_patches::leaf_visibility(&visibility, &elements, (&leaves, views.rows()), settings.directions)
+                lit_patches::leaf_visibility(&visibility, &elements, &leaves, views.rows(), settings.directions)
             });
             let tolerance = if is_last { settings.tolerance } else { 1e-2 };
             let last = leaf_visibility.as_ref().zip(views.as_ref());
-            let (irradiance, light) = light(&elements, &links, last, (tolerance, &stopped), &mut report)?;
+            let (irradiance, light) = light(&elements, &links, last, tolerance, &stopped, &mut report)?;
             elements.take(&leaves, &irradiance);
             (watch.progress)(Progress::of(2 * round + 2, 2 * ROUNDS, "rounds"));
             if let (Some(corners), Some(leaf_visibility)) = (corners, leaf_visibility) {
@@ -141,7 +141,7 @@ impl Radiosity {
         report.links = links.len();
         let light = match at_corners {
             Some((corners, light, is_dark)) => {
-                SurfaceLight::new(prepared, elements, (&leaves, &is_dark), (&corners, &light))
+                SurfaceLight::new(prepared, elements, &leaves, &is_dark, &corners, &light)
             }
             None => SurfaceLight::dark(prepared),
         };
@@ -184,7 +184,8 @@ fn light(
     elements: &Elements<'_>,
     assessed: &[AssessedLink],
     last: Option<(&LeafVisibility, &CornerViews<'_>)>,
-    (tolerance, stopped): (f64, &dyn Fn() -> bool),
+    tolerance: f64,
+    stopped: &dyn Fn() -> bool,
     report: &mut RadiosityReport,
 ) -> Result<(Vec<Channels>, Vec<Channels>), RenderError> {
     let links: Vec<ExchangeLink> = assessed.iter().map(|one| one.link).filter(|link| link.exchange > 0.0).collect();

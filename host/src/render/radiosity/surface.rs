@@ -57,8 +57,10 @@ impl SurfaceLight {
     pub(super) fn new(
         prepared: &Prepared,
         elements: Elements<'_>,
-        (leaves, is_dark): (&[u32], &[bool]),
-        (shared, indirect): (&ElementCorners, &[Channels]),
+        leaves: &[u32],
+        is_dark: &[bool],
+        shared: &ElementCorners,
+        indirect: &[Channels],
     ) -> SurfaceLight {
         let Elements { hierarchy, corner_light: around, direct: lit, .. } = elements;
         let mut patch_of = vec![[NONE; 2]; prepared.triangles.len()];

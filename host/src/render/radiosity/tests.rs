@@ -181,7 +181,7 @@ fn the_hierarchy_gives_what_a_full_matrix_gives() {
     let visibility = VisibilityTester::new(&world, None);
     let inside: Vec<RadiosityPatch> =
         patches(&room, &plan, &visibility).into_iter().filter(|patch| !patch.outside).collect();
-    let mut elements = Elements::new(Hierarchy::new(inside, 0.1), &visibility, (None, true), 0.1);
+    let mut elements = Elements::new(Hierarchy::new(inside, 0.1), &visibility, None, true, 0.1);
     elements.divide_where_light_varies(&visibility, f64::INFINITY, 0.6);
     let mut links = Vec::new();
     let mut found = Vec::new();
@@ -197,7 +197,7 @@ fn the_hierarchy_gives_what_a_full_matrix_gives() {
         let corners = ElementCorners::new(&room, &elements.hierarchy, &leaves);
         let views = gatherer.views(&links, &corners, &elements.sent);
         let last = Some((&ones, &views));
-        let solved = light(&elements, &links, last, (1e-9, &|| false), &mut report).expect("a solution");
+        let solved = light(&elements, &links, last, 1e-9, &|| false, &mut report).expect("a solution");
         found.push((links.len(), solved.0));
     }
     let leaves = elements.hierarchy.leaves();

@@ -59,7 +59,7 @@ impl<'a> VisibilityTester<'a> {
     pub(super) fn transmittance(&self, [from, from_normal]: [DVec3; 2], [to, to_normal]: [DVec3; 2]) -> f64 {
         let origin = from + from_normal * self.clearance;
         let direction = to + to_normal * self.clearance - origin;
-        let transmittance = self.world.transmittance(&Ray { origin, direction }, 1.0, (usize::MAX, None), (0, 0.0)).0;
+        let transmittance = self.world.transmittance(&Ray { origin, direction }, 1.0, usize::MAX, None, 0, 0.0).0;
         let lanes = self.world.appearance.wavelengths.lanes();
         transmittance.0[..lanes].iter().sum::<f64>() / lanes as f64
     }

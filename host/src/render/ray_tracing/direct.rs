@@ -122,7 +122,7 @@ impl<'a> DirectLighting<'a> {
         let (ray, t_max) = self.ray(vertex, index, light_sample, light.z > 0.0);
         let occluders = self.world.occluders(ray.origin, index);
         let (transmittance, is_cleared) =
-            self.world.transmittance(&ray, t_max, (index, occluders), (context.wavelength_set, vertex.sampler.time));
+            self.world.transmittance(&ray, t_max, index, occluders, context.wavelength_set, vertex.sampler.time);
         match is_cleared {
             // A further path segment would be refracted, and bring nothing.
             true => whole.map(|value| value * light_sample.irradiance * light.z.abs() * transmittance),

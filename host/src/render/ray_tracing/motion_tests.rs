@@ -16,7 +16,7 @@ fn plate(size: f64, at: DVec3, reflectance: f64) -> Object {
 }
 
 /// Objects, of which one moves, under ambient light alone: radiance is reflectance.
-fn ambient(objects: Vec<Object>, (index, motion): (u32, Motion), side: u32) -> Scene {
+fn ambient(objects: Vec<Object>, index: u32, motion: Motion, side: u32) -> Scene {
     let mut scene = Scene { ambient: DVec3::ONE, motions: vec![(index, motion)], ..scene(objects, Vec::new(), side) };
     scene.settings.image.samples = 256;
     scene
@@ -53,7 +53,7 @@ fn compare(rendering: &Rendering, mean: impl Fn(f64, f64) -> f64) {
 fn a_moving_edge_is_a_linear_ramp() {
     // The right edge goes from x = -1/2 to x = 1/2, in a picture from -1 to 1.
     let object = plate(20.0, DVec3::new(-10.0, 0.0, 0.0), 0.8);
-    let scene = ambient(vec![object], (0, Motion { by: DVec3::X, ..STILL }), 64);
+    let scene = ambient(vec![object], 0, Motion { by: DVec3::X, ..STILL }, 64);
     // A point is covered from when the edge has passed it.
     let share = |from: f64, to: f64| ramp(0.5 - to, 0.5 - from);
     let rendering = trace(&scene, Some(from_above(1.0)), false, 2);
@@ -66,7 +66,7 @@ fn a_moving_edge_is_a_linear_ramp() {
 fn the_time_in_which_the_shutter_is_open_scales_the_ramp() {
     for shutter in [0.0, 0.25] {
         let mut scene =
-            ambient(vec![plate(20.0, DVec3::new(-10.0, 0.0, 0.0), 1.0)], (0, Motion { by: DVec3::X, ..STILL }), 64);
+            ambient(vec![plate(20.0, DVec3::new(-10.0, 0.0, 0.0), 1.0)], 0, Motion { by: DVec3::X, ..STILL }, 64);
         scene.settings.geometry.shutter = shutter;
         let rendering = trace(&scene, Some(from_above(1.0)), false, 2);
         let blurred = (0..64).filter(|x| (0.01..0.99).contains(&red(&rendering, *x, 31))).count();
@@ -76,7 +76,7 @@ fn the_time_in_which_the_shutter_is_open_scales_the_ramp() {
 
 #[test]
 fn a_square_that_turns_by_a_right_angle_covers_as_much_as_the_circle_says() {
-    let scene = ambient(vec![plate(1.0, DVec3::ZERO, 1.0)], (0, Motion { angle: FRAC_PI_2, ..STILL }), 64);
+    let scene = ambient(vec![plate(1.0, DVec3::ZERO, 1.0)], 0, Motion { angle: FRAC_PI_2, ..STILL }, 64);
     let rendering = trace(&scene, Some(from_above(1.0)), false, 2);
     for x in 32..64 {
         let at = (f64::from(x) + 0.5 - 32.0) / 32.0;
@@ -122,7 +122,7 @@ fn a_rising_mirror_shows_an_edge_as_a_ramp() {
     let mirror = object(Shape::Ground { size: 20.0 }, tilted, mirror(1.0));
     let wall = Shape::from(Primitive::Box { size: DVec3::new(0.5, 50.0, 50.0) });
     let wall = object(wall, DMat4::from_translation(DVec3::new(-30.0, 25.0, 0.0)), diffuse(1.0));
-    let scene = ambient(vec![wall, mirror], (1, Motion { by: DVec3::Y, ..STILL }), 64);
+    let scene = ambient(vec![wall, mirror], 1, Motion { by: DVec3::Y, ..STILL }, 64);
     compare(&trace(&scene, Some(from_above(1.0)), false, 2), |from, to| ramp(from + 0.5, to + 0.5));
 }
 
@@ -170,9 +170,9 @@ fn what_emits_cannot_move_and_nothing_moves_twice() {
     let mut lamp = plate(1.0, DVec3::ZERO, 0.5);
     lamp.material.as_mut().expect("given").emission = Color::grey(1.0);
     let failed = |scene: &Scene| Prepared::new(scene).expect_err("it is refused").to_string();
-    let problem = failed(&ambient(vec![lamp], (0, STILL), 8));
+    let problem = failed(&ambient(vec![lamp], 0, STILL, 8));
     assert!(problem.contains("cannot move"), "{problem}");
-    let mut twice = ambient(vec![plate(1.0, DVec3::ZERO, 0.5)], (0, STILL), 8);
+    let mut twice = ambient(vec![plate(1.0, DVec3::ZERO, 0.5)], 0, STILL, 8);
     twice.motions.push((0, STILL));
     assert!(failed(&twice).contains("two motions"));
     twice.motions = vec![(3, STILL)];

@@ -289,7 +289,7 @@ impl<'a> PathTracer<'a> {
                     }
                     result.covered = true;
                     let counting = &mut SampleRecord { counts, log: &mut log, result: &mut result };
-                    self.scatter(segment, &interaction, (wavelength_set, sampler), counting, waiting);
+                    self.scatter(segment, &interaction, wavelength_set, sampler, counting, waiting);
                 }
             }
         }
@@ -301,7 +301,8 @@ impl<'a> PathTracer<'a> {
         &self,
         mut segment: PathSegment,
         interaction: &SurfaceInteraction<'_>,
-        (wavelength_set, sampler): (usize, &PathSampler),
+        wavelength_set: usize,
+        sampler: &PathSampler,
         SampleRecord { counts, log, result }: &mut SampleRecord<'_, '_>,
         waiting: &mut Vec<PathSegment>,
     ) {
@@ -353,8 +354,7 @@ impl<'a> PathTracer<'a> {
         };
         if segment.for_lights {
             let sample = bsdf.straight_sample(&context);
-            waiting
-                .extend(sample.and_then(|sample| self.straight_segment(&segment, interaction, (sample, 0), sampler)));
+            waiting.extend(sample.and_then(|sample| self.straight_segment(&segment, interaction, sample, 0, sampler)));
             return;
         }
         if segment.records_features {
@@ -404,7 +404,8 @@ impl<'a> PathTracer<'a> {
             let (light, error) = photons.radiance_estimate(
                 interaction,
                 &vertex.context,
-                (segment.throughput, segment.lane.is_some()),
+                segment.throughput,
+                segment.lane.is_some(),
                 segment.history != PathHistory::NoBroad,
             );
             let first = segment.history.extended(true).extended(false).class();
@@ -493,7 +494,7 @@ impl<'a> PathTracer<'a> {
     ) -> Option<PathSegment> {
         let PathVertex { interaction, frame, context, sampler, clamp_value, lane_throughput, .. } = *vertex;
         if sample.is_straight {
-            return self.straight_segment(segment, interaction, (sample, branch), &sampler);
+            return self.straight_segment(segment, interaction, sample, branch, &sampler);
         }
         let through = sample.light.z < 0.0;
         let parts_wavelengths = through && segment.lane.is_none() && interaction.disperses();
@@ -564,7 +565,8 @@ impl<'a> PathTracer<'a> {
         &self,
         segment: &PathSegment,
         interaction: &SurfaceInteraction<'_>,
-        (sample, branch): (BsdfSample, u32),
+        sample: BsdfSample,
+        branch: u32,
         sampler: &PathSampler,
     ) -> Option<PathSegment> {
         let is_last = segment.depth >= self.depth;

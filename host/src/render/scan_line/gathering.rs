@@ -104,7 +104,8 @@ impl<'a> Shader<'a> {
         surface: &PixelSurface,
         parts: impl Iterator<Item = &'p SampleFragment>,
         pixel: &StripPixel,
-        (interactions, last): (&mut Vec<PixelInteraction<'a>>, &mut Option<PixelInteraction<'a>>),
+        interactions: &mut Vec<PixelInteraction<'a>>,
+        last: &mut Option<PixelInteraction<'a>>,
     ) -> Option<usize> {
         let part = f64::from(surface.count).recip();
         let middle = surface.sum.map(|sum| sum * part);

@@ -151,12 +151,20 @@ impl<'a> ScanLine<'a> {
     }
 
     /// The shadow volumes of a lamp.
-    fn shadows(&self, picture: (&Screen, &ScreenTriangles<'_>, &Reach<'_>), bands: [usize; 2]) -> Vec<Shadow> {
+    ///
+    /// - `bands`: scan lines in all, and how many bands they are divided into.
+    fn shadows(
+        &self,
+        screen: &Screen,
+        facets: &ScreenTriangles<'_>,
+        reach: &Reach<'_>,
+        bands: [usize; 2],
+    ) -> Vec<Shadow> {
         if !self.plan.needs(Stage::Shadows) {
             return Vec::new();
         }
         let groups = self.group_transmittance.len();
-        let shadow = |lamp: &LampPoint| Shadow::new(&self.casters, lamp.position, picture, bands, groups);
+        let shadow = |lamp: &LampPoint| Shadow::new(&self.casters, lamp.position, screen, facets, reach, bands, groups);
         self.lamps.par_iter().map(shadow).collect()
     }
 
@@ -207,8 +215,10 @@ impl<'a> ScanLine<'a> {
 
     fn draw(
         &self,
-        (film, picture): (&mut Film, &mut Picture),
-        (view, order): (&View, &RenderOrder),
+        film: &mut Film,
+        picture: &mut Picture,
+        view: &View,
+        order: &RenderOrder,
         stopped: &(dyn Fn() -> bool + Sync),
         watch: &Watch<'_>,
     ) -> Result<(SpanCounts, bool), RenderError> {
@@ -225,9 +235,9 @@ impl<'a> ScanLine<'a> {
         let rows = (MOST_LINES / samples as usize).max(1);
         let lines = rows * samples as usize;
         let bands = (order.height as usize).div_ceil(rows);
-        let facets = ScreenTriangles::new(prepared, (&self.triangles, &self.passable), &screen, lines, bands);
+        let facets = ScreenTriangles::new(prepared, &self.triangles, &self.passable, &screen, lines, bands);
         let reach = Reach::new(&prepared.bounds, &screen);
-        let shadows = self.shadows((&screen, &facets, &reach), [lines, bands]);
+        let shadows = self.shadows(&screen, &facets, &reach, [lines, bands]);
         let enclosed = self.enclosed(&shadows);
         let is_parallel = matches!(screen.viewpoint, Viewpoint::Towards(_));
         let work = PictureWork {
@@ -285,7 +295,7 @@ impl<'a> PictureWork<'a> {
             self.facets.rasterize(band, &lines, strip);
             drawn.surfaces += strip.spans;
             for (shadow, counts) in self.shadows.iter().zip(counts.iter_mut()) {
-                drawn.shadows += shadow.count((&scan.casters, self.handed), band, &lines, strip, counts);
+                drawn.shadows += shadow.count(&scan.casters, self.handed, band, &lines, strip, counts);
             }
             for row in range.start / samples..range.end.div_ceil(samples) {
                 let from = range.start.max(row * samples);
@@ -420,8 +430,7 @@ impl Renderer for ScanLine<'_> {
         let stopped = || watch.is_cancelled() || late();
         let mut film = Film::untouched(order.width, order.height)?;
         let mut picture = Picture::new(order.width, order.height)?;
-        let (spans, complete) =
-            pool.install(|| self.draw((&mut film, &mut picture), (view, order), &stopped, watch))?;
+        let (spans, complete) = pool.install(|| self.draw(&mut film, &mut picture, view, order, &stopped, watch))?;
         let (seconds, threads) = (start.elapsed().as_secs_f64(), pool.current_num_threads());
         Ok(Rendering {
             picture,

@@ -2,7 +2,7 @@
 
 use super::lamp::LampPoint;
 use super::shader::{LampContribution, PixelScratch, SampleSight, Shader};
-use super::surfaces::{PixelInteraction, PixelSurface, SampleFragment, StripPixel};
+use super::surfaces::{PixelInteraction, SampleFragment, StripPixel};
 use super::visibility::{NONE, Strip};
 use crate::color::Channels;
 use crate::illumination::optics::{InterfaceIndices, InteriorMedium, ShadingContext};
@@ -31,9 +31,9 @@ impl<'a> Shader<'a> {
             return tally.add_alike(&sample, pixel.count() as u32);
         }
         self.gather(pixel, strip, scratch);
-        self.find_visible(pixel, (strip, counts), scratch);
-        let PixelScratch { surfaces, parts, interactions, mixtures, contributions: lit, samples, .. } = scratch;
+        self.find_visible(pixel, strip, counts, scratch);
         for wavelength_set in 0..self.appearance.wavelengths.count() {
+            let PixelScratch { surfaces, interactions, mixtures, contributions: lit, .. } = &mut *scratch;
             for surface in surfaces.iter_mut() {
                 let Some(index) = surface.interaction else { continue };
                 let interaction = &interactions[index];
@@ -49,16 +49,10 @@ impl<'a> Shader<'a> {
                     lit.radiance = self.lamp_radiance(lit, interaction, &context);
                 }
             }
-            for i in 0..samples.len() {
-                if samples[i].like == i {
-                    let light = self.sample(
-                        (surfaces, interactions, lit),
-                        (samples, parts),
-                        (strip, counts),
-                        (pixel, i),
-                        wavelength_set,
-                    );
-                    samples[i].light += self.appearance.wavelengths.to_srgb(wavelength_set, light);
+            for i in 0..scratch.samples.len() {
+                if scratch.samples[i].like == i {
+                    let light = self.sample(scratch, strip, counts, pixel, i, wavelength_set);
+                    scratch.samples[i].light += self.appearance.wavelengths.to_srgb(wavelength_set, light);
                 }
             }
         }
@@ -66,19 +60,14 @@ impl<'a> Shader<'a> {
     }
 
     /// Finds what the samples of a pixel see, by the light of which lamps, and which of them get the same light.
-    fn find_visible(
-        &self,
-        pixel: &StripPixel<'_>,
-        (strip, counts): (&Strip, &[Vec<i32>]),
-        scratch: &mut PixelScratch<'a>,
-    ) {
+    fn find_visible(&self, pixel: &StripPixel<'_>, strip: &Strip, counts: &[Vec<i32>], scratch: &mut PixelScratch<'a>) {
         let PixelScratch { surfaces, parts, interactions, mixtures, contributions: lit, samples, last } = scratch;
         interactions.clear();
         mixtures.clear();
         lit.clear();
         for (index, surface) in surfaces.iter_mut().enumerate() {
             let own = || parts.iter().filter(|part| part.surface == index);
-            surface.interaction = self.find_interaction(surface, own(), pixel, (interactions, last));
+            surface.interaction = self.find_interaction(surface, own(), pixel, interactions, last);
             let begin = lit.len();
             if let Some(interaction) = surface.interaction.map(|interaction| &interactions[interaction]) {
                 mixtures.push(
@@ -88,7 +77,7 @@ impl<'a> Shader<'a> {
                         .then(|| interaction.bsdf.texture_mixture(&self.footprint(interaction))),
                 );
                 let is_dark = |lit: &LampContribution| {
-                    own().all(|part| self.is_shaded(lit, counts, (part.fragment, strip), interaction.triangle))
+                    own().all(|part| self.is_shaded(lit, counts, part.fragment, strip, interaction.triangle))
                 };
                 lit.extend(self.lights(interaction).filter(|lit| !is_dark(lit)));
             }
@@ -177,7 +166,7 @@ impl<'a> Shader<'a> {
             interaction.bsdf.is_textured().then(|| interaction.bsdf.texture_values(&self.footprint(interaction), 0));
         let context = self.context(interaction, 0, texture_values.as_ref().map_or(&[], |painting| &painting[..]));
         let mut sum = self.unlit_radiance(interaction, &context);
-        for lit in self.lights(interaction).filter(|lit| !self.is_shaded(lit, counts, (pixel.first, strip), triangle)) {
+        for lit in self.lights(interaction).filter(|lit| !self.is_shaded(lit, counts, pixel.first, strip, triangle)) {
             sum += self.lamp_radiance(&lit, interaction, &context);
         }
         let radiance = self.appearance.wavelengths.to_srgb(0, sum);
@@ -211,15 +200,17 @@ impl<'a> Shader<'a> {
             })
     }
 
-    /// The radiance of one sample.
+    /// The radiance of the sample `i` of a pixel.
     fn sample(
         &self,
-        (surfaces, interactions, lit): (&[PixelSurface], &[PixelInteraction<'a>], &[LampContribution]),
-        (samples, parts): (&[SampleSight], &[SampleFragment]),
-        (strip, counts): (&Strip, &[Vec<i32>]),
-        (pixel, i): (&StripPixel<'_>, usize),
+        scratch: &PixelScratch<'a>,
+        strip: &Strip,
+        counts: &[Vec<i32>],
+        pixel: &StripPixel<'_>,
+        i: usize,
         wavelength_set: usize,
     ) -> Channels {
+        let PixelScratch { surfaces, interactions, contributions, samples, parts, .. } = scratch;
         let mut sum = Channels::ZERO;
         let mut transmittance = Channels::ONE;
         // The medium of the line of sight, and where that begins.
@@ -240,15 +231,9 @@ impl<'a> Shader<'a> {
                     interior.absorption.of(wavelength_set).map(|absorption| (-absorption * length.max(0.0)).exp());
             }
             let mut radiance = surface.unlit_radiance;
-            for lit in &lit[surface.contributions.clone()] {
+            for lit in &contributions[surface.contributions.clone()] {
                 radiance += lit.radiance
-                    * self.lamp_transmittance(
-                        lit,
-                        counts,
-                        (part.fragment, strip),
-                        interaction.triangle,
-                        wavelength_set,
-                    );
+                    * self.lamp_transmittance(lit, counts, part.fragment, strip, interaction.triangle, wavelength_set);
             }
             sum += transmittance * radiance;
             if part.fragment < strip.near.len() {
@@ -275,17 +260,26 @@ impl<'a> Shader<'a> {
         &self,
         lit: &LampContribution,
         counts: &[i32],
-        (fragment, strip): (usize, &Strip),
-        (triangle, group): (u32, usize),
+        fragment: usize,
+        strip: &Strip,
+        triangle: u32,
+        group: usize,
     ) -> i32 {
         let is_own = group == usize::from(self.casters.group(triangle));
         counts[group * strip.fragments() + fragment] + if is_own { lit.turned } else { 0 }
     }
 
     /// Whether no light of a lamp comes to a sample.
-    fn is_shaded(&self, lit: &LampContribution, counts: &[Vec<i32>], sample: (usize, &Strip), triangle: u32) -> bool {
+    fn is_shaded(
+        &self,
+        lit: &LampContribution,
+        counts: &[Vec<i32>],
+        fragment: usize,
+        strip: &Strip,
+        triangle: u32,
+    ) -> bool {
         let Some(counts) = counts.get(lit.lamp) else { return false };
-        lit.known.unwrap_or_else(|| self.volumes(lit, counts, sample, (triangle, 0)) > 0)
+        lit.known.unwrap_or_else(|| self.volumes(lit, counts, fragment, strip, triangle, 0) > 0)
     }
 
     /// Transmittance from a lamp to a sample.
@@ -293,17 +287,18 @@ impl<'a> Shader<'a> {
         &self,
         lit: &LampContribution,
         counts: &[Vec<i32>],
-        sample: (usize, &Strip),
+        fragment: usize,
+        strip: &Strip,
         triangle: u32,
         wavelength_set: usize,
     ) -> Channels {
-        if self.is_shaded(lit, counts, sample, triangle) {
+        if self.is_shaded(lit, counts, fragment, strip, triangle) {
             return Channels::ZERO;
         }
         let mut part = Channels::ONE;
         let Some(counts) = counts.get(lit.lamp) else { return part };
         for (group, passing) in self.group_transmittance.iter().enumerate().skip(1) {
-            for _ in 0..self.volumes(lit, counts, sample, (triangle, group)).clamp(0, 64) {
+            for _ in 0..self.volumes(lit, counts, fragment, strip, triangle, group).clamp(0, 64) {
                 part *= passing[wavelength_set];
             }
         }

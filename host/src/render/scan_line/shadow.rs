@@ -52,7 +52,9 @@ impl Shadow {
     pub(super) fn new(
         casters: &Casters<'_>,
         light: LightPosition,
-        (screen, facets, reach): (&Screen, &ScreenTriangles<'_>, &Reach<'_>),
+        screen: &Screen,
+        facets: &ScreenTriangles<'_>,
+        reach: &Reach<'_>,
         [lines, bands]: [usize; 2],
         groups: usize,
     ) -> Shadow {
@@ -62,7 +64,7 @@ impl Shadow {
         let start = start.map_or(vec![0; groups], |start| {
             ShadowVolumes::new(casters, light, &facing, &silhouettes, groups).counts(start)
         });
-        let behind = |silhouette: &Silhouette| side(casters, &light, (screen, facets, reach), silhouette);
+        let behind = |silhouette: &Silhouette| side(casters, &light, screen, facets, reach, silhouette);
         let mut polygons: Vec<ShadowPolygon> = silhouettes.par_iter().with_min_len(1 << 8).filter_map(behind).collect();
         if screen.clips_near() {
             for &triangle in casters.triangles.iter().filter(|triangle| facing[**triangle as usize] != 0) {
@@ -92,7 +94,8 @@ impl Shadow {
     /// - Returns how many spans were drawn.
     pub(super) fn count(
         &self,
-        (casters, handed): (&Casters<'_>, i32),
+        casters: &Casters<'_>,
+        handed: i32,
         band: usize,
         lines: &SampleLines,
         strip: &Strip,
@@ -138,13 +141,13 @@ impl Shadow {
             });
         }
         if !strip.layers.is_empty() {
-            self.count_layers((casters, handed), strip, counts);
+            self.count_layers(casters, handed, strip, counts);
         }
         spans
     }
 
     /// Counts the passable surfaces through which each surface is seen.
-    fn count_layers(&self, (casters, handed): (&Casters<'_>, i32), strip: &Strip, counts: &mut [i32]) {
+    fn count_layers(&self, casters: &Casters<'_>, handed: i32, strip: &Strip, counts: &mut [i32]) {
         let (samples, fragments) = (strip.near.len(), strip.fragments());
         let groups = self.start.len();
         let mut passed = vec![0; groups];
@@ -180,7 +183,9 @@ fn columns_of(corners: &[ScreenPoint]) -> [usize; 2] {
 fn side(
     casters: &Casters<'_>,
     light: &LightPosition,
-    (screen, facets, reach): (&Screen, &ScreenTriangles<'_>, &Reach<'_>),
+    screen: &Screen,
+    facets: &ScreenTriangles<'_>,
+    reach: &Reach<'_>,
     silhouette: &Silhouette,
 ) -> Option<ShadowPolygon> {
     let ends = silhouette.ends.map(|i| casters.prepared.vertices[i as usize]);

@@ -107,7 +107,8 @@ impl<'a> ScreenTriangles<'a> {
     /// - `lines`: of a band; `bands`: how many there are.
     pub(super) fn new(
         prepared: &'a Prepared,
-        (triangles, passable): (&[u32], &'a [bool]),
+        triangles: &[u32],
+        passable: &'a [bool],
         screen: &Screen,
         lines: usize,
         bands: usize,

@@ -434,7 +434,8 @@ impl PhotonEstimator<'_> {
         &self,
         interaction: &SurfaceInteraction<'_>,
         context: &ShadingContext<'_>,
-        (throughput, is_parted): (Channels, bool),
+        throughput: Channels,
+        is_parted: bool,
         coarse: bool,
     ) -> ([(Channels, DVec3); 2], f64) {
         let two_way = self.mapper;

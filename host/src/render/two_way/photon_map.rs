@@ -273,9 +273,10 @@ impl PhotonMap {
             return None;
         }
         let (x, y) = gather_point.outside.any_orthonormal_pair();
-        let flat = (around.reach, [x, y]);
-        let walls = self.keep_visible(&mut near, gather_point, flat, gather_context);
-        let Disc { square, part, error } = self.disc(&near, &walls, gather_point, flat, gather_context)?;
+        let axes = [x, y];
+        let walls = self.keep_visible(&mut near, gather_point, around.reach, axes, gather_context);
+        let Disc { square, part, error } =
+            self.disc(&near, &walls, gather_point, around.reach, axes, gather_context)?;
         near.retain(|(_, distance)| f64::from(*distance) < square);
         // In scene units.
         let area = square * side * side;
@@ -290,7 +291,8 @@ impl PhotonMap {
         &self,
         near: &mut Vec<(u32, f32)>,
         gather_point: &GatherPoint,
-        (reach, axes): (f64, [DVec3; 2]),
+        reach: f64,
+        axes: [DVec3; 2],
         gather_context: &GatherContext<'_>,
     ) -> Vec<OccluderSegment> {
         let above = (gather_point.leave - gather_point.position).normalize_or(gather_point.outside);
@@ -337,7 +339,8 @@ impl PhotonMap {
         near: &[(u32, f32)],
         walls: &[OccluderSegment],
         gather_point: &GatherPoint,
-        (reach, axes): (f64, [DVec3; 2]),
+        reach: f64,
+        axes: [DVec3; 2],
         of: &GatherContext<'_>,
     ) -> Option<Disc> {
         let side = self.points.side();

@@ -275,7 +275,7 @@ impl PhotonTracer<'_> {
                     segment.flux = left;
                     let medium_interface = segment.media.crossing(self.world, &interaction, &segment.ray);
                     if medium_interface.is_interface {
-                        self.scatter(&segment, &interaction, (wavelength_set, medium_interface), sampler);
+                        self.scatter(&segment, &interaction, wavelength_set, medium_interface, sampler);
                     } else {
                         self.waiting.push(PhotonSegment {
                             t_min: medium_interface.last,
@@ -309,7 +309,8 @@ impl PhotonTracer<'_> {
         &mut self,
         segment: &PhotonSegment,
         interaction: &SurfaceInteraction<'_>,
-        (wavelength_set, medium_interface): (usize, MediumInterface),
+        wavelength_set: usize,
+        medium_interface: MediumInterface,
         sampler: &PhotonSampler,
     ) {
         let bsdf = interaction.bsdf;
@@ -382,7 +383,7 @@ impl PhotonTracer<'_> {
             Some((lane, alone)) => (alone * flux_factor(&context, &drawn), Some(lane)),
             None => (flux, segment.lane),
         };
-        Some((expected, Some(arrival.next_segment(&drawn, (flux, lane), segment.number.wrapping_mul(MOST_PARTS)))))
+        Some((expected, Some(arrival.next_segment(&drawn, flux, lane, segment.number.wrapping_mul(MOST_PARTS)))))
     }
 
     /// Scatters by broad lobes: half of it towards what mirrors or refracts, as far as it is known where that is.
@@ -438,7 +439,7 @@ impl PhotonTracer<'_> {
                 let segment = PhotonSegment {
                     was_narrow: false,
                     had_broad: true,
-                    ..arrival.next_segment(&drawn, (flux, segment.lane), number)
+                    ..arrival.next_segment(&drawn, flux, segment.lane, number)
                 };
                 self.waiting.push(segment);
             }
@@ -489,7 +490,7 @@ impl PhotonInteraction<'_> {
     }
 
     /// The photon segment that continues by narrow scattering.
-    fn next_segment(&self, drawn: &BsdfSample, (flux, lane): (Channels, Option<usize>), number: u32) -> PhotonSegment {
+    fn next_segment(&self, drawn: &BsdfSample, flux: Channels, lane: Option<usize>, number: u32) -> PhotonSegment {
         let PhotonInteraction { segment, interaction, frame, .. } = self;
         let segments = segment.segments + 1;
         if drawn.is_straight {

@@ -153,7 +153,7 @@ impl<'a> World<'a> {
         let length = ray.direction.length();
         let distance = hit.t * length;
         let exact = if self.appearance.exact {
-            let on = prepared.on_surface(triangle, &ray, weights(&hit), (element.position, element.outside));
+            let on = prepared.on_surface(triangle, &ray, weights(&hit), element.position, element.outside);
             on.filter(|on| element.settle(ray.direction, hit.t - bounded.t_min, on))
         } else {
             None
@@ -309,8 +309,10 @@ impl<'a> World<'a> {
         &self,
         ray: &Ray,
         t_max: f64,
-        (index, occluders): (usize, Option<&Occluders>),
-        (wavelength_set, time): (usize, f64),
+        index: usize,
+        occluders: Option<&Occluders>,
+        wavelength_set: usize,
+        time: f64,
     ) -> (Channels, bool) {
         let blocks = |(other, (_, source)): (usize, &(usize, LightSource))| {
             other != index && source.is_surface() && source.intersect(ray, 0.0, t_max, wavelength_set).is_some()
