@@ -8,6 +8,7 @@
 mod accumulation;
 mod direct;
 mod sampler;
+mod segment;
 mod vertex;
 mod explain;
 mod tracer;

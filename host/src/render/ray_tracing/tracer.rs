@@ -3,6 +3,7 @@
 use super::direct::DirectLighting;
 use super::explain::{PathLog, PathNote};
 use super::sampler::{PathSampler, SampleDimension};
+use super::segment::{LastScattering, PathHistory, PathSegment};
 use super::vertex::{PathVertex, power_heuristic};
 use crate::color::Channels;
 use crate::color::srgb::LUMINANCE;
@@ -26,87 +27,6 @@ const LEAST_SPLIT: f64 = 1.0 / 64.0;
 const HIGHEST: f64 = 1.0;
 /// Most path segments of a sample that wait to be traced.
 const MOST_WAITING: usize = 8;
-
-/// A segment of a sample's path: one ray with its throughput, its pdf and the history of the path.
-#[derive(Clone, Copy)]
-struct PathSegment {
-    bounded: BoundedRay,
-    /// Throughput: the radiance that arrives at the camera for a radiance of 1 along it.
-    throughput: Channels,
-    /// Part of the light of a lamp that counts if it hits one; below 1 where the lobe was cut off.
-    lamp_weight: f64,
-    /// Where on its ray it begins, scene units: more than 0 behind what it went straight through.
-    begin: f64,
-    /// How many path segments came before it.
-    depth: u32,
-    /// Unlike that of all other path segments of the sample.
-    number: u32,
-    /// The pdf of its direction, 1/sr; none where there was no choice.
-    pdf: Option<f64>,
-    /// The normal of the element from which it starts.
-    normal: Option<DVec3>,
-    media: Media,
-    /// The only lane that is left, after a dispersive interface separated the wavelengths.
-    lane: Option<usize>,
-    /// Whether it only tests for lights: it is one beyond the depth for anything else.
-    for_lights: bool,
-    /// The scattering events on the path from here to the camera.
-    history: PathHistory,
-    /// The last scattering event.
-    last_scattering: LastScattering,
-    /// Whether lights that emit photons count nothing on it: the photon map has theirs where a narrow lobe precedes a
-    /// broad one.
-    is_in_photon_map: bool,
-    /// Whether its hit gives features to a denoiser: it comes from the camera, by mirrors and smooth interfaces alone.
-    records_features: bool,
-}
-
-/// The scattering events on a path, in the order in which light takes them, by the classes of their lobes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum PathHistory {
-    /// No broad one.
-    NoBroad,
-    /// A broad one first, and none but narrow ones behind it.
-    OneBroad,
-    /// Narrow ones first, then a broad one, and none but narrow ones behind it: a light that is hit there makes a
-    /// caustic.
-    Caustic,
-    /// Several broad ones.
-    SeveralBroad,
-}
-
-impl PathHistory {
-    /// The history with a scattering event before those that it has.
-    fn extended(self, is_broad: bool) -> PathHistory {
-        match (self, is_broad) {
-            (PathHistory::NoBroad, true) => PathHistory::OneBroad,
-            (_, true) => PathHistory::SeveralBroad,
-            (PathHistory::OneBroad, false) => PathHistory::Caustic,
-            (history, false) => history,
-        }
-    }
-
-    /// The class of light that leaves a lamp on such a path.
-    fn class(self) -> PathClass {
-        match self {
-            PathHistory::NoBroad => PathClass::Emitted,
-            PathHistory::OneBroad => PathClass::Direct,
-            PathHistory::Caustic => PathClass::Caustic,
-            PathHistory::SeveralBroad => PathClass::Indirect,
-        }
-    }
-}
-
-/// The scattering events of a path segment since the last lobe that was not delta.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum LastScattering {
-    /// No other scattering: the last lobe was not delta.
-    NonDelta,
-    /// Scattering by polished interfaces only.
-    ClearInterface,
-    /// Other delta scattering.
-    Other,
-}
 
 /// The result of a sample.
 #[derive(Clone, Copy, Debug, Default)]
@@ -376,8 +296,8 @@ impl<'a> PathTracer<'a> {
             .specular_samples(&context)
             .fold((0, true), |(count, all), sample| (count + 1, all && is_worth(sample)));
         let directions = count + usize::from(bsdf.continues_non_delta());
-        let parts = directions <= 1 || waiting.len() + directions <= MOST_WAITING && all_worth;
-        let selection = if parts { LobeSelection::NonDelta } else { LobeSelection::All };
+        let is_split = directions <= 1 || waiting.len() + directions <= MOST_WAITING && all_worth;
+        let selection = if is_split { LobeSelection::NonDelta } else { LobeSelection::All };
         let clamp_value = self.clamp_value(&segment);
         let vertex = PathVertex {
             interaction,
@@ -401,41 +321,64 @@ impl<'a> PathTracer<'a> {
             }
         }
         if let Some(photons) = self.photons.filter(|_| bsdf.stores_photons() && !segment.is_in_photon_map) {
-            let (light, error) = photons.radiance_estimate(
-                interaction,
-                &vertex.context,
-                segment.throughput,
-                segment.lane.is_some(),
-                segment.history != PathHistory::NoBroad,
-            );
-            let first = segment.history.extended(true).extended(false).class();
-            if segment.history == PathHistory::NoBroad {
-                let to_srgb = |(radiance, other): (Channels, DVec3)| {
-                    self.world.appearance.wavelengths.to_srgb(wavelength_set, radiance) + other
-                };
-                let luminance = light.map(to_srgb).into_iter().sum::<DVec3>().dot(LUMINANCE);
-                result.shared_variance += (luminance * error).powi(2);
-            }
-            for (class, (radiance, elsewhere)) in [first, PathClass::Indirect].into_iter().zip(light) {
-                result.add(class, radiance);
-                result.other_wavelengths[class as usize] += elsewhere;
-                log.note(|| PathNote::term(segment.depth, "photon map", radiance));
-            }
+            self.add_photons(photons, &segment, &vertex, &mut SampleRecord { counts, log, result });
         }
         if bsdf.continues_paths() {
-            let point = sampler.for_segment(segment.number, SampleDimension::Direction, 0);
-            let [choice, _] = sampler.for_segment(segment.number, SampleDimension::Choice, 0);
-            if parts {
-                let drawn =
-                    bsdf.continues_non_delta().then(|| bsdf.sample(&context, choice, point, selection)).flatten();
-                let samples = bsdf.specular_samples(&context).zip(0..).chain(drawn.map(|sample| (sample, 2)));
-                waiting.extend(
-                    samples.filter_map(|(sample, branch)| self.next_segment(&segment, &vertex, sample, branch)),
-                );
-            } else {
-                let drawn = bsdf.sample(&context, choice, point, selection);
-                waiting.extend(drawn.and_then(|sample| self.next_segment(&segment, &vertex, sample, 0)));
-            }
+            self.continue_path(&segment, &vertex, is_split, waiting);
+        }
+    }
+
+    /// Adds the radiance estimate of the photon map at a vertex.
+    fn add_photons(
+        &self,
+        photons: &PhotonEstimator<'_>,
+        segment: &PathSegment,
+        vertex: &PathVertex<'_>,
+        SampleRecord { log, result, .. }: &mut SampleRecord<'_, '_>,
+    ) {
+        let (light, error) = photons.radiance_estimate(
+            vertex.interaction,
+            &vertex.context,
+            segment.throughput,
+            segment.lane.is_some(),
+            segment.history != PathHistory::NoBroad,
+        );
+        let first = segment.history.extended(true).extended(false).class();
+        if segment.history == PathHistory::NoBroad {
+            let wavelengths = &self.world.appearance.wavelengths;
+            let to_srgb = |(radiance, other): (Channels, DVec3)| {
+                wavelengths.to_srgb(vertex.context.wavelength_set, radiance) + other
+            };
+            let luminance = light.map(to_srgb).into_iter().sum::<DVec3>().dot(LUMINANCE);
+            result.shared_variance += (luminance * error).powi(2);
+        }
+        for (class, (radiance, elsewhere)) in [first, PathClass::Indirect].into_iter().zip(light) {
+            result.add(class, radiance);
+            result.other_wavelengths[class as usize] += elsewhere;
+            log.note(|| PathNote::term(segment.depth, "photon map", radiance));
+        }
+    }
+
+    /// Lets a path continue from a vertex by BSDF samples: one for each specular lobe and one of all others if it is
+    /// split, else one.
+    fn continue_path(
+        &self,
+        segment: &PathSegment,
+        vertex: &PathVertex<'_>,
+        is_split: bool,
+        waiting: &mut Vec<PathSegment>,
+    ) {
+        let PathVertex { context, sampler, selection, .. } = vertex;
+        let bsdf = vertex.interaction.bsdf;
+        let point = sampler.for_segment(segment.number, SampleDimension::Direction, 0);
+        let [choice, _] = sampler.for_segment(segment.number, SampleDimension::Choice, 0);
+        if is_split {
+            let drawn = bsdf.continues_non_delta().then(|| bsdf.sample(context, choice, point, *selection)).flatten();
+            let samples = bsdf.specular_samples(context).zip(0..).chain(drawn.map(|sample| (sample, 2)));
+            waiting.extend(samples.filter_map(|(sample, branch)| self.next_segment(segment, vertex, sample, branch)));
+        } else {
+            let drawn = bsdf.sample(context, choice, point, *selection);
+            waiting.extend(drawn.and_then(|sample| self.next_segment(segment, vertex, sample, 0)));
         }
     }
 
