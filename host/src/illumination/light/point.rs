@@ -1,4 +1,4 @@
-//! A point that emits alike in all directions.
+//! A light without size: a point with a profile of intensities over the directions.
 
 use super::emitter::Emitter;
 use super::light_sample::{EmissionSample, LightOrigin, LightPoint, LightSample, from_point};
@@ -8,13 +8,42 @@ use std::f64::consts::TAU;
 
 /// A point light.
 #[derive(Clone, Debug)]
-pub(super) struct PointLight {
+pub(super) struct PointLight<P> {
     pub(super) at: DVec3,
-    /// Radiant intensity, W/sr.
+    /// Radiant intensity where the profile is 1, W/sr.
     pub(super) strength: SpectralTable,
+    pub(super) profile: P,
 }
 
-impl Emitter for PointLight {
+/// How the intensity of a point changes with the direction.
+pub(super) trait Profile {
+    /// The part of the strength in a direction in which light leaves, unit length.
+    fn part(&self, direction: DVec3) -> f64;
+
+    /// The integral of the part over all directions.
+    fn integral(&self) -> f64;
+
+    /// The axis of the cone out of which nothing is sent, and the cosine of its half angle.
+    fn cone(&self) -> Option<(DVec3, f64)> {
+        None
+    }
+}
+
+/// Alike in all directions.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Isotropic;
+
+impl Profile for Isotropic {
+    fn part(&self, _: DVec3) -> f64 {
+        1.0
+    }
+
+    fn integral(&self) -> f64 {
+        2.0 * TAU
+    }
+}
+
+impl<P: Profile> Emitter for PointLight<P> {
     fn sample_incident(
         &self,
         point: DVec3,
@@ -22,7 +51,9 @@ impl Emitter for PointLight {
         _: [f64; 2],
         wavelength_set: usize,
     ) -> Option<LightSample> {
-        from_point(self.at - point, self.strength.of(wavelength_set))
+        let light_sample = from_point(self.at - point, self.strength.of(wavelength_set))?;
+        let part = self.profile.part(-light_sample.towards);
+        (part > 0.0).then(|| LightSample { irradiance: light_sample.irradiance * part, ..light_sample })
     }
 
     fn points(&self, _: u32) -> Vec<LightPoint> {
@@ -37,11 +68,15 @@ impl Emitter for PointLight {
         Some(EmissionSample::Point { at: self.at, normal: None, area: 0.0 })
     }
 
-    fn intensity(&self, _: Option<DVec3>, _: DVec3, wavelength_set: usize) -> Channels {
-        self.strength.of(wavelength_set)
+    fn intensity(&self, _: Option<DVec3>, direction: DVec3, wavelength_set: usize) -> Channels {
+        self.strength.of(wavelength_set) * self.profile.part(direction)
     }
 
     fn power(&self, _: f64, wavelength_set: usize) -> Channels {
-        self.strength.of(wavelength_set) * (2.0 * TAU)
+        self.strength.of(wavelength_set) * self.profile.integral()
+    }
+
+    fn cone(&self) -> Option<(DVec3, DVec3, f64)> {
+        self.profile.cone().map(|(axis, cosine)| (self.at, axis, cosine))
     }
 }

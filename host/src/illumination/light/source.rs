@@ -5,11 +5,11 @@ use super::area::AreaLight;
 use super::directional::DirectionalLight;
 use super::emitter::Emitter;
 use super::environment::EnvironmentLight;
-use super::goniometric::GoniometricLight;
+use super::goniometric::GoniometricProfile;
 use super::light_sample::{EmissionSample, LightHit, LightOrigin, LightPoint, LightSample};
 use super::mesh::MeshLight;
-use super::point::PointLight;
-use super::spot::SpotLight;
+use super::point::{Isotropic, PointLight};
+use super::spot::SpotProfile;
 use super::{Light, LightShape, Sky};
 use crate::color::{Channels, SpectralTable, WavelengthSets};
 use crate::numeric::ray::Ray;
@@ -49,10 +49,10 @@ macro_rules! lights {
 }
 
 lights! {
-    Point(PointLight),
+    Point(PointLight<Isotropic>),
     Directional(DirectionalLight),
-    Spot(SpotLight),
-    Luminaire(GoniometricLight),
+    Spot(PointLight<SpotProfile>),
+    Luminaire(PointLight<GoniometricProfile>),
     Area(AreaLight),
     Mesh(MeshLight),
     Sky(EnvironmentLight),
@@ -67,19 +67,18 @@ impl LightSource {
     pub fn new(light: &Light, wavelengths: &WavelengthSets) -> LightSource {
         let strength = wavelengths.light(light.strength().1);
         LightSource(match light {
-            Light::Point { at, .. } => Kind::Point(PointLight { at: *at, strength }),
+            Light::Point { at, .. } => Kind::Point(PointLight { at: *at, strength, profile: Isotropic }),
             Light::Directional { direction, .. } => {
                 Kind::Directional(DirectionalLight { towards: -direction.normalize_or(DVec3::NEG_Y), strength })
             }
-            Light::Spot { at, direction, inner, outer, .. } => Kind::Spot(SpotLight {
-                at: *at,
-                axis: direction.normalize_or(DVec3::NEG_Y),
-                inner: inner.to_radians().cos(),
-                outer: outer.to_radians().cos(),
-                strength,
-            }),
+            Light::Spot { at, direction, inner, outer, .. } => {
+                let axis = direction.normalize_or(DVec3::NEG_Y);
+                let [inner, outer] = [inner, outer].map(|angle| angle.to_radians().cos());
+                Kind::Spot(PointLight { at: *at, strength, profile: SpotProfile { axis, inner, outer } })
+            }
             Light::Luminaire { at, down, front, goniometry, .. } => {
-                Kind::Luminaire(GoniometricLight::new(*at, [*down, *front], Arc::new(goniometry.clone()), strength))
+                let profile = GoniometricProfile::new(*down, *front, Arc::new(goniometry.clone()));
+                Kind::Luminaire(PointLight { at: *at, strength, profile })
             }
             Light::Area { patch, .. } => Kind::Area(AreaLight { patch: *patch, strength }),
             Light::Sky { map, radiance, turned } => {
