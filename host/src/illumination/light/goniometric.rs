@@ -1,7 +1,7 @@
 //! The profile of a luminaire that was measured: a table over the directions.
 
 use super::Goniometry;
-use super::point::Profile;
+use super::point::AngularProfile;
 use crate::color::observer::LUMENS_PER_WATT;
 use crate::numeric::cubature::GAUSS;
 use glam::{DMat3, DVec3};
@@ -29,7 +29,7 @@ impl GoniometricProfile {
     }
 }
 
-impl Profile for GoniometricProfile {
+impl AngularProfile for GoniometricProfile {
     fn part(&self, direction: DVec3) -> f64 {
         self.table.candelas(self.axes.transpose() * direction) / LUMENS_PER_WATT
     }

@@ -16,7 +16,7 @@ pub(super) struct PointLight<P> {
 }
 
 /// How the intensity of a point changes with the direction.
-pub(super) trait Profile {
+pub(super) trait AngularProfile {
     /// The part of the strength in a direction in which light leaves, unit length.
     fn part(&self, direction: DVec3) -> f64;
 
@@ -33,7 +33,7 @@ pub(super) trait Profile {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Isotropic;
 
-impl Profile for Isotropic {
+impl AngularProfile for Isotropic {
     fn part(&self, _: DVec3) -> f64 {
         1.0
     }
@@ -43,7 +43,7 @@ impl Profile for Isotropic {
     }
 }
 
-impl<P: Profile> Emitter for PointLight<P> {
+impl<P: AngularProfile> Emitter for PointLight<P> {
     fn sample_incident(
         &self,
         point: DVec3,

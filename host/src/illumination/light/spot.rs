@@ -1,6 +1,6 @@
 //! The profile of a spot light: a cone of light, which fades towards its edge.
 
-use super::point::Profile;
+use super::point::AngularProfile;
 use glam::DVec3;
 use std::f64::consts::TAU;
 
@@ -15,7 +15,7 @@ pub(super) struct SpotProfile {
     pub(super) outer: f64,
 }
 
-impl Profile for SpotProfile {
+impl AngularProfile for SpotProfile {
     fn part(&self, direction: DVec3) -> f64 {
         let part = ((direction.dot(self.axis) - self.outer) / (self.inner - self.outer)).clamp(0.0, 1.0);
         part * part * (3.0 - 2.0 * part)
