@@ -8,7 +8,7 @@ pub const LANES: usize = 8;
 
 /// A quantity at the wavelengths, or in the bands, that a ray carries.
 ///
-/// Which wavelengths they are, [`super::WavelengthSets`] tells. Lanes that are not used are 0 in every light.
+/// [`super::WavelengthSets`] tells the wavelengths. Lanes that are not used are 0 in every light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Channels(pub [f64; LANES]);
 

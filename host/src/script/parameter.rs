@@ -104,7 +104,7 @@ pub(super) struct Optional<K> {
 
 /// A parameter that changes a setting, which stays where it is not given.
 #[derive(Clone, Copy)]
-pub(super) struct WithFallback<K, D> {
+pub(super) struct ChangedSetting<K, D> {
     kind: K,
     default: D,
     help: &'static str,
@@ -137,11 +137,11 @@ pub(super) const fn optional<K: ParameterKind + Copy>(
 /// A parameter that changes a setting.
 ///
 /// - `default`: that of a scene where the setting was never changed.
-pub(super) const fn with_fallback<K>(kind: K, default: K::Default, help: &'static str) -> WithFallback<K, K::Default>
+pub(super) const fn setting<K>(kind: K, default: K::Default, help: &'static str) -> ChangedSetting<K, K::Default>
 where
     K: HasDefault + Copy,
 {
-    WithFallback { kind, default, help }
+    ChangedSetting { kind, default, help }
 }
 
 impl<K: Copy, D: Copy> Defaulted<K, D> {
@@ -196,7 +196,7 @@ impl<K: ParameterKind> Described for Optional<K> {
     described!(|parameter| Some(parameter.otherwise.to_owned()));
 }
 
-impl<K: HasDefault> Described for WithFallback<K, K::Default> {
+impl<K: HasDefault> Described for ChangedSetting<K, K::Default> {
     described!(|parameter| Some(parameter.kind.shown(parameter.default)));
 }
 
@@ -224,7 +224,7 @@ impl<K: ParameterKind> Takes for Optional<K> {
     }
 }
 
-impl<K: HasDefault> Takes for WithFallback<K, K::Default> {
+impl<K: HasDefault> Takes for ChangedSetting<K, K::Default> {
     type Value = Option<K::Value>;
 
     fn value(&self, name: &str, given: Option<&Dynamic>, library: &Library) -> Result<Option<K::Value>, String> {

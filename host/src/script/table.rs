@@ -5,7 +5,7 @@ use super::kinds::{
     ANY_NUMBER, AxisKind, Factors, Flag, Integer, Length, NamedAxis, NumberKind, PointsKind, ScalarKind, TextKind,
     Vector, Word,
 };
-use super::parameter::{Defaulted, optional, required, with_default, with_fallback};
+use super::parameter::{Defaulted, optional, required, setting, with_default};
 use super::shared::{OBJECT, TOLERANCE};
 use crate::illumination::optics::Interreflection;
 use crate::octree::MAX_POINT_DEPTH;
@@ -266,22 +266,22 @@ pub(super) const FUNCTIONS: &[Function] = &[
     function! {
         radiosity(
             on: with_default(Flag, true, "whether ray tracing does"),
-            error: with_fallback(
+            error: setting(
                 NumberKind(1e-6, 10.0),
                 RadiositySettings::DEFAULT.error,
                 "of the light that one pair of patches brings, as a part of the mean irradiance",
             ),
-            finest: with_fallback(
+            finest: setting(
                 NumberKind(1e-5, 1.0),
                 RadiositySettings::DEFAULT.finest,
                 "shortest edge of a patch that is divided, as a part of the diagonal of the scene",
             ),
-            directions: with_fallback(
+            directions: setting(
                 Integer(1, 4096),
                 RadiositySettings::DEFAULT.directions,
                 "in which each patch looks around",
             ),
-            tolerance: with_fallback(
+            tolerance: setting(
                 NumberKind(1e-12, 1.0),
                 RadiositySettings::DEFAULT.tolerance,
                 "error of the solver, as a part of the greatest irradiance",
@@ -322,7 +322,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     },
     function! {
         two_way(
-            photons: with_fallback(
+            photons: setting(
                 Integer(1, MAX_PHOTONS),
                 PhotonSettings::DEFAULT.count,
                 "how many photons are traced for eight samples of each pixel",
@@ -387,7 +387,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     function! {
         tolerance(
             length: required(Length, "largest distance, scene units"),
-            angle: with_fallback(
+            angle: setting(
                 NumberKind(0.01, 180.0),
                 GeometrySettings::DEFAULT.angle,
                 "largest turn of the normal along a triangle, degrees",

@@ -15,12 +15,12 @@ pub enum Tool {
     Lint(lint::LintArguments),
     /// Tells about the functions of the machine: all in a table, or one in full.
     Functions {
-        /// Which one, such as ROUTE or F:ROUTE.
+        /// The function to explain, such as ROUTE or F:ROUTE; without it, all are listed.
         name: Option<String>,
     },
     /// Tells about the commands of the language: all in a table, or one in full.
     Commands {
-        /// Which one, such as 'vector_list' or 'set picking'; may be abbreviated.
+        /// The command to explain, such as 'vector_list' or 'set picking'; may be abbreviated; without it, all are listed.
         name: Vec<String>,
     },
     /// Prints what keys of the window do, as a file for '--mapping'.
