@@ -99,7 +99,7 @@ impl<'a> Facts<'a> {
     }
 
     pub(super) fn reflection(&self) -> Decision {
-        let mirrors = self.count(carries_on);
+        let mirrors = self.count(continues_paths);
         let settings = &self.prepared.settings;
         let spread = settings.light.interreflection != Interreflection::LeftOut && self.count(has_diffuse) > 0;
         if mirrors == 0 && !spread {
@@ -109,7 +109,7 @@ impl<'a> Facts<'a> {
         } else if mirrors == 0 {
             Decision::new(true, "diffuse light goes from surface to surface")
         } else {
-            Decision::new(true, format!("{} that reflects or lets through", counted(mirrors, "object")))
+            Decision::new(true, format!("{} with reflection or transmission", counted(mirrors, "object")))
         }
     }
 }
@@ -135,7 +135,7 @@ fn has_highlight(material: &Material) -> bool {
 }
 
 /// Whether rays go on from it.
-fn carries_on(material: &Material) -> bool {
+fn continues_paths(material: &Material) -> bool {
     match &material.body {
         MaterialKind::Classic(Classic { mirror, transparency, .. }) => !mirror.is_black() || !transparency.is_black(),
         _ => true,
@@ -365,7 +365,7 @@ fn highlights(facts: &Facts<'_>) -> Decision {
 }
 
 fn ambient(facts: &Facts<'_>) -> Decision {
-    let count = facts.count(|material| has_diffuse(material) || carries_on(material));
+    let count = facts.count(|material| has_diffuse(material) || continues_paths(material));
     if facts.prepared.ambient.max_element() <= 0.0 {
         Decision::new(false, "there is no ambient light")
     } else if count == 0 {
