@@ -3,6 +3,7 @@
 //! The order of the modules is their layer order, lowest first.
 
 pub mod memory;
+pub mod stages;
 pub mod encoding;
 pub mod spelling;
 pub mod numeric;

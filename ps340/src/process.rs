@@ -99,6 +99,37 @@ pub fn main() -> ExitCode {
     if let Some(tool) = &arguments.tool {
         return cli::run(tool);
     }
+    start_log();
+    let ended = set_up(&arguments).and_then(|()| serve(arguments));
+    match ended {
+        Ok(ExitReason::Quit) => ExitCode::SUCCESS,
+        Ok(ExitReason::Interrupted) => ExitCode::from(INTERRUPTED as u8),
+        Err(Failure { code, message }) => {
+            eprintln!("ps340: {message}");
+            ExitCode::from(code)
+        }
+    }
+}
+
+/// Why the process ends without a machine, or with one that failed.
+struct Failure {
+    code: u8,
+    message: String,
+}
+
+impl Failure {
+    /// Something cannot be had.
+    fn failed(message: impl ToString) -> Failure {
+        Failure { code: 1, message: message.to_string() }
+    }
+
+    /// The arguments are wrong.
+    fn usage(message: impl ToString) -> Failure {
+        Failure { code: 2, message: message.to_string() }
+    }
+}
+
+fn start_log() {
     let filter = tracing_subscriber::EnvFilter::try_from_env("PS340_LOG");
     tracing_subscriber::fmt()
         .with_env_filter(filter.unwrap_or_else(|_| tracing_subscriber::EnvFilter::new("warn,ps340=info")))
@@ -107,49 +138,48 @@ pub fn main() -> ExitCode {
         .with_target(false)
         .without_time()
         .init();
-    if arguments.with_parent
-        && let Err(error) = processes::end_with_parent()
-    {
-        eprintln!("ps340: --with-parent: {error}");
-        return ExitCode::from(1);
+}
+
+/// Sets up what holds for the whole process.
+fn set_up(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.with_parent {
+        processes::end_with_parent().map_err(|error| Failure::failed(format!("--with-parent: {error}")))?;
     }
-    if let Some(threads) = arguments.threads
-        && let Err(error) = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()
-    {
-        eprintln!("ps340: {error}");
-        return ExitCode::from(1);
+    if let Some(threads) = arguments.threads {
+        rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global().map_err(Failure::failed)?;
     }
-    let listen = arguments.listen;
-    let stdio_lines = listen.iter().filter(|line| line.endpoint == Endpoint::Stdio).count();
-    let operator = match arguments.operator.as_deref() {
+    Ok(())
+}
+
+/// Who gives orders.
+///
+/// - `stdio_lines`: how many hosts have the standard streams.
+fn operator(asked: Option<&str>, stdio_lines: usize) -> Result<Operator, Failure> {
+    let operator = match asked {
         None if std::io::stdin().is_terminal() && stdio_lines == 0 => Operator::Stdio,
         None | Some("none") => Operator::None,
         Some("stdio") => Operator::Stdio,
-        Some(address) => match address.parse() {
-            Ok(address) => Operator::Socket(address),
-            Err(error) => {
-                eprintln!("ps340: {error}");
-                return ExitCode::from(2);
-            }
-        },
+        Some(address) => Operator::Socket(address.parse().map_err(Failure::usage)?),
     };
-    if stdio_lines + usize::from(operator == Operator::Stdio) > 1 {
-        eprintln!("ps340: the standard streams serve one host, or the operator");
-        return ExitCode::from(2);
+    match stdio_lines + usize::from(operator == Operator::Stdio) {
+        0 | 1 => Ok(operator),
+        _ => Err(Failure::usage("the standard streams serve one host, or the operator")),
     }
+}
+
+/// Runs the machine until it ends.
+fn serve(arguments: Arguments) -> Result<ExitReason, Failure> {
+    let listen = arguments.listen;
+    let stdio_lines = listen.iter().filter(|line| line.endpoint == Endpoint::Stdio).count();
+    let operator = operator(arguments.operator.as_deref(), stdio_lines)?;
     let usual = match arguments.plain_text {
         PlainText::Commands => KeyboardMode::Interactive,
         PlainText::Terminal => KeyboardMode::Terminal,
     };
     let settings = Settings { plain_text: arguments.plain_text, keyboard: arguments.keyboard.unwrap_or(usual) };
     #[cfg(feature = "window")]
-    let drawer = match arguments.beam.drawer(arguments.window) {
-        Ok(drawer) => drawer,
-        Err(error) => {
-            eprintln!("ps340: --beam gpu: {error}");
-            return ExitCode::from(1);
-        }
-    };
+    let drawer =
+        arguments.beam.drawer(arguments.window).map_err(|error| Failure::failed(format!("--beam gpu: {error}")))?;
     #[cfg(not(feature = "window"))]
     let drawer = crate::calligraphic::Drawer::Processor;
     let options = Options {
@@ -172,27 +202,11 @@ pub fn main() -> ExitCode {
         _ => eprintln!("{line}"),
     };
     #[cfg(feature = "window")]
-    let ended = if arguments.window {
-        match appearance(arguments.mapping.as_deref(), arguments.scale) {
-            Ok(appearance) => console::open(&options, appearance, say).map_err(|error| error.to_string()),
-            Err(error) => {
-                eprintln!("ps340: {error}");
-                return ExitCode::from(2);
-            }
-        }
-    } else {
-        run(&options, None, say).map_err(|error| error.to_string())
-    };
-    #[cfg(not(feature = "window"))]
-    let ended = run(&options, None, say).map_err(|error| error.to_string());
-    match ended {
-        Ok(ExitReason::Quit) => ExitCode::SUCCESS,
-        Ok(ExitReason::Interrupted) => ExitCode::from(INTERRUPTED as u8),
-        Err(error) => {
-            eprintln!("ps340: {error}");
-            ExitCode::from(1)
-        }
+    if arguments.window {
+        let appearance = appearance(arguments.mapping.as_deref(), arguments.scale).map_err(Failure::usage)?;
+        return console::open(&options, appearance, say).map_err(Failure::failed);
     }
+    run(&options, None, say).map_err(Failure::failed)
 }
 
 /// How the window begins.

@@ -84,7 +84,7 @@ fn end(name: &str, event: &str, hint: &str, state: &State, exit: Exit) -> ! {
         (_, "") => "nothing is written",
         (_, kept) => kept,
     };
-    let space = if stage.is_empty() { "" } else { " " };
+    let space = if stage.is_empty() { "" } else { " while " };
     eprintln!("peris {name}: {event}{space}{stage}{hint}; {kept}");
     let _naming = files::naming();
     std::process::exit(exit as i32);

@@ -260,7 +260,6 @@ impl Job<'_> {
         }
         let order = RenderOrder { threads: self.common.threads, ..RenderOrder::of(&self.scene.settings) };
         let shot = production.render(&matrix, &order, &self.scene.display, &progress::watch())?;
-        progress::clear();
         let rendering = &shot.rendering;
         if let Some(bytes) = shot.octree_bytes {
             let seconds = shot.build_seconds;
@@ -291,10 +290,8 @@ impl Job<'_> {
 
     fn study(&mut self, contents: &mut Contents<'_>) -> Result<(), CommandFailure> {
         let options = Options { width: 160, samples: 256, settings: 6, threads: self.common.threads };
-        progress::stage("while studying");
         let start = Instant::now();
         let study = renderers(&self.scene, &[Technique::RayTracing], &["samples"], &options, &progress::watch())?;
-        progress::clear();
         let (seconds, table) = (start.elapsed().as_secs_f64(), study.table());
         let text = format!("\nerror against run time (studied in {seconds:.1} s)\n{}", table.trim_end());
         self.note("study", serde_json::to_value(&study)?, format_args!("{text}"));

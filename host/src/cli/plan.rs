@@ -1,8 +1,9 @@
 //! `peris plan`: what a scene needs, and why.
 
 use super::source::load_lit;
-use super::{CommandFailure, SCRIPT_HELP, ScriptArguments, SubcommandRow};
+use super::{CommandFailure, SCRIPT_HELP, ScriptArguments, SubcommandRow, progress};
 use crate::plan::Plan;
+use crate::render::{RenderOrder, Renderer, ray_tracer};
 use crate::scene::Prepared;
 use clap::{Args, FromArgMatches};
 
@@ -22,6 +23,9 @@ struct Arguments {
     /// Leaves nothing out, as `render --everything` does
     #[arg(long)]
     everything: bool,
+    /// Renders one sample of each pixel, and tells how long those stages took of which that is known
+    #[arg(long)]
+    seconds: bool,
     /// As JSON
     #[arg(long)]
     json: bool,
@@ -30,7 +34,12 @@ struct Arguments {
 fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let prepared = Prepared::new(&load_lit(&arguments.script, &arguments.definitions)?.scene)?;
     let view = prepared.view();
-    let plan = if arguments.everything { Plan::everything(&prepared, &view) } else { Plan::new(&prepared, &view) };
+    let mut plan = if arguments.everything { Plan::everything(&prepared, &view) } else { Plan::new(&prepared, &view) };
+    if arguments.seconds {
+        let order = RenderOrder { samples: 1, ..RenderOrder::of(&prepared.settings) };
+        ray_tracer(&prepared, &plan)?.render(&view, &order, &progress::watch())?;
+        plan.set_seconds(&progress::totals());
+    }
     if arguments.json {
         say!("{}", serde_json::to_string_pretty(&plan)?);
     } else {

@@ -1,6 +1,6 @@
 //! The program: one row for each sub-command, from which help and dispatch are derived.
 
-use super::exit::{self, Exit, story};
+use super::exit::{self, CommandFailure, Exit, story};
 use super::subcommand::SubcommandRow;
 use super::values::bytes;
 use super::{
@@ -8,9 +8,14 @@ use super::{
     octree, output, plan, progress, render, show, study, tessellate,
 };
 use crate::memory;
-use clap::{Arg, Command};
+use crate::stages::StageLayer;
+use clap::{Arg, ArgMatches, Command};
+use files::Destination;
 use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use tracing_subscriber::layer::{Layer, SubscriberExt};
+use tracing_subscriber::util::SubscriberInitExt;
 
 /// The part of the machine's memory that a command may take if nothing else is said: one of so many.
 const PART_OF_MACHINE: u64 = 4;
@@ -48,12 +53,20 @@ pub fn command() -> Command {
         .display_order(LAST)
         .value_parser(bytes)
         .help("Most memory to take, such as 512M or 8G; a quarter of the machine's if not given");
+    let profile = Arg::new("profile")
+        .long("profile")
+        .value_name("FILE")
+        .global(true)
+        .display_order(LAST)
+        .value_parser(clap::value_parser!(PathBuf))
+        .help("File for the time that each stage took, and its passes and rows on each thread, in the trace-event format that Perfetto and browsers show");
     let program = Command::new("peris")
         .about("Models an environment, renders it, and shows it on a PS 340.")
         .version(env!("CARGO_PKG_VERSION"))
         .subcommand_required(true)
         .arg_required_else_help(true)
         .arg(memory)
+        .arg(profile)
         .after_help(exit::table());
     COMMANDS.iter().fold(program, |program, row| {
         let sub = (row.arguments)(Command::new(row.name)).about(row.summary).after_help(exit::table());
@@ -63,7 +76,6 @@ pub fn command() -> Command {
 
 /// Runs the program with the arguments of the process.
 pub fn main() -> ExitCode {
-    start_log();
     let matches = match command().try_get_matches() {
         Ok(matches) => matches,
         Err(error) => {
@@ -74,10 +86,12 @@ pub fn main() -> ExitCode {
     };
     let Some((name, arguments)) = matches.subcommand() else { return Exit::Usage.into() };
     let Some(row) = COMMANDS.iter().find(|row| row.name == name) else { return Exit::Usage.into() };
-    progress::begin(matches!(arguments.try_get_one("json"), Ok(Some(true))));
+    let profile = arguments.get_one::<PathBuf>("profile");
+    start_log(profile.is_some());
+    progress::begin(matches!(arguments.try_get_one("json"), Ok(Some(true))), profile.is_some());
     let asked = arguments.get_one("memory").copied();
     interrupts::begin(name, asked.or_else(|| Some(memory::machine()? / PART_OF_MACHINE)));
-    let ended = (row.run)(arguments);
+    let ended = run(row, arguments, profile.map(PathBuf::as_path));
     progress::clear();
     match ended {
         Ok(()) => Exit::Done.into(),
@@ -88,15 +102,29 @@ pub fn main() -> ExitCode {
     }
 }
 
+/// Runs a sub-command, and writes the profile of its stages if one is wanted, however it ended.
+fn run(row: &SubcommandRow, arguments: &ArgMatches, profile: Option<&Path>) -> Result<(), CommandFailure> {
+    let profile = profile.map(Destination::of).transpose()?;
+    let ended = (row.run)(arguments);
+    let written = profile.map_or(Ok(()), |file| file.write(|to| progress::write_profile(to)));
+    ended.and(written.map_err(CommandFailure::from))
+}
+
 /// Warnings go to standard error; the variable PERIS_LOG asks for more or less (for instance `PERIS_LOG=info`).
-fn start_log() {
+///
+/// Stages go to the line on the terminal and to their record.
+///
+/// - `profiles`: whether passes and rows are wanted, too.
+fn start_log(profiles: bool) {
     let filter = tracing_subscriber::EnvFilter::try_from_env("PERIS_LOG")
         .unwrap_or_else(|_| tracing_subscriber::EnvFilter::new("warn"));
-    let log = tracing_subscriber::fmt()
-        .with_env_filter(filter)
+    let log = tracing_subscriber::fmt::layer()
         .with_writer(std::io::stderr)
-        .with_ansi(std::io::stderr().is_terminal());
-    log.without_time().with_target(false).init();
+        .with_ansi(std::io::stderr().is_terminal())
+        .without_time()
+        .with_target(false)
+        .with_filter(filter);
+    tracing_subscriber::registry().with(log).with(StageLayer::new(progress::observe, profiles).filtered()).init();
 }
 
 #[cfg(test)]

@@ -1,10 +1,11 @@
 //! Where a scene comes from: a script file, or a name.
 
-use super::{CommandFailure, Exit, output, progress};
+use super::{CommandFailure, Exit, output};
 use crate::mesh;
 use crate::octree::Octree;
 use crate::scene::{Scene, Studio};
 use crate::script::{self, Evaluated, Inputs, ParameterAssignment};
+use crate::stages::stage;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -88,10 +89,10 @@ pub fn load(name: &str, definitions: &ScriptArguments) -> Result<Evaluated, Comm
             files: Vec::new(),
         });
     }
-    progress::stage("while evaluating the script");
     let inputs = Inputs { definitions: definitions.given.clone(), allowed: definitions.allow.clone() };
+    let stage = stage!("evaluating the script");
     let evaluated = script::load(name, &inputs)?;
-    progress::clear();
+    drop(stage);
     evaluated.printed.iter().for_each(|line| output::write_error(line));
     Ok(evaluated)
 }

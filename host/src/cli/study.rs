@@ -96,11 +96,9 @@ fn run(matches: &ArgMatches) -> Result<(), CommandFailure> {
 
 fn measure(arguments: &IlluminationArguments) -> Result<(), CommandFailure> {
     let folder = Folder::make(&arguments.output)?;
-    progress::stage("while studying");
     let memo = memo(&folder, ILLUMINATION, &format!("{:?}", arguments.roughness), arguments.resume)?;
     let watch = Watch { memo: Some(&memo), ..progress::watch() };
     let study = illumination(&arguments.roughness, &watch)?;
-    progress::clear();
     let table = study.csv();
     let csv =
         folder.write_or_save_elsewhere(&format!("{ILLUMINATION}.csv"), |file| file.write_all(table.as_bytes()))?;
@@ -127,14 +125,12 @@ fn sweep(knob: &KnobRow, arguments: &Arguments) -> Result<(), CommandFailure> {
     options.samples = arguments.samples.unwrap_or(options.samples);
     options.settings = arguments.settings.unwrap_or(options.settings);
     options.threads = arguments.threads;
-    progress::stage("while studying");
     let script = stem(&arguments.script);
     let name = format!("{script}-{}", knob.name);
     let words = format!("{name} {options:?} {}", serde_json::to_string(&scene)?);
     let memo = memo(&folder, &name, &words, arguments.resume)?;
     let watch = Watch { memo: Some(&memo), ..progress::watch() };
     let study = (knob.run)(&scene, &options, &watch)?;
-    progress::clear();
     let table = study.csv();
     let csv = folder.write_or_save_elsewhere(&format!("{name}.csv"), |file| file.write_all(table.as_bytes()))?;
     let [svg, png] = study.plot(&format!("{script}: {}", knob.summary)).write(&folder, &name)?;

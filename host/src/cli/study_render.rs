@@ -80,13 +80,11 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), CommandFailure> {
         .map(|knob| knob.name)
         .filter(|name| arguments.knob.is_empty() || arguments.knob.iter().any(|knob| knob == name));
     let (techniques, names): (Vec<Technique>, Vec<&str>) = (techniques.collect(), names.collect());
-    progress::stage("while studying");
     let script = stem(&arguments.script);
     let words = format!("{techniques:?} {names:?} {options:?} {}", serde_json::to_string(&scene)?);
     let memo = memo(&folder, &format!("{script}-{NAME}"), &words, arguments.resume)?;
     let watch = Watch { memo: Some(&memo), ..progress::watch() };
     let study = renderers(&scene, &techniques, &names, &options, &watch)?;
-    progress::clear();
     let table = study.csv();
     let csv =
         folder.write_or_save_elsewhere(&format!("{script}-{NAME}.csv"), |file| file.write_all(table.as_bytes()))?;

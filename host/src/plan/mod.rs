@@ -10,6 +10,7 @@ mod visibility;
 pub use stage::Stage;
 
 use crate::scene::{Prepared, View};
+use crate::stages::StageTotal;
 use decision::Decision;
 use serde::Serialize;
 
@@ -39,6 +40,9 @@ pub struct PlanEntry {
     pub needed: bool,
     /// The reason, in words.
     pub reason: String,
+    /// How long it took, seconds; none if that is not known, or cannot be told from other work.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seconds: Option<f64>,
 }
 
 /// What an entry decides on.
@@ -110,7 +114,7 @@ impl Plan {
         let forced = self.forced && forcible && !needed;
         let reason = if forced { format!("forced; {reason}") } else { reason };
         let needed = needed || forced;
-        self.entries.push(PlanEntry { kind, name, needed, reason });
+        self.entries.push(PlanEntry { kind, name, needed, reason, seconds: None });
         needed
     }
 
@@ -129,13 +133,26 @@ impl Plan {
         self.lights.get(index).copied().unwrap_or(true)
     }
 
-    /// The plan as a table for people.
+    /// Takes note of how long stages took.
+    ///
+    /// - `totals`: those of the work of the plan.
+    pub fn set_seconds(&mut self, totals: &[StageTotal]) {
+        for (entry, stage) in self.entries.iter_mut().zip(Stage::ALL) {
+            let work = totals.iter().filter(|total| stage.work().contains(&total.name));
+            entry.seconds = work.map(|total| total.seconds).reduce(|sum, seconds| sum + seconds);
+        }
+    }
+
+    /// The plan as a table for people; with a column of seconds, if those of any entry are known.
     pub fn table(&self) -> String {
         let width = self.entries.iter().map(|e| e.name.chars().count()).max().unwrap_or(0).max(4);
-        let mut text = format!("{:<7} {:<width$} {:<8} why\n", "what", "name", "");
+        let is_timed = self.entries.iter().any(|e| e.seconds.is_some());
+        let time = |seconds: String| if is_timed { format!("{seconds:>8} ") } else { String::new() };
+        let mut text = format!("{:<7} {:<width$} {:<8} {}why\n", "what", "name", "", time("seconds".into()));
         for e in &self.entries {
             let verdict = if e.needed { "needed" } else { "left out" };
-            text.push_str(&format!("{:<7} {:<width$} {verdict:<8} {}\n", e.kind.word(), e.name, e.reason));
+            let seconds = time(e.seconds.map(|seconds| format!("{seconds:.3}")).unwrap_or_default());
+            text.push_str(&format!("{:<7} {:<width$} {verdict:<8} {seconds}{}\n", e.kind.word(), e.name, e.reason));
         }
         text
     }

@@ -189,6 +189,18 @@ impl Stage {
         }
     }
 
+    /// The names of the [stages of work](crate::stages) that do nothing else.
+    pub(super) fn work(self) -> &'static [&'static str] {
+        match self {
+            Stage::Octree => &["building the octree"],
+            Stage::LightBuffer => &["building the light buffer"],
+            Stage::PhotonMap => &["allocating photon paths", "tracing photons"],
+            Stage::SurfacePoints => &["choosing points of surfaces"],
+            Stage::Radiosity => &["solving for radiosity"],
+            _ => &[],
+        }
+    }
+
     /// Whether running it without need changes nothing.
     pub(super) fn is_forcible(self) -> bool {
         !matches!(self, Stage::Spectra | Stage::PhotonMap | Stage::SurfacePoints | Stage::Radiosity)

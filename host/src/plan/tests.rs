@@ -104,6 +104,23 @@ fn a_light_without_power_is_left_out() {
 }
 
 #[test]
+fn seconds_of_all_work_of_a_stage_are_added_up() {
+    let prepared = Prepared::new(&scene()).expect("a scene");
+    let mut plan = Plan::new(&prepared, &prepared.view());
+    let total = |name, seconds| StageTotal { name, depth: 0, seconds, times: 1 };
+    let totals = [
+        total("tracing photons", 0.25),
+        total("rendering", 7.0),
+        total("tracing photons", 0.5),
+        total("allocating photon paths", 1.0),
+    ];
+    plan.set_seconds(&totals);
+    let seconds: Vec<_> = plan.entries.iter().filter_map(|e| Some((e.name.as_str(), e.seconds?))).collect();
+    assert_eq!(seconds, [("photon map", 1.75)]);
+    assert!(plan.table().lines().next().is_some_and(|head| head.contains(" seconds ")));
+}
+
+#[test]
 fn a_forced_plan_leaves_nothing_out_and_says_so() {
     let mut scene = scene();
     scene.lights.clear();
@@ -116,6 +133,7 @@ fn a_forced_plan_leaves_nothing_out_and_says_so() {
     assert!(Stage::ALL.into_iter().all(|s| plan.needs(s) != others.contains(&s)));
     assert!(plan.entries.iter().any(|e| e.reason.starts_with("forced; no light")));
     assert!(plan.table().lines().count() == plan.entries.len() + 1);
+    assert!(!plan.table().contains("seconds"));
     let json = serde_json::to_value(&plan).expect("plain data");
     assert_eq!(json["forced"], true);
     assert_eq!(json["entries"][0]["name"], "octree");

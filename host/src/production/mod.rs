@@ -7,9 +7,10 @@ mod progressive;
 
 pub use closed_form::{difference, view_of_dials};
 pub use error::ProductionError;
-pub use progressive::{Progressive, RenderingEvent};
+pub use progressive::{Progressive, RenderingEvent, VIEW_STAGE};
 pub use rendered_view::RenderedView;
 
+use crate::stages::Workers;
 use crate::{
     picture::{Picture, display::DisplayTransform},
     plan::Plan,
@@ -288,8 +289,8 @@ pub fn tiling(scene: &Scene, threads: Option<NonZeroUsize>, watch: &Watch<'_>) -
     // Surfaces out of view send light, too, and come into view.
     prepared.settings.light.interreflection.count();
     let plan = Plan::new(&prepared, &prepared.view());
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, |n| n.get())).build();
-    let tiling = pool.map_err(RenderError::from)?.install(|| {
+    let workers = Workers::new(threads).map_err(RenderError::from)?;
+    let tiling = workers.install(|| {
         let solution =
             Radiosity::new(&World::new(&prepared, &plan)?, &plan, &prepared.settings.radiosity, None, watch)?;
         Tiling::new(&solution, &prepared, &plan, MOST_CORNERS)

@@ -6,10 +6,10 @@ use crate::{
     picture::{Picture, display::DisplayTransform},
     plan::Plan,
     render::{
-        Film, Progress, RenderError, RenderOrder, Task, Watch, metering::Meter, ray_tracer_watched,
-        ray_tracing::Checkpoints,
+        Film, RenderError, RenderOrder, Task, Watch, metering::Meter, ray_tracer_watched, ray_tracing::Checkpoints,
     },
     scene::{Prepared, View},
+    stages::stage,
 };
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, mpsc};
@@ -18,13 +18,12 @@ use std::time::{Duration, Instant};
 /// How often a part of an image is told of; less often where making it takes long.
 const EVERY: Duration = Duration::from_millis(150);
 
-/// What is told of a rendering.
+/// The name of the stage within which a view is rendered in a thread of its own.
+pub const VIEW_STAGE: &str = "rendering the view";
+
+/// What is told of a rendering, beside its stages, which are within one of the name [`VIEW_STAGE`].
 #[derive(Debug)]
 pub enum RenderingEvent {
-    /// Another stage of the work began: words such as `while rendering`.
-    Stage(&'static str),
-    /// More of a stage before the image is done.
-    Amount(Progress),
     /// There is more of the image.
     Part {
         /// The image as a display shows it; pixels without samples are black.
@@ -61,14 +60,8 @@ impl Progressive {
         let work = move || {
             // Nobody may be listening any more.
             let tell = |news| drop(sender.send(news));
-            let stage = |name| tell(RenderingEvent::Stage(name));
-            // How many samples there are, parts of the image tell.
-            let progress = |amount: Progress| {
-                if amount.unit != "samples" {
-                    tell(RenderingEvent::Amount(amount));
-                }
-            };
-            let watch = Watch { cancelled: &cancelled, stage: &stage, progress: &progress, memo: None };
+            let _stage = stage!("rendering the view");
+            let watch = Watch { cancelled: &cancelled, memo: None };
             let mut part = |part: RenderingEvent| tell(part);
             tell(RenderingEvent::End(
                 render_view(&prepared, &view, &options, &display, &watch, Some(&mut part)).map(Box::new),
@@ -79,18 +72,14 @@ impl Progressive {
         Ok(Progressive { events: news, is_cancelled })
     }
 
-    /// What is new, oldest first; of parts and amounts that follow each other, the last one only.
+    /// What is new, oldest first; of parts that follow each other, the last one only.
     pub fn events(&self) -> Vec<RenderingEvent> {
         let mut all: Vec<RenderingEvent> = Vec::new();
         loop {
             match self.events.try_recv() {
                 Ok(news) => {
-                    let is_outdated = matches!(
-                        (all.last(), &news),
-                        (Some(RenderingEvent::Part { .. }), RenderingEvent::Part { .. })
-                            | (Some(RenderingEvent::Amount(_)), RenderingEvent::Amount(_))
-                    );
-                    if is_outdated {
+                    let parts = (all.last(), &news);
+                    if matches!(parts, (Some(RenderingEvent::Part { .. }), RenderingEvent::Part { .. })) {
                         all.pop();
                     }
                     all.push(news);

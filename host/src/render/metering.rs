@@ -17,6 +17,7 @@ use crate::color::srgb::LUMINANCE;
 use crate::picture::display::{DisplayTransform, Exposure, MIDDLE_GREY, Tone};
 use crate::picture::{Filter, Picture};
 use crate::scene::{Prepared, Settings, View};
+use crate::stages::stage;
 use glam::DVec3;
 use std::num::NonZeroUsize;
 
@@ -83,7 +84,7 @@ impl Meter {
             Exposure::Auto { compensation } => compensation,
             Exposure::Stops(stops) => return Ok(stops),
         };
-        (watch.stage)("while metering the exposure");
+        let _stage = stage!("metering the exposure", opaque);
         let order = RenderOrder {
             width: self.width,
             height: self.height,
@@ -96,7 +97,7 @@ impl Meter {
         };
         let mut seen = MeteredPixels::default();
         for view in views {
-            let pilot = renderer.render(view, &order, &watch.quiet())?;
+            let pilot = renderer.render(view, &order, &watch.without_memo())?;
             if !pilot.complete {
                 return Ok(0.0);
             }

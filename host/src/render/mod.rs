@@ -36,5 +36,5 @@ pub use renderers::{
 pub use rendering::{RayCounts, Rendering, SpanCounts};
 pub use state::{Fingerprint, RenderState, StateError};
 pub use tally::{PathClass, PixelSample, RadianceByClass, Tally};
-pub use watch::{Progress, Watch};
+pub use watch::Watch;
 pub use world::World;

@@ -112,7 +112,6 @@ pub const RENDERERS: [RendererRow; 4] = [
         // Surfaces out of view send light, too.
         require: |settings| settings.light.interreflection.count(),
         prepare: |task| {
-            (task.watch.stage)("while solving for radiosity");
             let world = World::new(task.prepared, task.plan)?;
             let solution = Radiosity::new(&world, task.plan, &task.prepared.settings.radiosity, None, &task.watch)?;
             let radiosity = Some(solution.report);
@@ -213,14 +212,11 @@ pub fn ray_tracer_watched<'a>(
     task: &Task<'a>,
 ) -> Result<(RayTracer<'a>, Option<radiosity::RadiosityReport>), RenderError> {
     let Task { prepared, plan, photon_store, watch } = *task;
-    (watch.stage)("while building the octree");
     let world = World::new(prepared, plan)?;
-    (watch.stage)("while allocating photon paths");
     let tracer = RayTracer::new(world, plan, photon_store);
     if !plan.needs(Stage::Radiosity) {
         return Ok((tracer, None));
     }
-    (watch.stage)("while solving for radiosity");
     let solution = {
         let photons = tracer.photon_estimator(&watch);
         let sent = photons.as_ref().map(|photons| |triangle, outside, at| photons.exitance(triangle, outside, at));

@@ -4,9 +4,9 @@ use super::Motion;
 use super::acceleration::{Acceleration, AccelerationKey, SceneOctree};
 use super::prepared::Contents;
 use crate::octree::{Octree, OctreeError, OctreeSettings};
+use crate::stages::stage;
 use std::collections::HashMap;
 use std::sync::Arc;
-use std::time::Instant;
 
 impl Contents {
     /// The octrees over the objects that are included. Those that were built last are given again for the same objects:
@@ -18,10 +18,10 @@ impl Contents {
         if let Some(acceleration) = self.octrees.get(&kept) {
             return Ok(acceleration);
         }
-        let start = Instant::now();
+        let stage = stage!("building the octree");
         let still = self.still(&kept)?;
         let moving = if kept.motions { self.moving(&kept)? } else { Vec::new() };
-        let acceleration = Arc::new(Acceleration { still, moving, build: start.elapsed() });
+        let acceleration = Arc::new(Acceleration { still, moving, build: stage.elapsed() });
         self.octrees.store(kept, &acceleration);
         Ok(acceleration)
     }

@@ -13,6 +13,7 @@ use crate::illumination::{Light, Material, RgbPower};
 use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
 use crate::numeric::triangle::MAX_MAGNITUDE;
+use crate::stages::stage;
 use glam::{DMat3, DMat4, DVec2, DVec3, Vec3};
 use rustc_hash::FxHashMap;
 use std::ops::Deref;
@@ -114,6 +115,7 @@ impl Prepared {
     /// # Errors
     /// [`SceneError`], for a value out of range or a mesh that cannot be made or read.
     pub fn new(scene: &Scene) -> Result<Prepared, SceneError> {
+        let _stage = stage!("building the geometry");
         let contents = Contents::new(scene).map_err(|error| scene.origins.located(error))?;
         Ok(Prepared { contents: Arc::new(contents), settings: scene.settings })
     }

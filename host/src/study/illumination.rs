@@ -8,7 +8,8 @@ use super::sweep::short;
 use crate::illumination::distribution::measure::{emitted_share, light_at, received_share, reciprocity_residual};
 use crate::illumination::distribution::{Distribution, FAMILY};
 use crate::numeric::sampling::{RandomStream, r2_point};
-use crate::render::{Memo, Progress, Watch};
+use crate::render::{Memo, Watch};
+use crate::stages::stage;
 use serde::{Deserialize, Serialize};
 use std::hint::black_box;
 use std::sync::atomic::Ordering;
@@ -70,7 +71,7 @@ pub struct IlluminationRow {
 /// # Errors
 /// [`StudyError::Distribution`] for a roughness that is not provided for, or [`StudyError::Interrupted`].
 pub fn illumination(roughness: &[f64], watch: &Watch<'_>) -> Result<IlluminationStudy, StudyError> {
-    let steps = (roughness.len() * FAMILY.len()) as u64;
+    let stage = stage!("studying", (roughness.len() * FAMILY.len()) as f64, "distributions", opaque);
     let mut rows = Vec::new();
     for &m in roughness {
         for member in FAMILY {
@@ -79,7 +80,7 @@ pub fn illumination(roughness: &[f64], watch: &Watch<'_>) -> Result<Illumination
             }
             let make = || Ok::<_, StudyError>(row(member.name, m, (member.make)(m)?.as_ref()));
             rows.push(Memo::next(watch.memo, make)?);
-            (watch.progress)(Progress::of(rows.len() as u64, steps, "distributions"));
+            stage.progress(rows.len() as f64);
         }
     }
     Ok(IlluminationStudy { incidences: INCIDENCES.to_vec(), rows })

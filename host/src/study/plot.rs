@@ -18,6 +18,8 @@ const PNG_SCALE: u32 = 2;
 const CURVE: usize = 24;
 /// Name under which the embedded font is known to the plotting library, and a generic family in SVG.
 const FONT: &str = "sans-serif";
+/// The colour of text and axes.
+const DARK: RGBColor = RGBColor(30, 30, 30);
 /// Colours of the series: dark enough on white, and told apart by people who do not tell red from green.
 const COLORS: [RGBColor; 10] = [
     RGBColor(0, 90, 160),
@@ -231,21 +233,17 @@ impl Plot {
         scale: u32,
     ) -> Result<(), PlotError> {
         embed_font();
-        let failed = |e: &dyn std::fmt::Display| PlotError::Draw(e.to_string());
         let (x0, x1) = self.range(self.x_axis, |p| p.x).ok_or(PlotError::Empty)?;
         let (y0, y1) = self.range(self.y_axis, |p| p.y).ok_or(PlotError::Empty)?;
         // What is never negative begins at 0.
         let is_above =
             self.y_axis == Axis::Linear && self.series.iter().flat_map(|s| self.visible(s)).all(|p| p.y >= 0.0);
         let y0 = if is_above { 0.0 } else { y0 };
-        let points = |n: u32| f64::from(n * scale);
         let (x_ticks, y_ticks) = (self.x_axis.ticks(x0, x1), self.y_axis.ticks(y0, y1));
         let (x_axis, y_axis) = (self.x_axis, self.y_axis);
-        let place = |p: &PlotPoint| (x_axis.position(p.x), y_axis.position(p.y));
         area.fill(&WHITE).map_err(|e| failed(&e))?;
         let (head, body) = area.split_vertically(54 * scale);
-        let dark = RGBColor(30, 30, 30);
-        let text = |size: u32| TextStyle::from((FONT, points(size))).color(&dark);
+        let text = |size: u32| text_style(size, scale);
         let at = |x: u32, y: u32| ((x * scale) as i32, (y * scale) as i32);
         head.draw_text(&self.title, &text(18), at(16, 10)).map_err(|e| failed(&e))?;
         head.draw_text(&self.note, &text(13), at(16, 34)).map_err(|e| failed(&e))?;
@@ -270,7 +268,7 @@ impl Plot {
             .y_label_formatter(&|y| tick_text(y_axis.number(*y)))
             .label_style(text(13))
             .axis_desc_style(text(15))
-            .axis_style(dark.stroke_width(scale))
+            .axis_style(DARK.stroke_width(scale))
             .bold_line_style(RGBColor(215, 215, 215).stroke_width(scale))
             .light_line_style(TRANSPARENT)
             .set_all_tick_mark_size(5 * scale)
@@ -279,47 +277,92 @@ impl Plot {
         // Rows of the legend come closer where there are many.
         let row = ROW.min((SIZE.1 - 70) / self.series.len().max(1) as u32);
         for (index, series) in self.series.iter().enumerate() {
-            let color = COLORS[index % COLORS.len()];
-            let strokes = STROKES[index % STROKES.len()];
-            let style = color.stroke_width(2 * scale);
-            // Many points are a curve.
-            let dot = if self.visible(series).count() > CURVE { 1 } else { 4 };
-            for run in series.points.split(|point| !self.is_plottable(point)) {
-                let line = || run.iter().map(place);
-                let drawn = match strokes {
-                    (_, 0) => chart.draw_series(LineSeries::new(line(), style)).map(drop),
-                    (on, off) => {
-                        chart.draw_series(DashedLineSeries::new(line(), on * scale, off * scale, style)).map(drop)
-                    }
-                };
-                drawn.map_err(|e| failed(&e))?;
-                chart
-                    .draw_series(line().map(|at| Circle::new(at, dot * scale, color.filled())))
-                    .map_err(|e| failed(&e))?;
-            }
-            // Errors fall as time grows: below and to the left of the last curve there is room.
-            let corner = Pos::new(HPos::Right, VPos::Top);
-            let small = TextStyle::from((FONT, points(12))).color(&color).pos(corner);
-            let beside_point = (-6 * scale as i32, 3 * scale as i32);
-            let beside =
-                |p: &PlotPoint| EmptyElement::at(place(p)) + Text::new(p.label.clone(), beside_point, small.clone());
-            chart.draw_series(self.visible(series).map(beside)).map_err(|e| failed(&e))?;
-            let middle = 20 + row * index as u32;
-            let (on, off) = strokes;
-            let gap = if off == 0 { SAMPLE } else { on + off };
-            for begin in (0..SAMPLE).step_by(gap as usize) {
-                let end = (begin + if off == 0 { SAMPLE } else { on }).min(SAMPLE);
-                let stroke = PathElement::new([at(begin, middle), at(end, middle)], style);
-                legend.draw(&stroke).map_err(|e| failed(&e))?;
-            }
-            legend
-                .draw(&Circle::new(at(SAMPLE / 2, middle), dot.min(3) * scale, color.filled()))
-                .map_err(|e| failed(&e))?;
-            let name = text(14).pos(Pos::new(HPos::Left, VPos::Center));
-            legend.draw_text(&series.name, &name, at(SAMPLE + 8, middle)).map_err(|e| failed(&e))?;
+            let look = SeriesLook {
+                color: COLORS[index % COLORS.len()],
+                strokes: STROKES[index % STROKES.len()],
+                // Many points are a curve.
+                dot: if self.visible(series).count() > CURVE { 1 } else { 4 },
+                scale,
+            };
+            self.draw_series(&mut chart, series, look)?;
+            look.draw_legend(&legend, &series.name, 20 + row * index as u32)?;
         }
         area.present().map_err(|e| failed(&e))
     }
+
+    /// Draws a series: its strokes, its points and their labels.
+    fn draw_series<B: DrawingBackend>(
+        &self,
+        chart: &mut ChartContext<'_, B, Cartesian2d<AxisTicks, AxisTicks>>,
+        series: &Series,
+        SeriesLook { color, strokes, dot, scale }: SeriesLook,
+    ) -> Result<(), PlotError> {
+        let place = |p: &PlotPoint| (self.x_axis.position(p.x), self.y_axis.position(p.y));
+        let style = color.stroke_width(2 * scale);
+        for run in series.points.split(|point| !self.is_plottable(point)) {
+            let line = || run.iter().map(place);
+            let drawn = match strokes {
+                (_, 0) => chart.draw_series(LineSeries::new(line(), style)).map(drop),
+                (on, off) => chart.draw_series(DashedLineSeries::new(line(), on * scale, off * scale, style)).map(drop),
+            };
+            drawn.map_err(|e| failed(&e))?;
+            chart.draw_series(line().map(|at| Circle::new(at, dot * scale, color.filled()))).map_err(|e| failed(&e))?;
+        }
+        // Errors fall as time grows: below and to the left of the last curve there is room.
+        let corner = Pos::new(HPos::Right, VPos::Top);
+        let small = TextStyle::from((FONT, f64::from(12 * scale))).color(&color).pos(corner);
+        let beside_point = (-6 * scale as i32, 3 * scale as i32);
+        let beside =
+            |p: &PlotPoint| EmptyElement::at(place(p)) + Text::new(p.label.clone(), beside_point, small.clone());
+        chart.draw_series(self.visible(series).map(beside)).map_err(|e| failed(&e))?;
+        Ok(())
+    }
+}
+
+/// How a series looks.
+#[derive(Clone, Copy)]
+struct SeriesLook {
+    color: RGBColor,
+    /// Lengths of strokes and of the gaps between them; no gap for an unbroken line.
+    strokes: (u32, u32),
+    /// Radius of points.
+    dot: u32,
+    /// Pixels per unit.
+    scale: u32,
+}
+
+impl SeriesLook {
+    /// Draws its row of a legend.
+    ///
+    /// - `middle`: of the row, from above.
+    fn draw_legend<B: DrawingBackend>(
+        self,
+        legend: &DrawingArea<B, plotters::coord::Shift>,
+        name: &str,
+        middle: u32,
+    ) -> Result<(), PlotError> {
+        let SeriesLook { color, strokes: (on, off), dot, scale } = self;
+        let at = |x: u32, y: u32| ((x * scale) as i32, (y * scale) as i32);
+        let gap = if off == 0 { SAMPLE } else { on + off };
+        for begin in (0..SAMPLE).step_by(gap as usize) {
+            let end = (begin + if off == 0 { SAMPLE } else { on }).min(SAMPLE);
+            let stroke = PathElement::new([at(begin, middle), at(end, middle)], color.stroke_width(2 * scale));
+            legend.draw(&stroke).map_err(|e| failed(&e))?;
+        }
+        let sample = Circle::new(at(SAMPLE / 2, middle), dot.min(3) * scale, color.filled());
+        legend.draw(&sample).map_err(|e| failed(&e))?;
+        let style = text_style(14, scale).pos(Pos::new(HPos::Left, VPos::Center));
+        legend.draw_text(name, &style, at(SAMPLE + 8, middle)).map_err(|e| failed(&e))
+    }
+}
+
+fn failed(error: &dyn std::fmt::Display) -> PlotError {
+    PlotError::Draw(error.to_string())
+}
+
+/// Dark text of a size.
+fn text_style(size: u32, scale: u32) -> TextStyle<'static> {
+    TextStyle::from((FONT, f64::from(size * scale))).color(&DARK)
 }
 
 /// Makes the embedded font known, once.

@@ -2,7 +2,8 @@
 
 use super::StudyError;
 use super::plot::{Axis, Plot, PlotPoint, Series};
-use crate::render::{Memo, Progress, Watch};
+use crate::render::{Memo, Watch};
+use crate::stages::stage;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::Ordering;
 
@@ -90,16 +91,16 @@ struct TriedSetting {
 /// The first [`StudyError`], or [`StudyError::Interrupted`].
 pub fn sweep<K: Knob>(knob: &K, watch: &Watch<'_>) -> Result<Study, StudyError> {
     let (settings, finest) = knob.settings();
-    let steps = settings.len() as u64 + 1;
-    let quiet = watch.quiet();
+    let stage = stage!("studying", settings.len() as f64 + 1.0, "measurements", opaque);
+    let unkept = watch.without_memo();
     let run = |setting| {
-        let trial = knob.run(setting, &quiet)?;
+        let trial = knob.run(setting, &unkept)?;
         if watch.cancelled.load(Ordering::Relaxed) { Err(StudyError::Interrupted) } else { Ok(trial) }
     };
     let mut rows = Vec::new();
     // The first run warms the machine; its time is not kept.
     let reference = run(finest)?;
-    (watch.progress)(Progress::of(1, steps, "measurements"));
+    stage.progress(1.0);
     let tried = |setting| -> Result<TriedSetting, StudyError> {
         let mut trial = run(setting)?;
         let mut spent = trial.seconds;
@@ -124,7 +125,7 @@ pub fn sweep<K: Knob>(knob: &K, watch: &Watch<'_>) -> Result<Study, StudyError> 
         let tried = Memo::next(watch.memo, || tried(setting))?;
         count_names = tried.count_names;
         rows.push(tried.row);
-        (watch.progress)(Progress::of(index as u64 + 2, steps, "measurements"));
+        stage.progress(index as f64 + 2.0);
     }
     Ok(Study {
         setting: knob.setting().to_owned(),

@@ -6,7 +6,7 @@ use super::{
 };
 use protocol::{
     address::Conditions,
-    capture::{CaptureReader, Event, HEADER, is_capture},
+    capture::{CaptureReader, Event, HEADER, Record, is_capture},
 };
 use std::{
     collections::BTreeMap,
@@ -153,17 +153,10 @@ async fn play(
                     let line = match lines.get(&record.line) {
                         Some(line) => *line,
                         None if lines.len() >= MAX_HOSTS => continue,
-                        None => {
-                            let line = super::next_line();
-                            lines.insert(record.line, line);
-                            let (kind, interface) = interface(&record.event);
-                            let peer = format!("{kind}{peer} line {}", record.line);
-                            let writer = silent_writer(line, around.clone());
-                            if !around.attach(line, peer, interface, writer).await {
-                                return;
-                            }
-                            line
-                        }
+                        None => match open_line(peer, &record, &around).await {
+                            Some(line) => *lines.entry(record.line).or_insert(line),
+                            None => return,
+                        },
                     };
                     match record.event {
                         Event::FromHost(bytes) => around.receive(line, bytes).await,
@@ -183,6 +176,15 @@ async fn play(
     for line in lines.into_values() {
         around.close(line, None).await;
     }
+}
+
+/// Attaches a line of a capture to the machine; none if the machine has ended.
+async fn open_line(peer: &str, record: &Record, around: &LineContext) -> Option<LineId> {
+    let line = super::next_line();
+    let (kind, interface) = interface(&record.event);
+    let peer = format!("{kind}{peer} line {}", record.line);
+    let writer = silent_writer(line, around.clone());
+    around.attach(line, peer, interface, writer).await.then_some(line)
 }
 
 /// The protocol of a captured line, and how the names of such hosts begin.

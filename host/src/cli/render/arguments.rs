@@ -100,7 +100,8 @@ pub(super) struct RenderArguments {
     /// Leaves nothing out; the picture is the same
     #[arg(long)]
     pub(super) everything: bool,
-    /// Tells how much work it was, too: triangles, rays or spans, radiosity, photons. --json has all of it
+    /// Tells how long each stage took and how much work it was, too: triangles, rays or spans, radiosity, photons. --json
+    /// has all of it
     #[arg(long)]
     pub(super) stats: bool,
     /// Reports as JSON on standard output

@@ -12,14 +12,15 @@ use crate::picture::display::DisplayTransform;
 use crate::plan::Plan;
 use crate::render::metering::Meter;
 use crate::render::two_way::PhotonStore;
-use crate::render::{AnyRenderer, Film, Fingerprint, PreparedRenderer, RenderError, Task, Watch};
+use crate::render::{AnyRenderer, Film, Fingerprint, PreparedRenderer, RenderError, RenderOrder, Task, Watch};
 use crate::scene::Prepared;
+use crate::stages::{Workers, stage};
 use arguments::RenderArguments;
 use clap::{Args, FromArgMatches};
 use files::Destination;
 use saved::{Intermediate, Saved};
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use views::ViewBatch;
 
 pub(super) const ROW: SubcommandRow = SubcommandRow {
@@ -41,16 +42,12 @@ fn run(arguments: &RenderArguments) -> Result<(), CommandFailure> {
     // Several views are exposed as the first, which is that of the scene.
     let meter = Meter::new(&scene.settings, &display, arguments.threads);
     arguments.set(&mut scene.settings);
-    let start = Instant::now();
-    progress::stage("while building the geometry");
+    let preparing = stage!("preparing");
     let prepared = Prepared::new(&scene)?;
     let views = arguments.views_of(&prepared)?;
     let plan = Plan::of_views(&prepared, &views, arguments.everything);
     let order = arguments.render_options(&prepared.settings);
-    if order.denoise && order.samples < 2 {
-        let message = "--denoise needs 2 samples in each pixel: what differs between them is noise";
-        return Err(CommandFailure::new(Exit::Usage, anyhow::anyhow!(message)));
-    }
+    check_denoising(&order)?;
     let every = Duration::from_secs_f64(arguments.checkpoint.min(1e9));
     let intermediate = Intermediate::of(arguments, &plan);
     let keeps = |(path, lasts): (&Path, bool)| PhotonStore::new(path, &scene, &prepared, every, lasts);
@@ -69,7 +66,7 @@ fn run(arguments: &RenderArguments) -> Result<(), CommandFailure> {
         prepared: &prepared,
         display: &display,
         stops: 0.0,
-        start,
+        build_seconds: 0.0,
         radiosity: None,
         saved: None,
         comes_bit_by_bit: false,
@@ -79,14 +76,17 @@ fn run(arguments: &RenderArguments) -> Result<(), CommandFailure> {
         all.saved = Some(Saved::read(arguments, every, state, fingerprint, &order)?);
     }
     let task = Task { prepared: &prepared, plan: &plan, photon_store: photon_store.as_ref(), watch };
-    let PreparedRenderer { renderer, radiosity } = in_pool(arguments, || arguments.renderer.prepare(&task))?;
+    let workers = Workers::new(arguments.threads).map_err(RenderError::from)?;
+    let PreparedRenderer { renderer, radiosity } = workers.install(|| arguments.renderer.prepare(&task))?;
     all.radiosity = radiosity;
     if let (Some(pixel), AnyRenderer::BySamples(tracer)) = (arguments.pixel, &renderer) {
-        progress::stage("while sampling the pixel");
+        let _stage = stage!("sampling the pixel");
         return pixel::explain(arguments, tracer, &views[0], &order, pixel);
     }
     renderer.any().left_out(&views[0]).iter().for_each(|what| warn(&format!("by {}, {what}", row.word)));
     all.stops = meter.stops(renderer.any(), &prepared, &views[..1], &watch)?;
+    all.build_seconds = preparing.seconds();
+    drop(preparing);
     let ended = match &renderer {
         AnyRenderer::Whole(renderer) => all.render(&mut |view, _, _| Ok(renderer.render(view, &order, &watch)?)),
         AnyRenderer::BySamples(tracer) => {
@@ -104,12 +104,11 @@ fn run(arguments: &RenderArguments) -> Result<(), CommandFailure> {
     ended
 }
 
-/// Makes something on as many threads as are asked for.
-fn in_pool<T: Send>(
-    arguments: &RenderArguments,
-    make: impl FnOnce() -> Result<T, RenderError> + Send,
-) -> Result<T, CommandFailure> {
-    let threads = arguments.threads.map_or(0, |n| n.get());
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(anyhow::Error::from)?;
-    Ok(pool.install(make)?)
+/// Checks that a picture that is to be denoised has the samples for it.
+fn check_denoising(order: &RenderOrder) -> Result<(), CommandFailure> {
+    if order.denoise && order.samples < 2 {
+        let message = "--denoise needs 2 samples in each pixel: what differs between them is noise";
+        return Err(CommandFailure::new(Exit::Usage, anyhow::anyhow!(message)));
+    }
+    Ok(())
 }

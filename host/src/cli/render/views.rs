@@ -13,10 +13,10 @@ use crate::render::radiosity::RadiosityReport;
 use crate::render::ray_tracing::Checkpoints;
 use crate::render::{Film, Rendering};
 use crate::scene::{Prepared, View};
+use crate::stages::{StageTotal, stage};
 use files::Destination;
 use serde_json::Value;
 use std::path::Path;
-use std::time::Instant;
 
 /// The part of the pixels that are clipped from which on it is told: less than it are lamps in sight.
 const REPORTED_CLIPPING: f64 = 1e-3;
@@ -36,8 +36,8 @@ pub(super) struct ViewBatch<'a> {
     pub(super) display: &'a DisplayTransform,
     /// The exposure of all views, stops.
     pub(super) stops: f64,
-    /// When the work began.
-    pub(super) start: Instant,
+    /// How long it took until the first view could be rendered, seconds.
+    pub(super) build_seconds: f64,
     /// What radiosity took.
     pub(super) radiosity: Option<RadiosityReport>,
     /// Where films are kept, and what was there.
@@ -63,7 +63,6 @@ impl ViewBatch<'_> {
     }
 
     fn render_all(&mut self, render: &mut Render<'_>, reports: &mut Vec<Value>) -> Result<(), CommandFailure> {
-        let build_seconds = self.start.elapsed().as_secs_f64();
         let mut missing: f64 = 0.0;
         for (number, (view, outputs)) in self.views.iter().zip(self.outputs).enumerate() {
             if self.saved.as_ref().is_some_and(|saved| saved.has_finished(number, outputs)) {
@@ -85,7 +84,6 @@ impl ViewBatch<'_> {
                 false => saved.write(number, &rendering.film),
             });
             drop(keeping);
-            progress::clear();
             let clipped = written?;
             if clipped > REPORTED_CLIPPING && self.display.tone == Tone::Linear {
                 let part = 100.0 * clipped;
@@ -96,8 +94,8 @@ impl ViewBatch<'_> {
             if is_whole {
                 let outputs: Vec<&Path> = outputs.iter().map(Destination::path).collect();
                 match self.arguments.json {
-                    true => reports.push(self.json(&outputs, &rendering, build_seconds)),
-                    false => self.report(&outputs, &rendering, build_seconds),
+                    true => reports.push(self.json(&outputs, &rendering)),
+                    false => self.report(&outputs, &rendering),
                 }
             }
             kept?;
@@ -134,6 +132,7 @@ impl ViewBatch<'_> {
 
     /// Writes the files of a view; the part of the pixels that are clipped in a PNG file, 0..=1.
     fn write(&self, outputs: &[Destination], view: &View, rendering: &Rendering) -> Result<f64, CommandFailure> {
+        let _stage = stage!("writing");
         let Rendering { picture, film, .. } = rendering;
         let provenance = self.provenance(rendering);
         let is_seen = outputs.iter().any(|file| !Picture::is_exr(file.path()));
@@ -164,7 +163,7 @@ impl ViewBatch<'_> {
         }
     }
 
-    fn json(&self, outputs: &[&Path], rendering: &Rendering, build_seconds: f64) -> serde_json::Value {
+    fn json(&self, outputs: &[&Path], rendering: &Rendering) -> serde_json::Value {
         let picture = &rendering.picture;
         serde_json::json!({
             "files": outputs,
@@ -176,7 +175,7 @@ impl ViewBatch<'_> {
             "exposure": self.stops,
             "tone": self.display.tone.word(),
             "triangles": self.prepared.triangles.len(),
-            "build_seconds": build_seconds,
+            "build_seconds": self.build_seconds,
             "render_seconds": rendering.seconds,
             "threads": rendering.threads,
             "rays": rendering.rays,
@@ -185,11 +184,12 @@ impl ViewBatch<'_> {
             "radiosity": self.radiosity,
             "denoised": self.arguments.denoise,
             "complete": rendering.complete,
+            "stages": progress::totals(),
             "pixels_over_error": self.arguments.error.map(|target| rendering.film.missing(target)),
         })
     }
 
-    fn report(&self, outputs: &[&Path], rendering: &Rendering, build_seconds: f64) {
+    fn report(&self, outputs: &[&Path], rendering: &Rendering) {
         let picture = &rendering.picture;
         let [least, most] = rendering.film.samples();
         let names: Vec<String> = outputs.iter().map(|p| p.display().to_string()).collect();
@@ -207,7 +207,8 @@ impl ViewBatch<'_> {
             picture.width(),
             picture.height()
         );
-        let (seconds, threads, memory) = (rendering.seconds, rendering.threads, memory::readable(memory::peak()));
+        let (build_seconds, memory) = (self.build_seconds, memory::readable(memory::peak()));
+        let (seconds, threads) = (rendering.seconds, rendering.threads);
         say!("rendered in {seconds:.3} s after {build_seconds:.3} s of preparation, on {threads} threads in {memory}");
         if outputs.iter().any(|output| !Picture::is_exr(output)) {
             say!("exposed by {:+.2} stops, tone {}", self.stops, self.display.tone.word());
@@ -219,6 +220,10 @@ impl ViewBatch<'_> {
 
     /// Says how much work it was.
     fn report_statistics(&self, rendering: &Rendering) {
+        for StageTotal { name, depth, seconds, times } in progress::totals() {
+            let times = if times > 1 { format!(", {times} times") } else { String::new() };
+            say!("{seconds:>9.3} s  {:indent$}{name}{times}", "", indent = 2 * depth);
+        }
         say!("{} triangles", self.prepared.triangles.len());
         if let Some(balance) = &rendering.flux_balance {
             say!("{balance}");

@@ -21,7 +21,6 @@ pub(super) fn modelled(
     let light = if arguments.radiosity {
         warn_of_emptiness(scene);
         let light = tiling(scene, arguments.threads, &progress::watch())?;
-        progress::clear();
         Some(light)
     } else {
         None

@@ -3,10 +3,10 @@
 
 use super::{arguments::ShowArguments, edits::Edit, view_reporter::ViewReporter};
 use crate::{
-    cli::{CommandFailure, exit::story, output, progress},
+    cli::{CommandFailure, exit::story, output, progress, progress::Progress},
     picture::display::DisplayTransform,
-    production::{Production, ProductionError, Progressive, RenderedView, RenderingEvent},
-    render::{Progress, RenderOrder},
+    production::{Production, ProductionError, Progressive, RenderedView, RenderingEvent, VIEW_STAGE},
+    render::RenderOrder,
     scene::Scene,
     workstation::{
         Emulator, WorkstationError,
@@ -36,7 +36,7 @@ pub(super) struct Server<'a> {
     display: DisplayTransform,
     rendering: Option<Progressive>,
     /// What the rendering does now, in words.
-    stage: &'static str,
+    stage: String,
     /// What the key to render says now.
     label: String,
     operator_commands: OperatorCommands,
@@ -72,7 +72,7 @@ impl<'a> Server<'a> {
             options: order,
             display: scene.display,
             rendering: None,
-            stage: "",
+            stage: String::new(),
             label: String::new(),
             operator_commands: orders,
         }
@@ -181,31 +181,36 @@ impl<'a> Server<'a> {
         let Some(rendering) = &self.rendering else { return Ok(()) };
         for news in rendering.events() {
             match news {
-                RenderingEvent::Stage(stage) => {
-                    progress::stage(stage);
-                    self.stage = progress::words(stage);
-                    self.production.show_message(self.stage)?;
-                }
-                RenderingEvent::Amount(amount) => {
-                    progress::update(amount);
-                    self.production.show_message(&format!("{}: {}", self.stage, progress::describe(amount)))?;
-                }
                 RenderingEvent::Part { shown, rows, samples, seconds_left } => {
                     self.production.show_rows(&shown, |row| rows[row as usize])?;
                     let all = self.options.samples;
-                    let amount = Progress { done: samples, all: all.into(), unit: "samples" };
+                    let amount = Progress { done: samples, all: all.into(), unit: "samples".into() };
                     let left = progress::clock(seconds_left);
-                    progress::update(amount);
-                    self.production.show_message(&format!("{}, {left} left", progress::describe(amount)))?;
+                    self.production.show_message(&format!("{}, {left} left", progress::describe(&amount)))?;
                     self.write_label(&format!("{:.0} %", 100.0 * samples / f64::from(all)))?;
                 }
                 RenderingEvent::End(ended) => {
-                    progress::clear();
                     self.rendering = None;
                     self.end_rendering(ended)?;
                     return self.write_label(KEYS[0].1);
                 }
             }
+        }
+        self.report_stage()
+    }
+
+    /// Tells the stage of the rendering and how much of it is done; of samples, parts of the image tell.
+    fn report_stage(&mut self) -> Result<(), CommandFailure> {
+        let stage = match progress::within(VIEW_STAGE) {
+            Some((stage, Some(amount))) if amount.unit != "samples" => {
+                format!("{stage}: {}", progress::describe(&amount))
+            }
+            Some((stage, None)) => stage.to_owned(),
+            _ => return Ok(()),
+        };
+        if stage != self.stage {
+            self.production.show_message(&stage)?;
+            self.stage = stage;
         }
         Ok(())
     }

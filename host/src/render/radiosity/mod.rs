@@ -41,10 +41,11 @@ pub use surface::ElementTree;
 
 use super::indirect::{IndirectLight, IrradiancePart};
 use super::world::World;
-use super::{Progress, RenderError, Watch};
+use super::{RenderError, Watch};
 use crate::color::Channels;
 use crate::plan::{Plan, Stage};
 use crate::scene::{Prepared, RadiositySettings};
+use crate::stages::stage;
 use contact::Contacts;
 use corners::ElementCorners;
 use elements::Elements;
@@ -53,7 +54,6 @@ use gather::{CornerViews, Gatherer};
 use hierarchy::{RadiosityPatch, normal_and_area};
 use refinement::{AssessedLink, RefinementBound, refine};
 use solver::solve;
-use std::time::Instant;
 use surface::SurfaceLight;
 use visibility::VisibilityTester;
 
@@ -91,7 +91,7 @@ impl Radiosity {
         exitance: Option<Exitance<'_>>,
         watch: &Watch<'_>,
     ) -> Result<Radiosity, RenderError> {
-        let start = Instant::now();
+        let stage = stage!("solving for radiosity", (2 * ROUNDS) as f64, "rounds");
         let stopped = || watch.is_cancelled();
         let prepared = world.prepared();
         let visibility = VisibilityTester::new(world, watch.memo);
@@ -117,7 +117,7 @@ impl Radiosity {
         for round in 0..ROUNDS {
             let bound = RefinementBound { irradiance: settings.error * elements.mean_irradiance(), finest };
             refine(&visibility, &mut elements, &mut links, bound, &stopped);
-            (watch.progress)(Progress::of(2 * round + 1, 2 * ROUNDS, "rounds"));
+            stage.progress((2 * round + 1) as f64);
             let is_last = round + 1 == ROUNDS || stopped();
             leaves = elements.hierarchy.leaves();
             let gatherer =
@@ -131,7 +131,7 @@ impl Radiosity {
             let last = leaf_visibility.as_ref().zip(views.as_ref());
             let (irradiance, light) = light(&elements, &links, last, tolerance, &stopped, &mut report)?;
             elements.take(&leaves, &irradiance);
-            (watch.progress)(Progress::of(2 * round + 2, 2 * ROUNDS, "rounds"));
+            stage.progress((2 * round + 2) as f64);
             if let (Some(corners), Some(leaf_visibility)) = (corners, leaf_visibility) {
                 at_corners = Some((corners, light, leaf_visibility.is_dark));
                 break;
@@ -145,7 +145,7 @@ impl Radiosity {
             }
             None => SurfaceLight::dark(prepared),
         };
-        report.seconds = start.elapsed().as_secs_f64();
+        report.seconds = stage.seconds();
         Ok(Radiosity { light, report })
     }
 

@@ -9,8 +9,11 @@ use crate::mesh::Mesh;
 use crate::render::RadiosityError;
 use crate::scene::{Interreflection, Object, RadiositySettings, Scene, Shape};
 use crate::solid::Primitive;
+use crate::stages::{StageEvent, observed};
 use glam::{DMat4, DVec3};
 use std::f64::consts::PI;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 fn matt(reflectance: f64) -> Material {
     Classic { diffuse: Paint::grey(reflectance), ..Classic::default() }.into()
@@ -321,20 +324,26 @@ fn a_patch_of_light_on_a_floor_lights_the_ceiling_as_the_closed_form_tells() {
 
 #[test]
 fn progress_is_told_and_a_solution_that_is_stopped_is_still_one() {
-    use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
     let room = prepared(vec![cube("room", 2.0, 0.6), sphere("ball", 0.5, 0.8)], vec![lamp(DVec3::new(0.7, 0.8, 0.1))]);
     let plan = Plan::new(&room, &room.view());
-    let (cancelled, told) = (AtomicBool::new(false), AtomicU64::new(0));
-    let progress = |amount: Progress| {
-        let done = amount.done as u64;
-        assert!(amount.done <= amount.all && done >= told.load(Ordering::Relaxed));
-        told.store(done, Ordering::Relaxed);
-        cancelled.store(true, Ordering::Relaxed);
+    let (cancelled, told) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicU64::new(0)));
+    let watch = Watch { cancelled: &cancelled, ..Watch::NOBODY };
+    let stop = {
+        let (cancelled, told) = (cancelled.clone(), told.clone());
+        move |event| match event {
+            StageEvent::Progress { done, .. } => {
+                assert!(done >= told.load(Ordering::Relaxed) as f64);
+                told.store(done as u64, Ordering::Relaxed);
+                cancelled.store(true, Ordering::Relaxed);
+            }
+            StageEvent::Begin { name: "solving for radiosity", all, .. } => assert_eq!(all, 6.0),
+            _ => {}
+        }
     };
-    let watch = Watch { cancelled: &cancelled, progress: &progress, ..Watch::NOBODY };
-    let stopped = Radiosity::new(&World::new(&room, &plan).expect("a world"), &plan, &coarse(), None, &watch)
-        .expect("a solution");
-    assert!(told.load(Ordering::Relaxed) > 0);
+    let world = World::new(&room, &plan).expect("a world");
+    let solved_until = || Radiosity::new(&world, &plan, &coarse(), None, &watch);
+    let stopped = observed(stop, solved_until).expect("a solution");
+    assert!((1..=6).contains(&told.load(Ordering::Relaxed)));
     let whole = solved(&room, &coarse(), None);
     assert!(stopped.report.links < whole.report.links);
     assert!(middle(&stopped, 0, false, IrradiancePart::All).is_finite());
@@ -343,15 +352,22 @@ fn progress_is_told_and_a_solution_that_is_stopped_is_still_one() {
 #[test]
 fn ray_tracing_with_radiosity_tells_how_far_that_is_and_stops_there() {
     use crate::render::{Task, ray_tracer_watched};
-    use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
     let mut room = prepared(vec![cube("room", 2.0, 0.6)], vec![lamp(DVec3::new(0.7, 0.8, 0.1))]);
     (room.settings.light.interreflection, room.settings.radiosity.error) = (Interreflection::Solved, 0.02);
     let plan = Plan::new(&room, &room.view());
     let links = |cancelled: bool| {
-        let (cancelled, told) = (AtomicBool::new(cancelled), AtomicU64::new(0));
-        let progress = |amount: Progress| told.store(amount.done as u64, Ordering::Relaxed);
-        let watch = Watch { cancelled: &cancelled, progress: &progress, ..Watch::NOBODY };
-        let (_, report) = ray_tracer_watched(&Task { watch, ..Task::new(&room, &plan) }).expect("a tracer");
+        let (cancelled, told) = (AtomicBool::new(cancelled), Arc::new(AtomicU64::new(0)));
+        let watch = Watch { cancelled: &cancelled, ..Watch::NOBODY };
+        let tell = {
+            let told = told.clone();
+            move |event| {
+                if let StageEvent::Progress { done, .. } = event {
+                    told.store(done as u64, Ordering::Relaxed);
+                }
+            }
+        };
+        let task = Task { watch, ..Task::new(&room, &plan) };
+        let (_, report) = observed(tell, || ray_tracer_watched(&task)).expect("a tracer");
         assert!(told.load(Ordering::Relaxed) > 0);
         report.expect("a solution").links
     };

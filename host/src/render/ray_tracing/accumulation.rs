@@ -1,20 +1,19 @@
 //! Accumulation of samples on a film: passes over all pixels, each of which adds samples, that can be stopped and taken
 //! up again anywhere.
 
+use super::pixel::PixelSampler;
 use super::tracer::PathScratch;
 use super::{PathLog, RayTracer};
 use crate::memory;
 use crate::picture::PictureError;
-use crate::render::film::{Film, FilmRow};
+use crate::render::film::{AdaptiveSampling, Film, FilmRow};
 use crate::render::state::after;
 use crate::render::tally::SHARING;
 use crate::render::two_way::{FluxBalance, PhotonEstimator};
-use crate::render::{
-    Progress, RayCounts, RenderError, RenderOrder, Rendering, SpanCounts, StateError, Watch, denoising,
-};
+use crate::render::{RayCounts, RenderError, RenderOrder, Rendering, SpanCounts, StateError, Watch, denoising};
 use crate::scene::View;
+use crate::stages::{StageSpan, Workers, part, stage};
 use rayon::prelude::*;
-use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
@@ -26,11 +25,6 @@ pub struct Checkpoints<'a> {
     pub every: Duration,
     /// Keeps the film as it is. What goes wrong is told of, and the work goes on.
     pub keep: &'a mut dyn FnMut(&Film) -> Result<(), StateError>,
-}
-
-/// The threads that an order asks for.
-fn pool(order: &RenderOrder) -> Result<ThreadPool, RenderError> {
-    Ok(ThreadPoolBuilder::new().num_threads(order.threads.map_or(0, |n| n.get())).build()?)
 }
 
 /// The work of accumulating samples.
@@ -64,121 +58,68 @@ impl RayTracer<'_> {
         view: &View,
         order: &RenderOrder,
         watch: &Watch<'_>,
-        mut checkpoints: Option<Checkpoints<'_>>,
+        checkpoints: Option<Checkpoints<'_>>,
     ) -> Result<Accumulated, RenderError> {
-        let start = Instant::now();
+        let stage = match (order.seconds, order.target) {
+            (Some(seconds), _) => stage!("rendering", seconds, "seconds"),
+            // How many samples it takes is not known.
+            (None, Some(_)) => stage!("rendering", film.tallies().len() as f64, "pixels"),
+            (None, None) => stage!("rendering", f64::from(order.samples), "samples"),
+        };
         let eye = self.eye(view, order)?;
-        let pool = pool(order)?;
-        let is_late = || order.seconds.is_some_and(|seconds| start.elapsed().as_secs_f64() >= seconds);
-        let mut due = checkpoints.as_ref().map(|checkpoints| start + checkpoints.every);
-        let mut adaptive = film.adaptive(order.target);
+        let workers = Workers::new(order.threads)?;
+        let adaptive = film.adaptive(order.target);
+        let has_features = !film.features().is_empty();
+        let due = checkpoints.as_ref().map(|checkpoints| Instant::now() + checkpoints.every);
+        let mut work = Accumulation { film, order, watch, workers, stage, checkpoints, due, adaptive };
+        let most = if self.photon_mapper.is_some() { SHARING } else { u32::MAX };
         let passes = self.passes(order);
-        let mut rays = RayCounts::default();
-        let mut balance = None;
-        let mut is_finished = true;
-        'passes: for (number, samples) in passes.iter().enumerate() {
-            if adaptive.as_ref().is_some_and(|adaptive| *samples <= adaptive.finished) {
+        let (mut rays, mut flux_balance, mut is_finished) = (RayCounts::default(), None, true);
+        let mut before = 0;
+        for &samples in &passes {
+            let interval = [std::mem::replace(&mut before, samples), samples];
+            if work.adaptive.as_ref().is_some_and(|adaptive| samples <= adaptive.finished) {
                 continue;
             }
-            if let Some(adaptive) = &mut adaptive {
-                adaptive.begin_pass(film, *samples, if self.photon_mapper.is_some() { SHARING } else { u32::MAX });
-            }
-            let before = number.checked_sub(1).map_or(0, |last| passes[last]);
-            let goal = |pixel: usize| match &adaptive {
-                Some(adaptive) => adaptive.goals[pixel].min(order.samples),
-                None => *samples,
-            };
-            let wanting = film.tallies().iter().enumerate().filter(|(pixel, tally)| tally.count < goal(*pixel)).count();
-            let is_needed = wanting > 0;
-            if adaptive.is_some() {
-                let all = film.tallies().len() as u64;
-                (watch.progress)(Progress::of(all - wanting as u64, all, "pixels"));
-            }
+            let _pass = part!(work.stage, "pass", samples);
+            let is_needed = work.begin_pass(samples, most) > 0;
             let photons = match &self.photon_mapper {
-                Some(two_way) if is_needed => {
-                    (watch.stage)("while tracing photons");
+                Some(mapper) if is_needed => {
                     let pass = (samples - 1) / SHARING;
-                    let photons = pool.install(|| two_way.trace_pass(&self.world, pass, watch));
+                    let photons = work.workers.install(|| mapper.trace_pass(&self.world, pass, watch));
                     if photons.is_none() {
                         is_finished = false;
                         break;
                     }
-                    (watch.stage)("while rendering");
                     photons
                 }
                 _ => None,
             };
-            balance = balance.or(photons.as_ref().map(PhotonEstimator::balance));
-            let tracer = self.tracer(photons.as_ref(), &eye, !film.features().is_empty());
-            loop {
-                let rows = f64::from(order.height);
-                let rows_done = AtomicU64::new(0);
-                let is_due = || due.is_some_and(|due| Instant::now() >= due);
-                let pauses = || watch.is_cancelled() || is_due() || is_late();
-                let row = |(y, mut row): (usize, FilmRow<'_>)| {
-                    let mut scratch = PathScratch::default();
-                    for x in 0..row.tallies.len() {
-                        let goal = goal(y * order.width as usize + x);
-                        while row.tallies[x].count < goal {
-                            if pauses() {
-                                return (scratch.counts, false);
-                            }
-                            let (pixel, index) = ([x as u32, y as u32], row.tallies[x].count);
-                            let (sample, classes, _) =
-                                self.sample((&tracer, &eye, order), pixel, index, &mut scratch, PathLog::SILENT);
-                            row.add(x, &sample, &classes);
-                        }
-                    }
-                    let part = (rows_done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / rows;
-                    let done = f64::from(before) + part * f64::from(samples - before);
-                    match (order.seconds, order.target) {
-                        (Some(seconds), _) => {
-                            let done = start.elapsed().as_secs_f64().min(seconds);
-                            (watch.progress)(Progress { done, all: seconds, unit: "seconds" });
-                        }
-                        // How many it takes is not known.
-                        (None, Some(_)) => {}
-                        (None, None) => {
-                            (watch.progress)(Progress { done, all: f64::from(order.samples), unit: "samples" });
-                        }
-                    }
-                    (scratch.counts, true)
-                };
-                let rows: Vec<(RayCounts, bool)> =
-                    pool.install(|| film.rows_mut().into_par_iter().enumerate().map(row).collect());
-                rays = rows.iter().fold(rays, |sum, (counts, _)| sum + *counts);
-                if rows.iter().all(|(_, is_whole)| *is_whole) {
-                    break;
-                }
-                if watch.is_cancelled() || is_late() {
-                    is_finished = false;
-                    break 'passes;
-                }
-                due = checkpoints.as_mut().map(|checkpoints| {
-                    film.set_adaptive(adaptive.clone());
-                    let begin = Instant::now();
-                    if let Err(error) = (checkpoints.keep)(film) {
-                        tracing::warn!("{error}");
-                    }
-                    after(checkpoints.every, begin)
-                });
+            flux_balance = flux_balance.or(photons.as_ref().map(PhotonEstimator::balance));
+            let sampler = self.pixel_sampler(photons.as_ref(), &eye, order, has_features);
+            let (counts, is_whole) = work.add_pass(&sampler, interval);
+            rays = rays + counts;
+            if !is_whole {
+                is_finished = false;
+                break;
             }
-            if let Some(adaptive) = &mut adaptive {
-                adaptive.end_pass(*samples);
+            if let Some(adaptive) = &mut work.adaptive {
+                adaptive.end_pass(samples);
             }
-            if watch.is_cancelled() || is_late() {
-                is_finished = number + 1 == passes.len();
+            if work.is_stopped() {
+                is_finished = Some(&samples) == passes.last();
                 break;
             }
         }
+        let Accumulation { film, workers, stage, adaptive, .. } = work;
         film.set_adaptive(adaptive);
         Ok(Accumulated {
             rays,
-            flux_balance: balance,
+            flux_balance,
             // Time that ran out as it was asked for is no interruption.
             complete: is_finished || (order.seconds.is_some() && !watch.is_cancelled()),
-            seconds: start.elapsed().as_secs_f64(),
-            threads: pool.current_num_threads(),
+            seconds: stage.seconds(),
+            threads: workers.count(),
         })
     }
 
@@ -203,23 +144,21 @@ impl RayTracer<'_> {
                 film = film.with_features();
             }
         }
-        (watch.stage)("while rendering");
-        let Accumulated { rays, flux_balance: balance, mut complete, mut seconds, threads } =
+        let Accumulated { rays, flux_balance, mut complete, mut seconds, threads } =
             self.accumulate(&mut film, view, order, watch, checkpoints)?;
-        let spans = SpanCounts::default();
         let picture = match order.denoise && complete {
             true => {
-                let start = Instant::now();
-                (watch.stage)("while denoising");
-                let pool = pool(order)?;
-                let denoised = pool.install(|| denoising::denoised(&film, &|| watch.is_cancelled()))?;
+                let stage = stage!("denoising");
+                let workers = Workers::new(order.threads)?;
+                let denoised = workers.install(|| denoising::denoised(&film, &|| watch.is_cancelled()))?;
                 complete = denoised.is_some();
-                seconds += start.elapsed().as_secs_f64();
+                seconds += stage.seconds();
                 denoised.map_or_else(|| film.picture(), Ok)?
             }
             false => film.picture()?,
         };
-        Ok(Rendering { picture, film, complete, rays, spans, flux_balance: balance, seconds, threads })
+        let spans = SpanCounts::default();
+        Ok(Rendering { picture, film, complete, rays, spans, flux_balance, seconds, threads })
     }
 
     /// How many samples pixels have after each pass: one first, so that there is a whole picture soon, and then twice
@@ -234,5 +173,126 @@ impl RayTracer<'_> {
         passes.sort_unstable();
         passes.dedup();
         passes
+    }
+}
+
+/// Samples that are being added to a film.
+struct Accumulation<'a, 'b> {
+    film: &'a mut Film,
+    order: &'a RenderOrder,
+    watch: &'a Watch<'a>,
+    workers: Workers,
+    stage: StageSpan,
+    checkpoints: Option<Checkpoints<'b>>,
+    /// When the next checkpoint is due.
+    due: Option<Instant>,
+    adaptive: Option<AdaptiveSampling>,
+}
+
+impl Accumulation<'_, '_> {
+    /// Whether the time is over that the order gives.
+    fn is_late(&self) -> bool {
+        self.order.seconds.is_some_and(|seconds| self.stage.seconds() >= seconds)
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.watch.is_cancelled() || self.is_late()
+    }
+
+    /// Begins a pass; how many pixels want samples.
+    ///
+    /// - `samples`: of a pixel after the pass. `most`: of them in this pass.
+    fn begin_pass(&mut self, samples: u32, most: u32) -> usize {
+        if let Some(adaptive) = &mut self.adaptive {
+            adaptive.begin_pass(self.film, samples, most);
+        }
+        let goal = PassGoal::new(samples, self.order, self.adaptive.as_ref());
+        let tallies = self.film.tallies();
+        let wanting = tallies.iter().enumerate().filter(|(pixel, tally)| tally.count < goal.of(*pixel)).count();
+        if self.adaptive.is_some() && self.order.seconds.is_none() {
+            self.stage.progress((tallies.len() - wanting) as f64);
+        }
+        wanting
+    }
+
+    /// Adds the samples of a pass; how many rays that took, and whether it was not stopped before its end.
+    ///
+    /// - `samples`: of a pixel before and after it.
+    fn add_pass(&mut self, sampler: &PixelSampler<'_>, samples: [u32; 2]) -> (RayCounts, bool) {
+        let mut rays = RayCounts::default();
+        loop {
+            let (counts, is_whole) = self.add_until_pause(sampler, samples);
+            rays = rays + counts;
+            if is_whole || self.is_stopped() {
+                return (rays, is_whole);
+            }
+            self.keep();
+        }
+    }
+
+    /// Adds samples of a pass until it ends, is stopped, or a checkpoint is due; how many rays that took, and whether
+    /// the pass has ended.
+    fn add_until_pause(&mut self, sampler: &PixelSampler<'_>, [before, samples]: [u32; 2]) -> (RayCounts, bool) {
+        let Accumulation { film, order, watch, workers, stage, due, adaptive, .. } = self;
+        let goal = PassGoal::new(samples, order, adaptive.as_ref());
+        let is_late = || order.seconds.is_some_and(|seconds| stage.seconds() >= seconds);
+        let pauses = || watch.is_cancelled() || due.is_some_and(|due| Instant::now() >= due) || is_late();
+        let (stage, rows_done) = (&*stage, AtomicU64::new(0));
+        let row = |(y, mut row): (usize, FilmRow<'_>)| {
+            let _row = part!(stage, "row", y);
+            let mut scratch = PathScratch::default();
+            for x in 0..row.tallies.len() {
+                let goal = goal.of(y * order.width as usize + x);
+                while row.tallies[x].count < goal {
+                    if pauses() {
+                        return (scratch.counts, false);
+                    }
+                    let (pixel, index) = ([x as u32, y as u32], row.tallies[x].count);
+                    let (sample, classes, _) = sampler.sample(pixel, index, &mut scratch, PathLog::SILENT);
+                    row.add(x, &sample, &classes);
+                }
+            }
+            let part = (rows_done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / f64::from(order.height);
+            match (order.seconds, order.target) {
+                (Some(seconds), _) => stage.progress(stage.seconds().min(seconds)),
+                (None, Some(_)) => {}
+                (None, None) => stage.progress(f64::from(before) + part * f64::from(samples - before)),
+            }
+            (scratch.counts, true)
+        };
+        let rows: Vec<(RayCounts, bool)> =
+            workers.install(|| film.rows_mut().into_par_iter().enumerate().map(row).collect());
+        let rays = rows.iter().fold(RayCounts::default(), |sum, (counts, _)| sum + *counts);
+        (rays, rows.iter().all(|(_, is_whole)| *is_whole))
+    }
+
+    /// Keeps the film, if it is to be kept from time to time.
+    fn keep(&mut self) {
+        let Some(checkpoints) = &mut self.checkpoints else { return };
+        self.film.set_adaptive(self.adaptive.clone());
+        let begin = Instant::now();
+        if let Err(error) = (checkpoints.keep)(self.film) {
+            tracing::warn!("{error}");
+        }
+        self.due = Some(after(checkpoints.every, begin));
+    }
+}
+
+/// How many samples pixels are to have after a pass.
+#[derive(Clone, Copy)]
+struct PassGoal<'a> {
+    /// Where pixels do not differ.
+    samples: u32,
+    /// Of each pixel, where these differ; and the most of them.
+    adaptive: Option<(&'a [u32], u32)>,
+}
+
+impl<'a> PassGoal<'a> {
+    fn new(samples: u32, order: &RenderOrder, adaptive: Option<&'a AdaptiveSampling>) -> PassGoal<'a> {
+        PassGoal { samples, adaptive: adaptive.map(|adaptive| (adaptive.goals.as_slice(), order.samples)) }
+    }
+
+    fn of(&self, pixel: usize) -> u32 {
+        self.adaptive.map_or(self.samples, |(goals, most)| goals[pixel].min(most))
     }
 }

@@ -5,13 +5,14 @@
 //! without a word, the mean over its area, and coverage the covered share of it. Places in the pixel and on the lens,
 //! points of lights, directions and wavelengths are sampled by Owen's scrambled sequences.
 
-mod accumulation;
 mod direct;
 mod sampler;
 mod segment;
 mod vertex;
 mod explain;
 mod tracer;
+mod pixel;
+mod accumulation;
 
 #[cfg(test)]
 mod caustic_tests;
@@ -48,16 +49,16 @@ pub use tracer::ENERGY_CUTOFF;
 
 use super::film::Film;
 use super::indirect::IndirectLight;
-use super::tally::{PixelSample, RadianceByClass, SHARING};
+use super::tally::SHARING;
 use super::two_way::{PhotonEstimator, PhotonMapper, PhotonStore};
-use super::world::{AHEAD, CameraRays, Media, World};
+use super::world::{CameraRays, Media, World};
 use super::{RenderError, RenderOrder, Renderer, Rendering, Watch};
 use crate::plan::{Plan, Stage};
 use crate::scene::{Prepared, View};
+use crate::stages::stage;
 use explain::PathLog;
-use glam::DVec3;
-use sampler::{PathSampler, SampleDimension};
-use tracer::{FirstHit, PathScratch, PathTracer};
+use pixel::PixelSampler;
+use tracer::{PathRules, PathScratch, PathTracer};
 
 /// A ray tracer that holds a scene and its octree.
 pub struct RayTracer<'a> {
@@ -88,8 +89,11 @@ impl<'a> RayTracer<'a> {
     /// - `photon_store`: where photon maps are stored beyond this tracer; nowhere without one.
     pub fn new(world: World<'a>, plan: &'a Plan, photon_store: Option<&'a PhotonStore>) -> RayTracer<'a> {
         let keeps = |object| plan.includes_object(object);
-        let two_way = plan.needs(Stage::PhotonMap).then(|| PhotonMapper::new(&world, keeps, photon_store)).flatten();
-        RayTracer { plan, world, photon_mapper: two_way, indirect: None }
+        let photon_mapper = plan.needs(Stage::PhotonMap).then(|| {
+            let _stage = stage!("allocating photon paths");
+            PhotonMapper::new(&world, keeps, photon_store)
+        });
+        RayTracer { plan, world, photon_mapper: photon_mapper.flatten(), indirect: None }
     }
 
     /// Takes indirect light of diffuse surfaces from there.
@@ -112,26 +116,6 @@ impl<'a> RayTracer<'a> {
         self.world.appearance.prepared
     }
 
-    fn tracer<'b>(
-        &'b self,
-        photons: Option<&'b PhotonEstimator<'b>>,
-        eye: &CameraRays,
-        records_features: bool,
-    ) -> PathTracer<'b> {
-        let depth = self.world.appearance.prepared.settings.light.reflection_depth;
-        let depth = if self.plan.needs(Stage::Reflection) { depth } else { 0 };
-        let around = eye.place().map(|place| Media::around(&self.world, place)).unwrap_or_default();
-        PathTracer::new(
-            &self.world,
-            depth,
-            self.plan.needs(Stage::Shadows),
-            (self.photon_mapper.is_some(), photons),
-            self.indirect.as_deref(),
-            around,
-            records_features,
-        )
-    }
-
     fn eye(&self, view: &View, order: &RenderOrder) -> Result<CameraRays, RenderError> {
         let prepared = self.world.appearance.prepared;
         let eye = CameraRays::new(view, order.width, order.height, &prepared.bounds).ok_or(RenderError::View)?;
@@ -143,56 +127,30 @@ impl<'a> RayTracer<'a> {
         Ok(eye.with_cones(filter / f64::from(order.footprints).sqrt()))
     }
 
-    /// One sample, its light by classes, and its wavelength set.
-    fn sample(
-        &self,
-        (tracer, eye, order): (&PathTracer<'_>, &CameraRays, &RenderOrder),
-        [x, y]: [u32; 2],
-        index: u32,
-        scratch: &mut PathScratch,
-        log: PathLog<'_>,
-    ) -> (PixelSample, RadianceByClass, usize) {
-        let pixel = u64::from(y) * u64::from(order.width) + u64::from(x);
-        let sampler = PathSampler::new(order.seed, pixel, index, order.samples);
-        let sampler = if self.world.moves() {
-            sampler.at_random_time(self.prepared().settings.geometry.shutter)
-        } else {
-            sampler
-        };
-        let ([dx, dy], weight) = sampler.position(order.filter);
-        let wavelengths = &self.world.appearance.wavelengths;
-        let wavelength_set = wavelengths.set_at(sampler.point(SampleDimension::Wavelengths)[0]);
-        let at = [f64::from(x) + dx, f64::from(y) + dy];
-        let Some(bounded) = eye.ray(at, sampler.point(SampleDimension::Lens)) else {
-            let background = self.world.appearance.escaped_radiance(&AHEAD, None, wavelength_set, |_, _| 1.0);
-            let radiance =
-                if order.matte { DVec3::ZERO } else { weight * wavelengths.to_srgb(wavelength_set, background) };
-            let classes = [radiance, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO];
-            return (
-                PixelSample { radiance, weight, albedo: DVec3::splat(weight), ..PixelSample::default() },
-                classes,
-                wavelength_set,
-            );
-        };
-        let result = tracer.radiance(&bounded, wavelength_set, &sampler, scratch, log);
-        let first =
-            result.first.map(|FirstHit { distance, normal, object, material }| (distance, normal, [object, material]));
-        let left_out = order.matte && !result.covered;
-        let light = |class: usize| {
-            weight * (wavelengths.to_srgb(wavelength_set, result.radiance[class]) + result.other_wavelengths[class])
-        };
-        let classes = if left_out { RadianceByClass::default() } else { [0, 1, 2, 3].map(light) };
-        let shared = if left_out { 0.0 } else { weight.abs() * result.shared_variance.sqrt() };
-        let sample = PixelSample {
-            radiance: classes.into_iter().sum(),
-            weight,
-            covered: result.covered,
-            first,
-            albedo: weight * wavelengths.broad_bands(result.albedo),
-            normal: weight * result.normal,
-            shared,
-        };
-        (sample, classes, wavelength_set)
+    /// A sampler of the pixels of a picture.
+    ///
+    /// - `photons`: the photon map, if one is needed. `records_features`: whether a denoiser needs features.
+    fn pixel_sampler<'b>(
+        &'b self,
+        photons: Option<&'b PhotonEstimator<'b>>,
+        eye: &'b CameraRays,
+        order: &'b RenderOrder,
+        records_features: bool,
+    ) -> PixelSampler<'b> {
+        let depth = self.world.appearance.prepared.settings.light.reflection_depth;
+        let tracer = PathTracer::new(
+            &self.world,
+            PathRules {
+                depth: if self.plan.needs(Stage::Reflection) { depth } else { 0 },
+                shadows: self.plan.needs(Stage::Shadows),
+                maps_photons: self.photon_mapper.is_some(),
+                records_features,
+            },
+            photons,
+            self.indirect.as_deref(),
+            eye.place().map(|place| Media::around(&self.world, place)).unwrap_or_default(),
+        );
+        PixelSampler { world: &self.world, tracer, eye, order }
     }
 
     /// Explains how the samples of a pixel come to their radiance.
@@ -213,10 +171,9 @@ impl<'a> RayTracer<'a> {
             let pass = index / SHARING;
             let two_way = self.photon_mapper.as_ref();
             let photons = two_way.and_then(|two_way| two_way.trace_pass(&self.world, pass, &Watch::NOBODY));
-            let tracer = self.tracer(photons.as_ref(), &eye, false);
+            let sampler = self.pixel_sampler(photons.as_ref(), &eye, order, false);
             let (mut notes, mut scratch) = (Vec::new(), PathScratch::default());
-            let (sample, _, wavelength_set) =
-                self.sample((&tracer, &eye, order), pixel, index, &mut scratch, PathLog::to(&mut notes));
+            let (sample, _, wavelength_set) = sampler.sample(pixel, index, &mut scratch, PathLog::to(&mut notes));
             let wavelengths = &self.world.appearance.wavelengths;
             let wavelengths = wavelengths.is_spectral().then(|| wavelengths.at(wavelength_set).to_vec());
             Explanation { sample: index, wavelengths, notes, radiance: sample.radiance.to_array() }

@@ -1,9 +1,15 @@
 //! The segments of a path, and the scattering events before them.
 
 use crate::color::Channels;
+use crate::illumination::optics::{Bsdf, BsdfSample, ShadingContext};
 use crate::render::PathClass;
 use crate::render::world::{BoundedRay, Media};
 use glam::DVec3;
+
+/// Throughput above which both parts of a path are traced where it splits.
+const LEAST_SPLIT: f64 = 1.0 / 64.0;
+/// Most path segments of a sample that wait to be traced.
+const MOST_WAITING: usize = 8;
 
 /// A segment of a sample's path: one ray with its throughput, its pdf and the history of the path.
 #[derive(Clone, Copy)]
@@ -37,6 +43,20 @@ pub(super) struct PathSegment {
     pub(super) is_in_photon_map: bool,
     /// Whether its hit gives features to a denoiser: it comes from the camera, by mirrors and smooth interfaces alone.
     pub(super) records_features: bool,
+}
+
+impl PathSegment {
+    /// Whether the path is split where this segment ends: continues by one sample for each specular lobe and one of all
+    /// others.
+    ///
+    /// - `waiting`: how many path segments wait to be traced.
+    pub(super) fn is_split(&self, bsdf: &Bsdf, context: &ShadingContext<'_>, waiting: usize) -> bool {
+        let is_worth = |sample: BsdfSample| (self.throughput * sample.weight).max() > LEAST_SPLIT;
+        let samples = bsdf.specular_samples(context);
+        let (count, all_worth) = samples.fold((0, true), |(count, all), sample| (count + 1, all && is_worth(sample)));
+        let directions = count + usize::from(bsdf.continues_non_delta());
+        directions <= 1 || waiting + directions <= MOST_WAITING && all_worth
+    }
 }
 
 /// The scattering events on a path, in the order in which light takes them, by the classes of their lobes.

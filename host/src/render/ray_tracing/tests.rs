@@ -9,9 +9,11 @@ use crate::picture::{Operator, compose, difference};
 use crate::render::ray_tracer;
 use crate::scene::{Camera, Object, Projection, Scene, Settings, Shape};
 use crate::solid::Primitive;
+use crate::stages::{StageEvent, observed};
 use glam::{DMat4, DVec3, DVec4};
 use std::f64::consts::PI;
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 pub(super) fn object(shape: Shape, transform: DMat4, material: impl Into<Material>) -> Object {
@@ -393,14 +395,18 @@ fn a_cancelled_rendering_keeps_the_rows_that_are_done() {
     let prepared = Prepared::new(&scene).expect("a scene");
     let plan = Plan::new(&prepared, &prepared.view());
     let tracer = ray_tracer(&prepared, &plan).expect("an octree");
-    let (cancelled, rows) = (AtomicBool::new(false), AtomicU32::new(0));
-    let watch = Watch {
-        cancelled: &cancelled,
-        progress: &|_| cancelled.store(rows.fetch_add(1, Ordering::Relaxed) + 1 >= 5, Ordering::Relaxed),
-        ..Watch::NOBODY
+    let (cancelled, rows) = (Arc::new(AtomicBool::new(false)), AtomicU32::new(0));
+    let watch = Watch { cancelled: &cancelled, ..Watch::NOBODY };
+    let stop = {
+        let cancelled = cancelled.clone();
+        move |event| {
+            if let StageEvent::Progress { .. } = event {
+                cancelled.store(rows.fetch_add(1, Ordering::Relaxed) + 1 >= 5, Ordering::Relaxed);
+            }
+        }
     };
     let order = RenderOrder { threads: NonZeroUsize::new(1), ..RenderOrder::of(&scene.settings) };
-    let part = tracer.render(&prepared.view(), &order, &watch).expect("a part");
+    let part = observed(stop, || tracer.render(&prepared.view(), &order, &watch)).expect("a part");
     let begun = part.film.tallies().iter().filter(|tally| tally.count > 0).count();
     assert_eq!((begun, part.complete), (5 * 40, false));
     let whole = trace(&scene, None, false, 1);

@@ -19,14 +19,10 @@ use glam::DVec3;
 
 /// Throughput below which Russian roulette decides what continues (Arvo and Kirk 1990).
 pub const ENERGY_CUTOFF: f64 = 1.0 / 4096.0;
-/// Throughput above which both parts of a path are traced where it splits.
-const LEAST_SPLIT: f64 = 1.0 / 64.0;
 /// Greatest value, 1/sr, with which narrow lobes reflect a lamp on an element reached by broad scattering, unless
 /// caustics count; Lambert's is at most 1/π. Ours, in the place of the path regularisation of Kaplanyan and Dachsbacher
 /// 2013.
 const HIGHEST: f64 = 1.0;
-/// Most path segments of a sample that wait to be traced.
-const MOST_WAITING: usize = 8;
 
 /// The result of a sample.
 #[derive(Clone, Copy, Debug, Default)]
@@ -101,28 +97,39 @@ pub(super) struct PathTracer<'a> {
     records_features: bool,
 }
 
+/// What paths do, for all pixels of a picture.
+#[derive(Clone, Copy)]
+pub(super) struct PathRules {
+    /// Most path segments after the first.
+    pub(super) depth: u32,
+    /// Whether anything can stand before a light.
+    pub(super) shadows: bool,
+    /// Whether lamps emit photons.
+    pub(super) maps_photons: bool,
+    /// Whether a denoiser needs features.
+    pub(super) records_features: bool,
+}
+
 impl<'a> PathTracer<'a> {
-    /// - `depth`: most path segments after the first. `shadows`: whether anything can stand before a light.
-    /// - `catches`: whether lamps emit photons; `photons` is the photon map. `around`: the media around the camera.
-    /// - `indirect`: known light of other diffuse elements. `records_features`: whether a denoiser needs features.
+    /// - `photons`: the photon map. `indirect`: known light of other diffuse elements.
+    /// - `camera_media`: the media around the camera.
     pub(super) fn new(
         world: &'a World<'a>,
-        depth: u32,
-        shadows: bool,
-        (catches, photons): (bool, Option<&'a PhotonEstimator<'a>>),
+        rules: PathRules,
+        photons: Option<&'a PhotonEstimator<'a>>,
         indirect: Option<&'a dyn IndirectLight>,
-        around: Media,
-        records_features: bool,
+        camera_media: Media,
     ) -> PathTracer<'a> {
+        let PathRules { depth, shadows, maps_photons, records_features } = rules;
         let settings = &world.appearance.prepared.settings;
         let caustics = match settings.light.caustics {
             // Camera paths must not count again what is in the photon map.
-            _ if catches => Caustics::PhotonMapped,
+            _ if maps_photons => Caustics::PhotonMapped,
             Caustics::PathTraced => Caustics::PathTraced,
             _ => Caustics::LeftOut,
         };
         let appearance = &world.appearance;
-        let has_others =
+        let has_unmapped_lights =
             appearance.ambient.is_some() || appearance.sources.iter().any(|(_, source)| !source.emits_photons());
         let direct = DirectLighting::new(world, shadows, settings.light.samples.max(1));
         PathTracer {
@@ -132,8 +139,8 @@ impl<'a> PathTracer<'a> {
             caustics,
             photons,
             indirect,
-            has_unmapped_lights: has_others,
-            camera_media: around,
+            has_unmapped_lights,
+            camera_media,
             records_features,
         }
     }
@@ -148,52 +155,24 @@ impl<'a> PathTracer<'a> {
         mut log: PathLog<'_>,
     ) -> PathResult {
         let mut result = PathResult::default();
-        let first = PathSegment {
-            bounded: *bounded,
-            throughput: Channels::ONE,
-            lamp_weight: 1.0,
-            begin: 0.0,
-            depth: 0,
-            number: 1,
-            pdf: None,
-            normal: None,
-            media: self.camera_media,
-            lane: None,
-            for_lights: false,
-            history: PathHistory::NoBroad,
-            last_scattering: LastScattering::Other,
-            is_in_photon_map: false,
-            records_features: self.records_features,
-        };
         let PathScratch { counts, waiting } = scratch;
-        waiting.push(first);
+        waiting.push(self.camera_segment(bounded));
         while let Some(segment) = waiting.pop() {
             match segment.depth {
                 0 => counts.primary += 1,
                 _ => counts.reflected += 1,
             }
-            let direction = segment.bounded.ray.direction;
             match self.world.intersect(&segment.bounded, wavelength_set, sampler.time) {
                 RayHit::Nothing => {
-                    let radiance = match segment.for_lights && !self.direct.has_sky() {
-                        true => Channels::ZERO,
-                        false => {
-                            let ray = Ray { direction: direction.normalize(), ..segment.bounded.ray };
-                            let part = |sky: &LightSource, pdf| self.mis_weight(&segment, sky, pdf);
-                            self.world.appearance.escaped_radiance(&ray, segment.normal, wavelength_set, part)
-                        }
-                    };
+                    let radiance = self.escaped_radiance(&segment, wavelength_set);
                     result.add(segment.history.class(), segment.throughput * radiance);
                     result.record_light_albedo(&segment);
                     result.covered |= segment.depth > 0;
                     log.note(|| PathNote::term(segment.depth, "hits nothing", segment.throughput * radiance));
                 }
                 RayHit::Light(index, light_hit) => {
-                    let absorbed = segment.media.transmittance(
-                        self.world,
-                        light_hit.t * direction.length() - segment.begin,
-                        wavelength_set,
-                    );
+                    let distance = light_hit.t * segment.bounded.ray.direction.length() - segment.begin;
+                    let absorbed = segment.media.transmittance(self.world, distance, wavelength_set);
                     let (number, source) = &self.world.appearance.sources[index];
                     let radiance = absorbed * light_hit.radiance * self.mis_weight(&segment, source, light_hit.pdf);
                     result.add(segment.history.class(), segment.throughput * radiance);
@@ -214,6 +193,37 @@ impl<'a> PathTracer<'a> {
             }
         }
         result
+    }
+
+    /// The first segment of a path.
+    fn camera_segment(&self, bounded: &BoundedRay) -> PathSegment {
+        PathSegment {
+            bounded: *bounded,
+            throughput: Channels::ONE,
+            lamp_weight: 1.0,
+            begin: 0.0,
+            depth: 0,
+            number: 1,
+            pdf: None,
+            normal: None,
+            media: self.camera_media,
+            lane: None,
+            for_lights: false,
+            history: PathHistory::NoBroad,
+            last_scattering: LastScattering::Other,
+            is_in_photon_map: false,
+            records_features: self.records_features,
+        }
+    }
+
+    /// Radiance that arrives along a path segment that hits nothing.
+    fn escaped_radiance(&self, segment: &PathSegment, wavelength_set: usize) -> Channels {
+        if segment.for_lights && !self.direct.has_sky() {
+            return Channels::ZERO;
+        }
+        let ray = Ray { direction: segment.bounded.ray.direction.normalize(), ..segment.bounded.ray };
+        let part = |sky: &LightSource, pdf| self.mis_weight(segment, sky, pdf);
+        self.world.appearance.escaped_radiance(&ray, segment.normal, wavelength_set, part)
     }
 
     /// Adds the radiance of an element along a path segment, and the path segments that continue from there.
@@ -242,28 +252,12 @@ impl<'a> PathTracer<'a> {
             return;
         }
         log.note(|| PathNote::element(segment.depth, self.world.appearance.prepared, interaction));
-        if let Some((emission, factor)) = self
-            .world
-            .emitted(interaction, towards, wavelength_set, |source, pdf| self.mis_weight(&segment, source, pdf))
-        {
-            let radiance = segment.throughput * emission * factor;
-            result.add(segment.history.class(), radiance);
-            result.record_light_albedo(&segment);
-            log.note(|| PathNote::term(segment.depth, "emits", radiance));
-        }
+        self.add_emission(&segment, interaction, wavelength_set, &mut SampleRecord { counts, log, result });
         if segment.for_lights && !bsdf.is_passable() {
             return;
         }
         let frame = interaction.frame();
-        // Where wavelengths separate, a lane is sampled together with the set, in proportion to how much of it is seen.
-        let drawn = match segment.lane {
-            None if interaction.disperses() => {
-                let visibility = self.world.appearance.wavelengths.visibility(wavelength_set);
-                segment.throughput.sample_lane(visibility, sampler.point(SampleDimension::Wavelengths)[1])
-            }
-            _ => None,
-        };
-        let (lane, lane_throughput) = drawn.unwrap_or((segment.lane.unwrap_or(0), segment.throughput));
+        let (lane, lane_throughput) = self.lane(&segment, interaction, wavelength_set, sampler);
         let side = medium_interface.indices(self.world, wavelength_set);
         let context = ShadingContext {
             view: frame.local(-towards),
@@ -277,26 +271,8 @@ impl<'a> PathTracer<'a> {
             waiting.extend(sample.and_then(|sample| self.straight_segment(&segment, interaction, sample, 0, sampler)));
             return;
         }
-        if segment.records_features {
-            let mean_throughput = self.world.appearance.wavelengths.broad_bands(segment.throughput).element_sum() / 3.0;
-            result.albedo += segment.throughput * bsdf.non_delta_albedo(&context);
-            result.normal += interaction.element.normal * mean_throughput;
-        }
-        if let Some(ambient) = &self.world.appearance.ambient {
-            let radiance = segment.throughput * bsdf.ambient(&context) * ambient.of(wavelength_set);
-            result.add(PathClass::Indirect, radiance);
-            log.note(|| PathNote::term(segment.depth, "ambient light", radiance));
-        }
-        if let Some(radiance) = self.indirect(interaction, wavelength_set).filter(|_| !segment.is_in_photon_map) {
-            result.add(PathClass::Indirect, segment.throughput * radiance);
-            log.note(|| PathNote::term(segment.depth, "light of other surfaces", segment.throughput * radiance));
-        }
-        let is_worth = |sample: BsdfSample| (segment.throughput * sample.weight).max() > LEAST_SPLIT;
-        let (count, all_worth) = bsdf
-            .specular_samples(&context)
-            .fold((0, true), |(count, all), sample| (count + 1, all && is_worth(sample)));
-        let directions = count + usize::from(bsdf.continues_non_delta());
-        let is_split = directions <= 1 || waiting.len() + directions <= MOST_WAITING && all_worth;
+        self.add_known_light(&segment, interaction, &context, &mut SampleRecord { counts, log, result });
+        let is_split = segment.is_split(bsdf, &context, waiting.len());
         let selection = if is_split { LobeSelection::NonDelta } else { LobeSelection::All };
         let clamp_value = self.clamp_value(&segment);
         let vertex = PathVertex {
@@ -325,6 +301,71 @@ impl<'a> PathTracer<'a> {
         }
         if bsdf.continues_paths() {
             self.continue_path(&segment, &vertex, is_split, waiting);
+        }
+    }
+
+    /// The lane with which a path continues, and the throughput in it.
+    ///
+    /// Where wavelengths separate, a lane is sampled together with the set, in proportion to how much of it is seen.
+    fn lane(
+        &self,
+        segment: &PathSegment,
+        interaction: &SurfaceInteraction<'_>,
+        wavelength_set: usize,
+        sampler: &PathSampler,
+    ) -> (usize, Channels) {
+        let sampled = match segment.lane {
+            None if interaction.disperses() => {
+                let visibility = self.world.appearance.wavelengths.visibility(wavelength_set);
+                segment.throughput.sample_lane(visibility, sampler.point(SampleDimension::Wavelengths)[1])
+            }
+            _ => None,
+        };
+        sampled.unwrap_or((segment.lane.unwrap_or(0), segment.throughput))
+    }
+
+    /// Adds what an element emits along a path segment.
+    fn add_emission(
+        &self,
+        segment: &PathSegment,
+        interaction: &SurfaceInteraction<'_>,
+        wavelength_set: usize,
+        SampleRecord { log, result, .. }: &mut SampleRecord<'_, '_>,
+    ) {
+        let towards = segment.bounded.ray.direction.normalize();
+        let weight = |source: &LightSource, pdf| self.mis_weight(segment, source, pdf);
+        if let Some((emission, factor)) = self.world.emitted(interaction, towards, wavelength_set, weight) {
+            let radiance = segment.throughput * emission * factor;
+            result.add(segment.history.class(), radiance);
+            result.record_light_albedo(segment);
+            log.note(|| PathNote::term(segment.depth, "emits", radiance));
+        }
+    }
+
+    /// Adds light of an element for which nothing is sampled: ambient light, and that of other diffuse elements as far as
+    /// it is known; and features for a denoiser.
+    fn add_known_light(
+        &self,
+        segment: &PathSegment,
+        interaction: &SurfaceInteraction<'_>,
+        context: &ShadingContext<'_>,
+        SampleRecord { log, result, .. }: &mut SampleRecord<'_, '_>,
+    ) {
+        let (bsdf, appearance) = (interaction.bsdf, &self.world.appearance);
+        if segment.records_features {
+            let mean_throughput = appearance.wavelengths.broad_bands(segment.throughput).element_sum() / 3.0;
+            result.albedo += segment.throughput * bsdf.non_delta_albedo(context);
+            result.normal += interaction.element.normal * mean_throughput;
+        }
+        if let Some(ambient) = &appearance.ambient {
+            let radiance = segment.throughput * bsdf.ambient(context) * ambient.of(context.wavelength_set);
+            result.add(PathClass::Indirect, radiance);
+            log.note(|| PathNote::term(segment.depth, "ambient light", radiance));
+        }
+        if let Some(radiance) = self.indirect(interaction, context.wavelength_set).filter(|_| !segment.is_in_photon_map)
+        {
+            result.add(PathClass::Indirect, segment.throughput * radiance);
+            log.note(|| PathNote::term(segment.depth, "light of other surfaces", segment.throughput * radiance));
         }
     }
 

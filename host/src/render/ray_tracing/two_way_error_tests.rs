@@ -7,6 +7,7 @@ use super::*;
 use crate::color::srgb::LUMINANCE;
 use crate::render::ray_tracer;
 use crate::scene::{Camera, Caustics, Scene};
+use glam::DVec3;
 
 /// A glass ball over a plane: its caustic fills a third of the picture.
 fn caustic() -> Scene {

@@ -35,12 +35,13 @@ use super::film::Film;
 use super::indirect::IndirectLight;
 use super::tally::Tally;
 use super::world::{AHEAD, Appearance, CameraRays, World};
-use super::{Progress, RayCounts, RenderError, RenderOrder, Renderer, Rendering, SpanCounts, Watch};
+use super::{RayCounts, RenderError, RenderOrder, Renderer, Rendering, SpanCounts, Watch};
 use crate::color::Channels;
 use crate::illumination::light::LightSource;
 use crate::picture::{Filter, Picture};
 use crate::plan::{Plan, Stage};
 use crate::scene::{Prepared, View};
+use crate::stages::{StageSpan, Workers, part, stage};
 use casters::Casters;
 use enclosed::ShadowVolumes;
 use glam::DVec3;
@@ -54,7 +55,6 @@ use sky_light::SkyLight;
 use spans::{MOST_LINES, SampleLines, rooks};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Instant;
 use surfaces::StripPixel;
 use visibility::{ScreenTriangles, Strip};
 
@@ -220,7 +220,7 @@ impl<'a> ScanLine<'a> {
         view: &View,
         order: &RenderOrder,
         stopped: &(dyn Fn() -> bool + Sync),
-        watch: &Watch<'_>,
+        stage: &StageSpan,
     ) -> Result<(SpanCounts, bool), RenderError> {
         let prepared = self.appearance.prepared;
         let samples = order.samples.max(1);
@@ -264,11 +264,12 @@ impl<'a> ScanLine<'a> {
                 if stopped() {
                     return None;
                 }
+                let _band = part!(stage, "band", band);
                 let counts = work.band(self, band, tallies, tools);
                 pixels.iter_mut().zip(&*tallies).for_each(|(pixel, tally)| *pixel = tally.pixel());
                 let rows = (tallies.len() / work.width) as u64;
                 let done = done.fetch_add(rows, Ordering::Relaxed) + rows;
-                (watch.progress)(Progress::of(done, order.height.into(), "rows"));
+                stage.progress(done as f64);
                 Some(counts)
             })
             .collect();
@@ -424,14 +425,15 @@ impl Renderer for ScanLine<'_> {
     }
 
     fn render(&self, view: &View, order: &RenderOrder, watch: &Watch<'_>) -> Result<Rendering, RenderError> {
-        let start = Instant::now();
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(order.threads.map_or(0, |n| n.get())).build()?;
-        let late = || order.seconds.is_some_and(|seconds| start.elapsed().as_secs_f64() >= seconds);
+        let stage = stage!("rendering", f64::from(order.height), "rows");
+        let workers = Workers::new(order.threads)?;
+        let late = || order.seconds.is_some_and(|seconds| stage.seconds() >= seconds);
         let stopped = || watch.is_cancelled() || late();
         let mut film = Film::untouched(order.width, order.height)?;
         let mut picture = Picture::new(order.width, order.height)?;
-        let (spans, complete) = pool.install(|| self.draw(&mut film, &mut picture, view, order, &stopped, watch))?;
-        let (seconds, threads) = (start.elapsed().as_secs_f64(), pool.current_num_threads());
+        let (spans, complete) =
+            workers.install(|| self.draw(&mut film, &mut picture, view, order, &stopped, &stage))?;
+        let (seconds, threads) = (stage.seconds(), workers.count());
         Ok(Rendering {
             picture,
             film,

@@ -11,6 +11,7 @@ use crate::octree::{Octree, OctreeSettings};
 use crate::render::ray_tracer;
 use crate::scene::{Camera, Object, Parallel, Projection, Scene, Settings, Shape};
 use crate::solid::Primitive;
+use crate::stages::{StageEvent, observed};
 use glam::{DMat4, DVec2, DVec4};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -440,11 +441,15 @@ fn a_cancelled_picture_keeps_what_was_finished() {
     let prepared = Prepared::new(&scene).expect("a scene");
     let view = prepared.view();
     let plan = Plan::new(&prepared, &view);
-    let cancelled = AtomicBool::new(false);
-    let stop = |_: Progress| cancelled.store(true, Ordering::Relaxed);
-    let watch = Watch { cancelled: &cancelled, progress: &stop, ..Watch::NOBODY };
+    let cancelled = Arc::new(AtomicBool::new(false));
+    let watch = Watch { cancelled: &cancelled, ..Watch::NOBODY };
+    let stop = {
+        let cancelled = cancelled.clone();
+        move |event| cancelled.fetch_or(matches!(event, StageEvent::Progress { .. }), Ordering::Relaxed)
+    };
     let scan = ScanLine::new(&prepared, &plan).expect("ready");
-    let drawn = scan.render(&view, &order(&scene, 1), &watch).expect("a part");
+    let drawn =
+        observed(move |event| _ = stop(event), || scan.render(&view, &order(&scene, 1), &watch)).expect("a part");
     assert!(!drawn.complete && drawn.film.samples() == [0, 16]);
 }
 

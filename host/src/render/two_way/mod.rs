@@ -37,10 +37,11 @@ use crate::memory;
 use crate::numeric::ray::Ray;
 use crate::numeric::sequence::SobolSequence;
 use crate::octree::TriangleBvh;
+use crate::render::Watch;
 use crate::render::state::after;
 use crate::render::world::{SurfaceInteraction, World, mean_diffuse_albedo};
-use crate::render::{Progress, Watch};
 use crate::scene::Prepared;
+use crate::stages::stage;
 use glam::DVec3;
 use photon_map::{GatherContext, GatherDetail, GatherPoint, PhotonMap};
 use photon_source::{PhotonSource, PhotonTarget};
@@ -219,7 +220,7 @@ impl<'s> PhotonMapper<'s> {
         let is_whole = |chunk: &PathBatch| paths(chunk).len() == CHUNK as usize;
         let known = |chunk: &PathBatch| before.get(chunk).filter(|_| is_whole(chunk)).cloned();
         let mut blocks: Vec<Option<BatchResult>> = wanted.iter().map(known).collect();
-        let all = wanted.len() as u64;
+        let stage = stage!("tracing photons", wanted.len() as f64, "parts");
         let mut kept = Instant::now();
         let mut due = self.store.map(|photon_store| kept + photon_store.every);
         loop {
@@ -228,7 +229,7 @@ impl<'s> PhotonMapper<'s> {
             blocks.par_iter_mut().zip(&wanted).filter(|(block, _)| block.is_none()).for_each(|(block, chunk)| {
                 if !pauses() {
                     *block = Some(self.trace_batch(world, u64::from(pass), chunk, paths(chunk)));
-                    (watch.progress)(Progress::of(done.fetch_add(1, Ordering::Relaxed) + 1, all, "parts"));
+                    stage.progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64);
                 }
             });
             let is_finished = blocks.iter().all(Option::is_some);

@@ -7,13 +7,14 @@ use super::interaction::{RayHit, SurfaceInteraction};
 use super::light_buffer::{LightBuffer, Occluders};
 use crate::color::Channels;
 use crate::illumination::light::{LightOrigin, LightSource};
-use crate::illumination::optics::{InteriorMedium, TextureValues};
+use crate::illumination::optics::{Bsdf, InteriorMedium, TextureValues};
 use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::{Hit, Ray};
 use crate::octree::{Octree, Shaft, SurfacePoints};
 use crate::plan::{Plan, Stage};
 use crate::render::RenderError;
 use crate::scene::{Acceleration, AccelerationKey, Displacement, Prepared, SceneOctree, footprint};
+use crate::stages::stage;
 use glam::DVec3;
 use std::sync::Arc;
 use std::time::Duration;
@@ -40,12 +41,16 @@ impl<'a> World<'a> {
         let keeps = |object: usize| plan.needs(Stage::Octree) && plan.includes_object(object);
         let objects = (0..prepared.objects.len()).map(keeps).collect();
         let acceleration = prepared.acceleration(AccelerationKey { objects, motions: plan.needs(Stage::Motion) })?;
-        let appearance = Appearance::new(prepared, plan)?;
+        let appearance = {
+            let _stage = stage!("preparing lights and materials");
+            Appearance::new(prepared, plan)?
+        };
         let light_buffer = acceleration.still.as_ref().filter(|_| plan.needs(Stage::LightBuffer)).map(|still| {
             let is_opaque = |t: u32| {
                 let bsdf = appearance.bsdf(prepared.object_of[t as usize], prepared.material_number(t));
                 !(bsdf.is_passable() || appearance.has_clear_shadows && bsdf.is_clear())
             };
+            let _stage = stage!("building the light buffer");
             let has_open = appearance.has_passable || appearance.has_clear_shadows;
             let opaque = has_open.then(|| still.triangles().map(is_opaque).collect());
             LightBuffer::new(&prepared.bounds, &appearance.sources, opaque)
@@ -58,6 +63,7 @@ impl<'a> World<'a> {
                 // Rays continue straight through panes, and would hit them again.
                 (!appearance.bsdf(object, material).is_passable()).then_some((object, material))
             };
+            let _stage = stage!("choosing points of surfaces");
             SurfacePoints::new(&still.octree, settings.photons.point_depth.unwrap_or(0), surface, settings.image.seed)
         });
         Ok(World { appearance, acceleration, light_buffer, points })
@@ -356,15 +362,22 @@ impl<'a> World<'a> {
             };
             return (if occluded { Channels::ZERO } else { Channels::ONE }, false);
         }
-        let prepared = self.appearance.prepared;
-        let of = |hit: &Hit| over.triangle(hit.triangle);
-        let bsdf = |triangle: u32| {
-            self.appearance.bsdf(prepared.object_of[triangle as usize], prepared.material_number(triangle))
-        };
+        match self.passable_hits(over, shaft, ray, t_max) {
+            Some(hits) => self.transmittance_of(&hits, ray, t_max, wavelength_set),
+            None => (Channels::ZERO, false),
+        }
+    }
+
+    /// Where a ray hits surfaces that light passes straight, the nearest first; none if it hits one that stops it.
+    ///
+    /// A hit has the number of its triangle in the scene.
+    fn passable_hits(&self, over: &SceneOctree, shaft: Option<&Shaft>, ray: &Ray, t_max: f64) -> Option<Vec<Hit>> {
+        let object_of = &self.appearance.prepared.object_of;
         let mut hits: Vec<Hit> = Vec::new();
         let clears = self.appearance.has_clear_shadows;
         let enough = |hit: Hit| {
-            let bsdf = bsdf(of(&hit));
+            let hit = Hit { triangle: over.triangle(hit.triangle), ..hit };
+            let bsdf = self.bsdf_of(hit.triangle);
             let passable = bsdf.is_passable() || clears && bsdf.is_clear();
             if passable {
                 hits.push(hit);
@@ -376,12 +389,25 @@ impl<'a> World<'a> {
             None => over.octree.each_hit(ray, 0.0, t_max, enough),
         };
         if stopped {
-            return (Channels::ZERO, false);
+            return None;
         }
-        // The nearest first; where triangles of an object share a side, what they stand for is passed once.
-        let object = |hit: &Hit| prepared.object_of[of(hit) as usize];
+        // Where triangles of an object share a side, what they stand for is passed once.
         hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
-        hits.dedup_by(|next, hit| next.t == hit.t && object(next) == object(hit));
+        hits.dedup_by_key(|hit| (hit.t, object_of[hit.triangle as usize]));
+        Some(hits)
+    }
+
+    /// The BSDF of a triangle.
+    fn bsdf_of(&self, triangle: u32) -> &Bsdf {
+        let prepared = self.appearance.prepared;
+        self.appearance.bsdf(prepared.object_of[triangle as usize], prepared.material_number(triangle))
+    }
+
+    /// Transmittance of surfaces that light passes straight, and of the bodies within them.
+    ///
+    /// - `hits`: of the ray, the nearest first.
+    fn transmittance_of(&self, hits: &[Hit], ray: &Ray, t_max: f64, wavelength_set: usize) -> (Channels, bool) {
+        let prepared = self.appearance.prepared;
         // Where the ray is in which body, since when.
         let mut inside: Vec<(u32, f64, &InteriorMedium)> = Vec::new();
         let left = |interior: &InteriorMedium, way: f64| {
@@ -390,8 +416,8 @@ impl<'a> World<'a> {
         let length = ray.direction.length();
         let mut is_cleared = false;
         let part = hits.iter().fold(Channels::ONE, |part, hit| {
-            let triangle = of(hit);
-            let bsdf = bsdf(triangle);
+            let triangle = hit.triangle;
+            let bsdf = self.bsdf_of(triangle);
             let slope = slope(prepared.corners(triangle), ray.direction) / length;
             let place = || prepared.texture_place(triangle, weights(hit), Default::default());
             let Some(interior) = bsdf.interior.as_ref().filter(|_| !bsdf.is_passable()) else {

@@ -22,8 +22,9 @@ pub use setup::{studied, usual};
 
 use super::{Options, StudyError};
 use crate::picture::Picture;
-use crate::render::{Progress, Technique, Watch};
+use crate::render::{Technique, Watch};
 use crate::scene::Scene;
+use crate::stages::{StageSpan, stage};
 use best::knobs_of;
 use error_floor::error_floor;
 use measure::ReferencePicture;
@@ -65,7 +66,8 @@ pub fn renderers(
         if base.idle(*technique, knob).is_some() { 0 } else { (knob.values)(&base).len() as u64 }
     };
     let steps = chosen.iter().map(settings).sum::<u64>();
-    let mut bench = Bench { base: &base, watch, references: Vec::new(), done: 0, steps };
+    let stage = stage!("studying", steps as f64, "measurements", opaque);
+    let mut bench = Bench { base: &base, watch, stage, references: Vec::new(), done: 0 };
     let mut study = RenderStudy { knobs: Vec::new(), complete: true };
     for (technique, knob) in chosen {
         let mut found = bench.begin(technique, knob);
@@ -90,9 +92,9 @@ pub fn renderers(
 struct Bench<'a> {
     base: &'a StudiedScene,
     watch: &'a Watch<'a>,
+    stage: StageSpan,
     references: Vec<(Setup, ReferencePicture)>,
     done: u64,
-    steps: u64,
 }
 
 impl Bench<'_> {
@@ -137,7 +139,7 @@ impl Bench<'_> {
             changes |= *first.get_or_insert_with(|| picture.clone()) != picture;
             found.rows.push(row);
             self.done += 1;
-            (self.watch.progress)(Progress::of(self.done, self.steps, "measurements"));
+            self.stage.progress(self.done as f64);
         }
         let measured: Vec<ErrorMeasures> = found.rows.iter().map(|row| row.measures).collect();
         found.error_floor = error_floor(&measured, found.reference_error);

@@ -184,7 +184,7 @@ impl StudiedScene {
             vary(shots.len() as u64, &mut order);
             order
         };
-        let quiet = watch.quiet();
+        let unkept = watch.without_memo();
         let is_followed = setup.technique.row().always_maps_photons;
         let mut shots = Vec::new();
         while !is_enough(&shots) {
@@ -200,7 +200,7 @@ impl StudiedScene {
             let shared = if prepared.accelerations() == built { renderer.octree_time() } else { Duration::ZERO };
             let build = modelling + (start.elapsed() + shared).as_secs_f64();
             while !is_enough(&shots) {
-                let rendering = renderer.any().render(&view, &varied(&shots), &quiet)?;
+                let rendering = renderer.any().render(&view, &varied(&shots), &unkept)?;
                 if !rendering.complete || watch.cancelled.load(Ordering::Relaxed) {
                     return Err(StudyError::Interrupted);
                 }

@@ -10,9 +10,11 @@ use crate::numeric::ray::Ray;
 use crate::render::RENDERERS;
 use crate::scene::{Camera, Interreflection, Object, Settings, Shape};
 use crate::solid::Primitive;
+use crate::stages::{StageEvent, observed};
 use glam::{DMat4, DVec3};
 use std::f64::consts::PI;
-use std::sync::atomic::AtomicBool;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 const SMALL: Options = Options { width: 20, samples: 256, settings: 5, threads: None };
 const RAYS: &[Technique] = &[Technique::RayTracing];
@@ -277,10 +279,20 @@ fn scan_line_is_held_against_ray_tracing_where_it_leaves_nothing_out() {
 
 #[test]
 fn what_was_finished_before_an_interruption_is_kept() {
-    let cancelled = AtomicBool::new(false);
-    let progress = |amount: Progress| cancelled.store(amount.done >= 2.0, std::sync::atomic::Ordering::Relaxed);
-    let watch = Watch { cancelled: &cancelled, progress: &progress, ..Watch::NOBODY };
-    let found = renderers(&ball(), RAYS, &["samples", "error"], &SMALL, &watch).expect("a part");
+    let cancelled = Arc::new(AtomicBool::new(false));
+    let watch = Watch { cancelled: &cancelled, ..Watch::NOBODY };
+    let studies = AtomicU64::new(0);
+    let stop = {
+        let cancelled = cancelled.clone();
+        move |event| match event {
+            StageEvent::Begin { id, name: "studying", .. } => studies.store(id, Ordering::Relaxed),
+            StageEvent::Progress { id, done } if id == studies.load(Ordering::Relaxed) => {
+                cancelled.store(done >= 2.0, Ordering::Relaxed);
+            }
+            _ => {}
+        }
+    };
+    let found = observed(stop, || renderers(&ball(), RAYS, &["samples", "error"], &SMALL, &watch)).expect("a part");
     assert!(!found.complete && found.knobs.len() == 1 && found.knobs[0].rows.len() == 2, "{found:?}");
     assert_eq!(found.csv().lines().count(), 3);
 }
