@@ -52,18 +52,6 @@ pub(crate) fn mix(x: u64) -> u64 {
     x ^ (x >> 31)
 }
 
-/// Points of the unit square, one in each cell of a grid of about `count` cells, row by row.
-///
-/// - Returns exactly `rows * columns` points with `rows * columns <= count`, `rows` the whole root of `count`.
-pub fn stratified(count: usize, stream: &mut RandomStream) -> Vec<[f64; 2]> {
-    let rows = count.isqrt();
-    let columns = count.checked_div(rows).unwrap_or(0);
-    let cell = |i: usize, n: usize, jitter: f64| ((i as f64 + jitter) / n as f64).min(1.0_f64.next_down());
-    (0..rows * columns)
-        .map(|i| [cell(i % columns, columns, stream.uniform()), cell(i / columns, rows, stream.uniform())])
-        .collect()
-}
-
 /// Point `index` of a sequence that fills the unit square evenly at any length, moved by a random shift.
 ///
 /// Point n is (n / g, n / g^2) + shift, modulo 1, with g^3 = g + 1.
@@ -187,18 +175,6 @@ mod tests {
         assert!((variance - 1.0 / 12.0).abs() < 0.003, "{variance}");
         // The standard error of the correlation is 1 / sqrt(n) = 0.007.
         assert!((covariance / variance).abs() < 0.03, "{covariance}");
-    }
-
-    #[test]
-    fn each_cell_of_a_stratified_set_holds_one_point() {
-        let points = stratified(50, &mut RandomStream::new(3, 0));
-        assert_eq!(points.len(), 49);
-        let mut seen = [false; 49];
-        for [x, y] in points {
-            let cell = (y * 7.0) as usize * 7 + (x * 7.0) as usize;
-            assert!(!std::mem::replace(&mut seen[cell], true));
-        }
-        assert!(stratified(0, &mut RandomStream::new(3, 0)).is_empty());
     }
 
     #[test]

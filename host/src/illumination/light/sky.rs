@@ -152,12 +152,6 @@ impl Sky {
         self.factor.of(wavelength_set) * all
     }
 
-    /// About the mean of its luminance over all directions.
-    pub fn mean(&self) -> f64 {
-        let part = self.disc.as_ref().map_or(1.0, |disc| 1.0 / (2.0 * TAU * disc.pdf));
-        self.factor.mean().max() * self.map.as_ref().map_or(part, Map::mean)
-    }
-
     fn forth(&self, direction: DVec3) -> DVec3 {
         let DVec2 { x: cos, y: sin } = self.turned;
         DVec3::new(cos * direction.x + sin * direction.z, direction.y, cos * direction.z - sin * direction.x)
@@ -308,12 +302,6 @@ impl Map {
             sums += (0..width).map(|x| self.panorama.texel(x, y)).sum::<DVec3>() * (hat * TAU / width as f64);
         }
         self.light(sums, wavelength_set)
-    }
-
-    fn mean(&self) -> f64 {
-        let [width, height] = self.panorama.size();
-        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
-        pixels.map(|[x, y]| self.panorama.texel(x, y).y).sum::<f64>() / (width * height) as f64
     }
 
     /// A place, sampled about in proportion to its brightness.
