@@ -20,4 +20,4 @@ pub use send::{
     DataForm, PREFERRED_PAYLOAD, SendError, Sending, send_commands, send_raster, write_commands, write_commands_as,
     write_raster, write_raster_as,
 };
-pub use six_bit::{SIX_BIT_ZERO, SixBitError, read_six_bit, six_bit_length, write_six_bit};
+pub use six_bit::{SIX_BIT_ZERO, SixBitError, read_six_bit, write_six_bit};

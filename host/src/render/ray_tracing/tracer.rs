@@ -18,7 +18,7 @@ use crate::scene::Caustics;
 use glam::DVec3;
 
 /// Throughput below which Russian roulette decides what continues (Arvo and Kirk 1990).
-pub const ENERGY_CUTOFF: f64 = 1.0 / 4096.0;
+const ENERGY_CUTOFF: f64 = 1.0 / 4096.0;
 /// Throughput above which both parts of a path are traced where it splits.
 const LEAST_SPLIT: f64 = 1.0 / 64.0;
 /// Greatest value, 1/sr, with which narrow lobes reflect a lamp on an element reached by broad scattering, unless
