@@ -40,11 +40,6 @@ impl Bins {
         }
     }
 
-    /// How many bins there are.
-    pub fn count(&self) -> usize {
-        self.edges.len() - 1
-    }
-
     /// The borders of each bin, nm.
     pub fn ranges(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         self.edges.windows(2).map(|pair| (pair[0], pair[1]))

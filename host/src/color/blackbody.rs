@@ -3,11 +3,11 @@
 use super::{ColorError, Extrapolation, Spectrum};
 
 /// Planck's constant, J s; exact in the SI of 2019.
-pub const PLANCK: f64 = 6.626_070_15e-34;
+const PLANCK: f64 = 6.626_070_15e-34;
 /// Speed of light, m/s; exact.
-pub const LIGHT_SPEED: f64 = 299_792_458.0;
+const LIGHT_SPEED: f64 = 299_792_458.0;
 /// Boltzmann's constant, J/K; exact in the SI of 2019.
-pub const BOLTZMANN: f64 = 1.380_649e-23;
+const BOLTZMANN: f64 = 1.380_649e-23;
 
 /// The lowest temperature of [`spectrum()`], K: below it nothing is to be seen.
 pub const LEAST_KELVIN: f64 = 100.0;

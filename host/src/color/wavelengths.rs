@@ -46,11 +46,6 @@ impl SpectralTable {
     pub fn max(&self) -> f64 {
         self.0.iter().fold(0.0, |most, channels| channels.max().max(most))
     }
-
-    /// The mean over all wavelength sets.
-    pub fn mean(&self) -> Channels {
-        self.0.iter().fold(Channels::ZERO, |sum, channels| sum + *channels) * (self.0.len() as f64).recip()
-    }
 }
 
 impl WavelengthSets {

@@ -1,6 +1,6 @@
 //! Bezier curves of any degree, polynomial or rational.
 
-use glam::{DAffine3, DVec3};
+use glam::DVec3;
 
 use super::control::{ControlPoint, control_row};
 use super::{Curve, SplineError};
@@ -65,11 +65,6 @@ impl BezierCurve {
         let at = |k: usize| self.control[k.min(degree - 1)];
         let between = |k: usize| ControlPoint::mix(at(k), at(k.saturating_sub(1)), k as f64 / degree as f64);
         Ok(BezierCurve::of((0..=degree).map(between).collect()))
-    }
-
-    /// The curve moved by `placement`.
-    pub fn transformed(&self, placement: &DAffine3) -> BezierCurve {
-        BezierCurve::of(self.control.iter().map(|point| point.transformed(placement)).collect())
     }
 }
 

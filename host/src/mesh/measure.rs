@@ -47,29 +47,6 @@ impl Mesh {
         sixfold / 6.0
     }
 
-    /// Unit normals at the vertices: face normals weighted by the angle of the corner.
-    ///
-    /// Vertices at the same position share their normal. A vertex without faces, or whose faces cancel, has none and
-    /// gets the zero vector.
-    ///
-    /// # Source
-    /// Thuermer and Wuethrich 1998.
-    pub fn vertex_normals(&self) -> Vec<DVec3> {
-        let same = self.first_of_each_position();
-        let mut normals = vec![DVec3::ZERO; self.vertices.len()];
-        for (triangle, corners) in self.triangles.iter().enumerate() {
-            let Some(normal) = self.face_normal(triangle) else { continue };
-            let positions = self.corners(triangle);
-            for (k, &corner) in corners.iter().enumerate() {
-                let forward = positions[(k + 1) % 3] - positions[k];
-                let backward = positions[(k + 2) % 3] - positions[k];
-                let angle = angle_between(forward, backward);
-                normals[same[corner as usize] as usize] += normal * angle;
-            }
-        }
-        same.iter().map(|&first| normals[first as usize].normalize_or_zero()).collect()
-    }
-
     /// For each vertex the lowest index among the vertices at its position (same bits, and -0 equal to 0).
     pub fn first_of_each_position(&self) -> Vec<u32> {
         let mut first_at: HashMap<[u64; 3], u32> = HashMap::with_capacity(self.vertices.len());

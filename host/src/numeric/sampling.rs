@@ -40,27 +40,16 @@ impl RandomStream {
     }
 }
 
-/// Mixes the bits of a number, one to one.
+/// Mixes the bits of a number, one to one: each bit of it flips about half of them.
 ///
 /// # Source
 /// Steele, Lea and Flood 2014 (SplitMix), constants of variant 13 by Stafford.
-fn mix(x: u64) -> u64 {
+#[inline]
+pub(crate) fn mix(x: u64) -> u64 {
     let x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     x ^ (x >> 31)
-}
-
-/// Points of the unit square, one in each cell of a grid of about `count` cells, row by row.
-///
-/// - Returns exactly `rows * columns` points with `rows * columns <= count`, `rows` the whole root of `count`.
-pub fn stratified(count: usize, stream: &mut RandomStream) -> Vec<[f64; 2]> {
-    let rows = count.isqrt();
-    let columns = count.checked_div(rows).unwrap_or(0);
-    let cell = |i: usize, n: usize, jitter: f64| ((i as f64 + jitter) / n as f64).min(1.0_f64.next_down());
-    (0..rows * columns)
-        .map(|i| [cell(i % columns, columns, stream.uniform()), cell(i / columns, rows, stream.uniform())])
-        .collect()
 }
 
 /// Point `index` of a sequence that fills the unit square evenly at any length, moved by a random shift.
@@ -81,10 +70,15 @@ pub fn r2_point(index: u32, shift: [f64; 2]) -> [f64; 2] {
 /// A direction uniform over the unit sphere, from a point of the unit square.
 #[inline]
 pub fn sphere(point: [f64; 2]) -> DVec3 {
-    let z = 1.0 - 2.0 * point[0];
-    let radius = (1.0 - z * z).max(0.0).sqrt();
-    let (sin, cos) = (TAU * point[1]).sin_cos();
-    DVec3::new(radius * cos, radius * sin, z)
+    around_z(1.0 - 2.0 * point[0], point[1])
+}
+
+/// A unit vector whose cosine with z is given, turned about z by a part of a whole turn.
+#[inline]
+pub(crate) fn around_z(cosine: f64, turn: f64) -> DVec3 {
+    let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+    let (sin, cos) = (TAU * turn).sin_cos();
+    DVec3::new(sine * cos, sine * sin, cosine)
 }
 
 /// A point uniform in the unit disk, from a point of the unit square; squares around the middle become rings.
@@ -100,6 +94,35 @@ pub fn disk(point: [f64; 2]) -> [f64; 2] {
     let (radius, angle) = if x.abs() > y.abs() { (x, PI / 4.0 * (y / x)) } else { (y, PI / 2.0 - PI / 4.0 * (x / y)) };
     let (sin, cos) = angle.sin_cos();
     [radius * cos, radius * sin]
+}
+
+/// A point uniform in the unit disk across a direction, about the origin, from a point of the unit square.
+///
+/// - `normal`: unit length.
+#[inline]
+pub(crate) fn disk_across(normal: DVec3, point: [f64; 2]) -> DVec3 {
+    let (x, y) = normal.any_orthonormal_pair();
+    let [a, b] = disk(point);
+    x * a + y * b
+}
+
+/// 1 − cos of the half angle under which a sphere is seen; none from inside.
+///
+/// - `offset`: from where it is seen to its middle.
+#[inline]
+pub(crate) fn cap(offset: DVec3, radius: f64) -> Option<f64> {
+    let sine = radius / offset.length();
+    (sine < 1.0).then(|| sine * sine / (1.0 + (1.0 - sine * sine).sqrt()))
+}
+
+/// The part in which a number falls, and where in it, 0..1: the middle of a part that is empty.
+///
+/// - `below`: the sum of the parts up to each, rising to 1.
+pub(crate) fn part_of(below: &[f64], uniform: f64) -> (usize, f64) {
+    let index = below.partition_point(|part| *part <= uniform).min(below.len() - 1);
+    let from = if index == 0 { 0.0 } else { below[index - 1] };
+    let size = below[index] - from;
+    (index, if size > 0.0 { ((uniform - from) / size).clamp(0.0, 1.0_f64.next_down()) } else { 0.5 })
 }
 
 /// A direction over a surface with the pdf cos / pi, 1/sr, from a point of the unit square.
@@ -152,18 +175,6 @@ mod tests {
         assert!((variance - 1.0 / 12.0).abs() < 0.003, "{variance}");
         // The standard error of the correlation is 1 / sqrt(n) = 0.007.
         assert!((covariance / variance).abs() < 0.03, "{covariance}");
-    }
-
-    #[test]
-    fn each_cell_of_a_stratified_set_holds_one_point() {
-        let points = stratified(50, &mut RandomStream::new(3, 0));
-        assert_eq!(points.len(), 49);
-        let mut seen = [false; 49];
-        for [x, y] in points {
-            let cell = (y * 7.0) as usize * 7 + (x * 7.0) as usize;
-            assert!(!std::mem::replace(&mut seen[cell], true));
-        }
-        assert!(stratified(0, &mut RandomStream::new(3, 0)).is_empty());
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! Points that fill the unit square evenly whatever their number, and are as random as random ones.
 
+use super::sampling::mix;
+
 /// One over 2 to the power of 32.
 const UNIT: f64 = 1.0 / 4_294_967_296.0;
 
@@ -58,17 +60,6 @@ fn scrambled(bits: u32, seed: u32) -> u32 {
         bits ^= bits.wrapping_mul(factor);
     }
     bits
-}
-
-/// Scrambles 64 bits: each input bit flips about half of the output bits.
-///
-/// # Source
-/// The finaliser of SplitMix64, Steele, Lea and Flood 2014.
-fn mix(x: u64) -> u64 {
-    let x = x.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    let x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    let x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    x ^ (x >> 31)
 }
 
 fn fold(x: u64) -> u32 {

@@ -43,13 +43,13 @@ impl LocalBounds {
 }
 
 /// The largest single-precision number not above a number.
-pub fn round_down(x: f64) -> f32 {
+fn round_down(x: f64) -> f32 {
     let nearest = x as f32;
     if f64::from(nearest) > x { nearest.next_down() } else { nearest }
 }
 
 /// The smallest single-precision number not below a number.
-pub fn round_up(x: f64) -> f32 {
+fn round_up(x: f64) -> f32 {
     let nearest = x as f32;
     if f64::from(nearest) < x { nearest.next_up() } else { nearest }
 }

@@ -66,11 +66,6 @@ impl ExactSurfaces {
         let surface = self.surfaces.get((number & !REVERSED) as usize).filter(|_| number != NONE)?;
         Some((surface, number & REVERSED != 0))
     }
-
-    /// Bytes that the numbers take.
-    pub(super) fn bytes(&self) -> usize {
-        size_of_val(&self.surface_of[..])
-    }
 }
 
 impl fmt::Debug for ExactSurfaces {

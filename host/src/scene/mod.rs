@@ -136,12 +136,6 @@ impl Scene {
 }
 
 impl Scene {
-    /// How an object moves, if it does while the shutter is open.
-    pub fn motion(&self, object: usize) -> Option<Motion> {
-        let motion = self.motions.iter().find(|(moving, _)| *moving as usize == object).map(|(_, motion)| *motion);
-        motion.filter(|_| self.settings.geometry.shutter > 0.0)
-    }
-
     fn check_motions(&self) -> Result<(), SceneError> {
         let mut known = vec![false; self.objects.len()];
         for (index, motion) in &self.motions {

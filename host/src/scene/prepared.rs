@@ -6,7 +6,7 @@ use super::object::{GROUND, Object};
 use super::parameters::parameters;
 use super::shape_mesh::ShapeMesh;
 use super::shared::SharedMeshes;
-use super::stretch::{cofactors, largest_stretch};
+use super::stretch::cofactors;
 use super::{Camera, GeometrySettings, Motion, Scene, SceneError, Settings, View};
 use crate::illumination::light::LightShape;
 use crate::illumination::{Light, Material, RgbPower};
@@ -81,8 +81,6 @@ pub struct PreparedObject {
     pub bounds: Bounds,
     /// How it moves while the shutter is open; its triangles are where it is in the middle of that time.
     pub motion: Option<Motion>,
-    /// Distance between surface and triangles that was asked for, scene units.
-    pub tolerance: f64,
     /// Where its corner normals begin; none for an object with flat faces.
     normals_from: Option<u32>,
     /// Where the parameters of its corners begin; none for an object that needs none.
@@ -155,8 +153,8 @@ impl Contents {
             false => FxHashMap::default(),
         };
         for (object, index) in scene.objects.iter().zip(0u32..) {
-            let (made, chord) = (shared.mesh_of(scene, index)?, shared.chord(index));
-            contents.add(object, &made, chord, motions.get(&index).copied(), &scene.settings.geometry)?;
+            let made = shared.mesh_of(scene, index)?;
+            contents.add(object, &made, motions.get(&index).copied(), &scene.settings.geometry)?;
         }
         contents.camera = scene.camera.unwrap_or_else(|| Camera::framing(&contents.subject()));
         Ok(contents)
@@ -172,7 +170,6 @@ impl Contents {
         &mut self,
         object: &Object,
         shape_mesh: &ShapeMesh,
-        chord: f64,
         motion: Option<Motion>,
         settings: &GeometrySettings,
     ) -> Result<(), SceneError> {
@@ -224,7 +221,6 @@ impl Contents {
             count: mesh.triangles.len() as u32,
             bounds,
             motion,
-            tolerance: chord * largest_stretch(&object.transform),
             normals_from,
             parameters_from,
             to_own: object.transform.inverse(),
@@ -303,16 +299,5 @@ impl Contents {
     /// The view of the scene's own camera.
     pub fn view(&self) -> View {
         View::Camera(self.camera)
-    }
-
-    /// Bytes that the tables take.
-    pub fn bytes(&self) -> usize {
-        size_of_val(&self.vertices[..])
-            + size_of_val(&self.triangles[..])
-            + size_of_val(&self.object_of[..])
-            + size_of_val(&self.normals[..])
-            + size_of_val(&self.parameters[..])
-            + size_of_val(&self.material_of[..])
-            + self.exact.bytes()
     }
 }

@@ -14,8 +14,6 @@ const BYTES: u64 = 64;
 pub(super) struct SharedMeshes {
     /// For each object the first one with the same shape and tolerance.
     first: Vec<u32>,
-    /// For each object its tolerance in own coordinates, 0 for flat shapes.
-    chords: Vec<f64>,
     /// For each first one how many objects still need its triangles.
     needed: Vec<u32>,
     meshes: FxHashMap<u32, Rc<ShapeMesh>>,
@@ -39,6 +37,7 @@ impl SharedMeshes {
             let alike = known.entry(debug_hash(&object.shape)).or_default();
             let is_alike = |other: &&First| scene.objects[other.index as usize].shape == object.shape;
             let extent = alike.iter().find(is_alike).map_or_else(|| object.shape.extent(), |other| other.extent);
+            // The tolerance in own coordinates, 0 for flat shapes.
             let chord = extent.map_or(0.0, |extent| object.chord_of(extent, scene.settings.geometry.tolerance));
             let same = alike.iter().find(|other| chords.get(other.index as usize) == Some(&chord) && is_alike(other));
             let found = same.map(|other| other.index);
@@ -50,12 +49,7 @@ impl SharedMeshes {
             first.push(found);
             chords.push(chord);
         }
-        SharedMeshes { first, chords, needed, meshes: FxHashMap::default() }
-    }
-
-    /// The tolerance of an object in own coordinates, 0 for flat shapes.
-    pub(super) fn chord(&self, index: u32) -> f64 {
-        self.chords[index as usize]
+        SharedMeshes { first, needed, meshes: FxHashMap::default() }
     }
 
     /// The triangles of an object, which must be asked for once for each object.

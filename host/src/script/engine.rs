@@ -24,7 +24,7 @@ use std::path::Path;
 use std::rc::Rc;
 
 /// Longest script, bytes.
-pub const MAX_SCRIPT_BYTES: u64 = 4 << 20;
+const MAX_SCRIPT_BYTES: u64 = 4 << 20;
 /// Longest string in a script, bytes.
 const MAX_STRING: usize = 1 << 20;
 /// Most elements of an array or a map.

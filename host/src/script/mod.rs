@@ -41,7 +41,7 @@ mod tests;
 
 pub use camera_call::camera_call;
 pub use definition::ParameterAssignment;
-pub use engine::{MAX_SCRIPT_BYTES, evaluate};
+pub use engine::evaluate;
 pub use error::{MAX_OPERATIONS, ScriptError};
 pub use evaluated::{Evaluated, Inputs};
 pub use function::Function;

@@ -114,7 +114,7 @@ impl<'a> Creases<'a> {
     }
 
     /// The pinning of a corner of a face.
-    pub fn pinning_of(&self, corner: u32) -> Pinning {
+    fn pinning_of(&self, corner: u32) -> Pinning {
         let next = self.mesh.next[corner as usize];
         let last = self.last[corner as usize];
         let before_last = self.last[last as usize];

@@ -1,6 +1,6 @@
 //! The bicubic Bezier patch.
 
-use glam::{DAffine3, DVec2, DVec3};
+use glam::{DVec2, DVec3};
 
 use super::{Curved, Surface, between, nearest_from};
 
@@ -29,13 +29,6 @@ impl BezierPatch {
     /// These points with u and v exchanged, and so with the other side outside.
     pub fn transposed(&self) -> BezierPatch {
         BezierPatch { control: std::array::from_fn(|i| std::array::from_fn(|j| self.control[j][i])) }
-    }
-
-    /// The patch moved by `placement`, exactly up to rounding; patches that share control points still share them. A
-    /// reflection exchanges u and v, so that outside stays outside.
-    pub fn transformed(&self, placement: &DAffine3) -> BezierPatch {
-        let moved = BezierPatch { control: self.control.map(|row| row.map(|point| placement.transform_point3(point))) };
-        if placement.matrix3.determinant() < 0.0 { moved.transposed() } else { moved }
     }
 
     /// The longest side of the box around the control points.

@@ -133,7 +133,7 @@ impl SplineSurface {
     ///
     /// # Panics
     /// If there is no patch of the number `patch`.
-    pub fn patch_domain(&self, patch: usize) -> [DVec2; 2] {
+    fn patch_domain(&self, patch: usize) -> [DVec2; 2] {
         let [u, v] = [self.bases[0].breaks(), self.bases[1].breaks()];
         let (i, j) = (patch / (v.len() - 1), patch % (v.len() - 1));
         [DVec2::new(u[i], v[j]), DVec2::new(u[i + 1], v[j + 1])]

@@ -29,11 +29,6 @@ impl SurfaceOfRevolution {
         SurfaceOfRevolution { profile, turns }
     }
 
-    /// The profile that revolves.
-    pub fn profile(&self) -> &Profile {
-        &self.profile
-    }
-
     /// Where a point of the half plane comes to at an angle, turns.
     pub fn revolve(point: DVec2, turns: f64) -> DVec3 {
         let [sine, cosine] = sine_and_cosine(turns);

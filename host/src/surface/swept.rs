@@ -71,11 +71,6 @@ impl Spine {
         Some(Spine { curve, stations, closing })
     }
 
-    /// The curve.
-    pub fn curve(&self) -> &SplineCurve {
-        &self.curve
-    }
-
     /// The point of the section `point` at the parameter `t`.
     pub fn point_at(&self, point: DVec2, twist_and_taper: TwistAndTaper, t: f64) -> DVec3 {
         self.jet(point, twist_and_taper, t)[0]

@@ -1,6 +1,6 @@
 //! Bezier patches of any degree, polynomial or rational.
 
-use glam::{DAffine3, DVec2, DVec3};
+use glam::{DVec2, DVec3};
 
 use super::curvature::Curved;
 use super::{BezierPatch, Surface, nearest_from};
@@ -56,14 +56,6 @@ impl TensorPatch {
     /// If the patch has no such point.
     pub fn control(&self, i: usize, j: usize) -> ControlPoint {
         self.control[i * (self.degrees[1] + 1) + j]
-    }
-
-    /// The patch moved by `placement`. A reflection reverses u, so that outside stays outside.
-    pub fn transformed(&self, placement: &DAffine3) -> TensorPatch {
-        let [p, q] = self.degrees;
-        let row = |i: usize| if placement.matrix3.determinant() < 0.0 { p - i } else { i };
-        let at = |k: usize| self.control(row(k / (q + 1)), k % (q + 1)).transformed(placement);
-        TensorPatch::of(self.degrees, (0..self.control.len()).map(at).collect())
     }
 
     fn evaluated(&self, uv: DVec2) -> ControlPoint {

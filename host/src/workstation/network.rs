@@ -53,7 +53,7 @@ pub const KEYS: [(i32, &str, FunctionKey); 5] = [
 ];
 
 /// Labels over the dials.
-pub const DIAL_LABELS: [&str; 8] = ["ROT X", "ROT Y", "ROT Z", "SCALE", "TRAN X", "TRAN Y", "TRAN Z", ""];
+const DIAL_LABELS: [&str; 8] = ["ROT X", "ROT Y", "ROT Z", "SCALE", "TRAN X", "TRAN Y", "TRAN Z", ""];
 
 /// A small builder: names of ours are known to be legal.
 #[derive(Debug, Default)]

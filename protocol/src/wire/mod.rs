@@ -17,7 +17,7 @@ pub use packet::{
     write_count_packet, write_escape_packet, write_packet, write_packet_as,
 };
 pub use send::{
-    DataForm, PREFERRED_PAYLOAD, SendError, Sending, send_commands, send_commands_as, send_raster, send_raster_as,
-    write_commands, write_commands_as, write_raster, write_raster_as,
+    DataForm, PREFERRED_PAYLOAD, SendError, Sending, send_commands, send_raster, write_commands, write_commands_as,
+    write_raster, write_raster_as,
 };
-pub use six_bit::{SIX_BIT_ZERO, SixBitError, read_six_bit, six_bit_length, write_six_bit};
+pub use six_bit::{SIX_BIT_ZERO, SixBitError, read_six_bit, write_six_bit};

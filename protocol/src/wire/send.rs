@@ -181,26 +181,15 @@ impl<'s, E> Packer<'s, E> {
     }
 }
 
-/// Sends commands as binary packets; `send` is given one whole packet after the other. Records are packed together, and
-/// the last packet is sent at the end.
-///
-/// # Errors
-/// A command that exceeds a limit of the records (those before it were sent), or what `send` gave.
-pub fn send_commands<'c, E>(
-    commands: impl IntoIterator<Item = &'c Command>,
-    send: impl FnMut(&[u8]) -> Result<(), E>,
-) -> Result<(), SendError<E>> {
-    send_commands_as(Sending::default(), commands, send)
-}
-
-/// Sends commands in a form of data and packets, as [`send_commands`] does.
+/// Sends commands in a form of data and packets; `send` is given one whole packet after the other. Records are packed
+/// together, and the last packet is sent at the end.
 ///
 /// Long vector lists are cut so that they fit the packets. A command with a record that is too long for a packet is
 /// sent as text, which may be cut anywhere.
 ///
 /// # Errors
-/// Those of [`send_commands`].
-pub fn send_commands_as<'c, E>(
+/// A command that exceeds a limit of the records (those before it were sent), or what `send` gave.
+pub fn send_commands<'c, E>(
     sending: Sending,
     commands: impl IntoIterator<Item = &'c Command>,
     mut send: impl FnMut(&[u8]) -> Result<(), E>,
@@ -246,23 +235,12 @@ fn short_records<E>(
     Ok(())
 }
 
-/// Sends raster commands as packets, as [`send_commands`] does.
+/// Sends raster commands in a form of data and packets, as [`send_commands`] does. Long runs are cut so that they fit
+/// the packets; [`DataForm::Text`] stands for the 6-bit form.
 ///
 /// # Errors
-/// A command that exceeds a limit of the records (those before it were sent), or what `send` gave.
+/// Those of [`send_commands`].
 pub fn send_raster<'c, E>(
-    commands: impl IntoIterator<Item = &'c RasterCommand>,
-    send: impl FnMut(&[u8]) -> Result<(), E>,
-) -> Result<(), SendError<E>> {
-    send_raster_as(Sending::default(), commands, send)
-}
-
-/// Sends raster commands in a form of data and packets, as [`send_raster`] does. Long runs are cut so that they fit the
-/// packets; [`DataForm::Text`] stands for the 6-bit form.
-///
-/// # Errors
-/// Those of [`send_raster`].
-pub fn send_raster_as<'c, E>(
     sending: Sending,
     commands: impl IntoIterator<Item = &'c RasterCommand>,
     mut send: impl FnMut(&[u8]) -> Result<(), E>,
@@ -299,7 +277,7 @@ const _: () = assert!(RUNS <= raster::MAX_RUNS && RUNS * 5 + 3 <= PREFERRED_PAYL
 // A whole lookup table fits the shortest packet.
 const _: () = assert!(4 + 4 * raster::MAX_LOOKUP_ENTRIES <= MAX_COUNT_DATA / 4 * 3);
 
-/// Appends the packets of [`send_commands`].
+/// Appends the packets of [`send_commands`] in the default form: binary records.
 ///
 /// # Errors
 /// A command that exceeds a limit of the records.
@@ -310,7 +288,7 @@ pub fn write_commands<'c>(
     write_commands_as(Sending::default(), commands, out)
 }
 
-/// Appends the packets of [`send_commands_as`].
+/// Appends the packets of [`send_commands`].
 ///
 /// # Errors
 /// A command that exceeds a limit of the records.
@@ -319,10 +297,10 @@ pub fn write_commands_as<'c>(
     commands: impl IntoIterator<Item = &'c Command>,
     out: &mut Vec<u8>,
 ) -> Result<(), EncodeError> {
-    encoded(send_commands_as(sending, commands, |packet| collect(packet, out)))
+    encoded(send_commands(sending, commands, |packet| collect(packet, out)))
 }
 
-/// Appends the packets of [`send_raster`].
+/// Appends the packets of [`send_raster`] in the default form: binary records.
 ///
 /// # Errors
 /// A command that exceeds a limit of the records.
@@ -333,7 +311,7 @@ pub fn write_raster<'c>(
     write_raster_as(Sending::default(), commands, out)
 }
 
-/// Appends the packets of [`send_raster_as`].
+/// Appends the packets of [`send_raster`].
 ///
 /// # Errors
 /// A command that exceeds a limit of the records.
@@ -342,7 +320,7 @@ pub fn write_raster_as<'c>(
     commands: impl IntoIterator<Item = &'c RasterCommand>,
     out: &mut Vec<u8>,
 ) -> Result<(), EncodeError> {
-    encoded(send_raster_as(sending, commands, |packet| collect(packet, out)))
+    encoded(send_raster(sending, commands, |packet| collect(packet, out)))
 }
 
 fn collect(packet: &[u8], out: &mut Vec<u8>) -> Result<(), Infallible> {

@@ -28,7 +28,7 @@ pub enum SixBitError {
 }
 
 /// Characters that so many bytes take.
-pub const fn six_bit_length(bytes: usize) -> usize {
+const fn six_bit_length(bytes: usize) -> usize {
     bytes / 3 * 4 + [0, 2, 3][bytes % 3]
 }
 

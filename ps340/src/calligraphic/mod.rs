@@ -69,7 +69,7 @@ pub use light::ScreenLight;
 pub use limits::{DOT_LENGTH, FAR, MAX_SIZE, SPOT_CEILING, SPOT_FLOOR, STRONGEST};
 pub use phosphor::{Component, PHOSPHORS, Phosphor, phosphor};
 pub use print::{svg, text};
-pub use refresh::{POSITIONING_SPEED, Refresh, SETTLING_TIME, STARTING_TIME, WRITING_SPEED};
+pub use refresh::Refresh;
 pub use screen::{DISPLAY_SIZE, DisplayLook, Scene, SharedDisplay};
 
 #[cfg(test)]

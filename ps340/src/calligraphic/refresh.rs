@@ -19,13 +19,13 @@ use super::{DOT_LENGTH, limits::FRAME_SECONDS};
 use crate::traversal::Stroke;
 
 /// Speed at which the beam writes, screen units a microsecond: across the screen in 20 microseconds.
-pub const WRITING_SPEED: f64 = 0.1;
+const WRITING_SPEED: f64 = 0.1;
 /// Speed at which the dark beam moves, screen units a microsecond.
-pub const POSITIONING_SPEED: f64 = 0.4;
+const POSITIONING_SPEED: f64 = 0.4;
 /// Time until the dark beam stands still where it has moved to, microseconds.
-pub const SETTLING_TIME: f64 = 0.5;
+const SETTLING_TIME: f64 = 0.5;
 /// Time to begin a stroke or a dot, microseconds.
-pub const STARTING_TIME: f64 = 0.15;
+const STARTING_TIME: f64 = 0.15;
 /// Longest distance that the beam moves: the diagonal of the screen.
 const DIAGONAL: f64 = 2.0 * std::f64::consts::SQRT_2;
 /// Frames of the longest refresh: a minute.

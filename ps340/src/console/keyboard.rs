@@ -6,7 +6,7 @@ use egui::{Event, Key, Modifiers};
 /// The operator commands that events of the keyboard mean.
 ///
 /// A key of the mapping is its operator command; CONTROL with a letter is the control character; other text is typed.
-pub fn commands_of(events: &[Event], mapping: &Mapping) -> Vec<String> {
+fn commands_of(events: &[Event], mapping: &Mapping) -> Vec<String> {
     let mut orders: Vec<String> = Vec::new();
     let mut typed = String::new();
     for event in events {

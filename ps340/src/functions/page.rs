@@ -95,7 +95,6 @@ fn describe(family: &str, row: &FunctionRow) -> String {
         Confidence::Confirmed => "confirmed by programs of the time",
         Confidence::Manual => "remembered from the manuals",
         Confidence::Uncertain => "uncertain",
-        Confidence::Ours => "ours",
     };
     line("source", known);
     if !row.source.note.is_empty() {

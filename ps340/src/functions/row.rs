@@ -73,8 +73,6 @@ pub enum Confidence {
     Manual,
     /// A plausible reconstruction.
     Uncertain,
-    /// Not of the machine: our choice.
-    Ours,
 }
 
 /// What n multiplies in F:NAME(n).
@@ -215,11 +213,6 @@ impl Source {
     /// A plausible reconstruction.
     pub const fn uncertain(note: &'static str) -> Source {
         Source { confidence: Confidence::Uncertain, note }
-    }
-
-    /// Our choice.
-    pub const fn ours(note: &'static str) -> Source {
-        Source { confidence: Confidence::Ours, note }
     }
 }
 

@@ -181,7 +181,7 @@ pub fn lines(data: &Value) -> Option<Vec<String>> {
 ///
 /// # Source
 /// Clients of the time read five messages, skip the first byte of each row and read four reals from it.
-pub fn matrix_lines(matrix: &DMat4) -> [String; 5] {
+fn matrix_lines(matrix: &DMat4) -> [String; 5] {
     let row = |i: usize, end: &str| {
         let numbers = matrix.col(i).to_array().map(|number| decimal(number, DIGITS));
         format!(" {}{end}", numbers.join(","))
@@ -190,7 +190,7 @@ pub fn matrix_lines(matrix: &DMat4) -> [String; 5] {
 }
 
 /// Vectors as the command VECTOR_LIST, a heading and a line for each vector.
-pub fn vector_lines(vectors: &TransformedVectors) -> Vec<String> {
+fn vector_lines(vectors: &TransformedVectors) -> Vec<String> {
     let mut lines = vec![format!("VECTOR_LIST ITEMIZED N={}", vectors.ends.len())];
     lines.extend(vectors.ends.iter().map(|end| {
         let numbers = end.point.to_array().map(|number| decimal(number, DIGITS));

@@ -18,7 +18,7 @@ use protocol::{
 use std::collections::{BTreeMap, HashSet};
 
 /// Most bytes of one RAWBLOCK: the mass memory of a large machine of the time, four times. Ours.
-pub const MAX_RAWBLOCK: u32 = 16 << 20;
+const MAX_RAWBLOCK: u32 = 16 << 20;
 
 /// What a name can be made to denote.
 #[derive(Debug)]

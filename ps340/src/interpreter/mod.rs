@@ -12,7 +12,6 @@ mod execute;
 #[cfg(test)]
 mod tests;
 
-pub use definition::MAX_RAWBLOCK;
 pub use draft::MAX_NESTING;
 pub use message::{Class, Message};
 pub use session::{Interpreter, MAX_BEGINS};

@@ -2,6 +2,9 @@
 
 /// A warning (30 to 33) or an error (550 to 558) of a raster command.
 ///
+/// Not modelled: a lookup table entry that repeats more than 255 times (32), and a ramp that begins (556) or ends (557)
+/// outside 0 to 255, which the bytes of a raster command cannot express.
+///
 /// # Source
 /// Numbers and meanings: the common declarations of the FORTRAN graphics support routines, 1983 to 1987.
 /// Wording is ours.
@@ -13,10 +16,6 @@ pub enum RasterFault {
     /// 31: a run of no pixels.
     #[error("pixel count less than 1")]
     PixelCountTooSmall,
-    /// 32: a lookup table entry repeats more than 255 times. The counts of [`protocol::raster::LookupEntry`]
-    /// cannot express it; a reader of wider counts can report it.
-    #[error("lookup table repetition count greater than 255")]
-    RepetitionCountTooBig,
     /// 33: a lookup table entry that repeats less than once.
     #[error("lookup table repetition count less than 1")]
     RepetitionCountTooSmall,
@@ -35,13 +34,6 @@ pub enum RasterFault {
     /// 555: a ramp whose first entry is above its last.
     #[error("lookup table minimum greater than maximum")]
     MinimumAboveMaximum,
-    /// 556: the first entry of a ramp is outside 0 to 255. A byte cannot express it; a reader of wider
-    /// numbers can report it.
-    #[error("lookup table minimum outside 0 to 255")]
-    IllegalMinimum,
-    /// 557: the last entry of a ramp is outside 0 to 255, as with 556.
-    #[error("lookup table maximum outside 0 to 255")]
-    IllegalMaximum,
     /// 558: a transfer without runs.
     #[error("number of pixel runs less than 1")]
     NoRuns,
@@ -53,15 +45,12 @@ impl RasterFault {
         match self {
             Self::PixelCountTooBig => 30,
             Self::PixelCountTooSmall => 31,
-            Self::RepetitionCountTooBig => 32,
             Self::RepetitionCountTooSmall => 33,
             Self::IllegalPosition => 550,
             Self::IllegalIndex => 552,
             Self::IllegalWindow => 553,
             Self::NoEntries => 554,
             Self::MinimumAboveMaximum => 555,
-            Self::IllegalMinimum => 556,
-            Self::IllegalMaximum => 557,
             Self::NoRuns => 558,
         }
     }

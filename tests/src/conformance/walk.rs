@@ -63,7 +63,6 @@ fn case(section: &str, row: &FunctionRow, number: usize, example: &FunctionExamp
         Confidence::Confirmed => Tag::S,
         Confidence::Manual => Tag::M,
         Confidence::Uncertain => Tag::U,
-        Confidence::Ours => Tag::C,
     };
     let id = format!("table-{}-{number}", row.name);
     let title = format!("F:{}: {} (example {number} of the table)", row.name, row.summary);

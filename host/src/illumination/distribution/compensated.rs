@@ -2,6 +2,7 @@
 
 use super::{Distribution, DistributionError, Microfacet, SlopeDistribution};
 use crate::numeric::cubature::{GAUSS, unit_square};
+use crate::numeric::sampling::around_z;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_1_PI, TAU};
@@ -197,10 +198,7 @@ impl Distribution for Compensated {
         // The first coordinate chooses between the two terms, and is then stretched to be used again.
         let lost = self.chance(light);
         if point[0] < lost {
-            let cosine = self.further(point[0] / lost);
-            let (sin, cos) = (TAU * point[1]).sin_cos();
-            let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
-            Some(DVec3::new(sine * cos, sine * sin, cosine)).filter(|view| view.z > 0.0)
+            Some(around_z(self.further(point[0] / lost), point[1])).filter(|view| view.z > 0.0)
         } else {
             self.first.sample(light, [(point[0] - lost) / (1.0 - lost), point[1]])
         }

@@ -19,9 +19,9 @@ pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 
 /// The smallest index of refraction, or absolute value of a complex one.
-pub const LEAST_INDEX: f64 = 1e-6;
+const LEAST_INDEX: f64 = 1e-6;
 /// The greatest index of refraction or extinction coefficient.
-pub const MOST_INDEX: f64 = 1e6;
+const MOST_INDEX: f64 = 1e6;
 
 /// Parts of the power of light, 0..=1, by its polarisation.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,7 +6,7 @@ use super::light_sample::{EmissionSample, EmittingSides, LightHit, LightOrigin, 
 use crate::color::{Channels, SpectralTable};
 use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::Ray;
-use crate::numeric::sampling::{disk, sphere};
+use crate::numeric::sampling::sphere;
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -81,18 +81,13 @@ impl Emitter for AreaLight {
 /// A point of a patch, sampled evenly by area, and the normal on the side that emits.
 fn emission_point(patch: &LightShape, uniform: [f64; 2]) -> Option<(DVec3, DVec3)> {
     match *patch {
-        LightShape::Rectangle { corner, across, up } => {
-            Some((corner + across * uniform[0] + up * uniform[1], across.cross(up).try_normalize()?))
-        }
-        LightShape::Disc { center, normal, radius } => {
-            let normal = normal.try_normalize()?;
-            let (x, y) = normal.any_orthonormal_pair();
-            let [a, b] = disk(uniform);
-            Some((center + (x * a + y * b) * radius, normal))
-        }
         LightShape::Sphere { center, radius } => {
             let normal = sphere(uniform);
             Some((center + normal * radius, normal))
+        }
+        LightShape::Rectangle { .. } | LightShape::Disc { .. } => {
+            let (at, normal) = patch.sample_area(uniform, false);
+            Some((at, normal?))
         }
     }
 }

@@ -3,8 +3,8 @@
 use super::LightError;
 use super::spherical_rectangle::SphericalRectangle;
 use crate::numeric::ray::Ray;
-use crate::numeric::sampling::disk;
-use glam::DVec3;
+use crate::numeric::sampling::{cap, disk_across, sphere};
+use glam::{DVec3, Vec3Swizzles};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
@@ -181,9 +181,7 @@ impl LightShape {
             }
             LightShape::Disc { center, radius, .. } => {
                 let normal = self.normal()?;
-                let (x, y) = normal.any_orthonormal_pair();
-                let [a, b] = disk(uniform);
-                self.by_area(point, center + (x * a + y * b) * radius, normal)
+                self.by_area(point, center + disk_across(normal, uniform) * radius, normal)
             }
             LightShape::Sphere { center, radius } => sample_sphere(center - point, radius, uniform),
         }
@@ -197,17 +195,14 @@ impl LightShape {
         match *self {
             LightShape::Rectangle { corner, across, up } => (corner + across * u + up * v, self.normal()),
             LightShape::Disc { center, radius, .. } => {
-                let (x, y) = self.normal().unwrap_or(DVec3::Y).any_orthonormal_pair();
-                let [a, b] = if middle { [0.0; 2] } else { disk([u, v]) };
-                (center + (x * a + y * b) * radius, self.normal())
+                let normal = self.normal();
+                (center + disk_across(normal.unwrap_or(DVec3::Y), [u, v]) * radius, normal)
             }
             LightShape::Sphere { center, .. } if middle => (center, None),
             LightShape::Sphere { center, radius } => {
-                let (height, (sin, cos)) = (1.0 - 2.0 * u, (TAU * v).sin_cos());
-                let across = (1.0 - height * height).max(0.0).sqrt();
                 // Seen from anywhere, as far from the middle in the mean square as the points of a disc.
                 let radius = radius * 0.75f64.sqrt();
-                (center + DVec3::new(across * cos, height, across * sin) * radius, None)
+                (center + sphere([u, v]).xzy() * radius, None)
             }
         }
     }
@@ -242,9 +237,7 @@ impl LightShape {
     /// The pdf of a direction by [`LightShape::sample`] in which the shape is hit at a distance, 1/sr.
     pub(super) fn pdf(&self, point: DVec3, towards: DVec3, distance: f64) -> f64 {
         match *self {
-            LightShape::Sphere { center, radius } => {
-                cone(center - point, radius).map_or(0.0, |cap| (TAU * cap).recip())
-            }
+            LightShape::Sphere { center, radius } => cap(center - point, radius).map_or(0.0, |cap| (TAU * cap).recip()),
             _ => {
                 let Some(normal) = self.normal() else { return 0.0 };
                 if let Some(seen) = self.spherical_rectangle(point) {
@@ -291,14 +284,8 @@ impl LightShape {
     }
 }
 
-/// 1 − cos of the half angle under which a sphere is seen; none from inside.
-fn cone(offset: DVec3, radius: f64) -> Option<f64> {
-    let square = radius / offset.length() * (radius / offset.length());
-    (square < 1.0).then(|| square / (1.0 + (1.0 - square).sqrt()))
-}
-
 fn sample_sphere(offset: DVec3, radius: f64, [x, y]: [f64; 2]) -> Option<ShapeSample> {
-    let cap = cone(offset, radius)?;
+    let cap = cap(offset, radius)?;
     let far = offset.length();
     let axis = offset / far;
     let height = cap * x;

@@ -146,11 +146,6 @@ impl Panorama {
         }
     }
 
-    /// Columns and rows.
-    pub fn size(&self) -> [usize; 2] {
-        [self.width, self.height]
-    }
-
     /// Bytes in memory.
     pub fn bytes(&self) -> usize {
         let texels = match &self.texels {

@@ -4,7 +4,7 @@ use super::panorama::Panorama;
 use super::portal::{PortalChoice, Portals};
 use super::{LightShape, SkyDisc, SkyMap};
 use crate::color::{Channels, Color, SpectralTable, WavelengthSets};
-use crate::numeric::sampling::{cosine_hemisphere, sphere};
+use crate::numeric::sampling::{cosine_hemisphere, part_of, sphere};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -150,12 +150,6 @@ impl Sky {
             (None, None) => Channels::splat(2.0 * TAU),
         };
         self.factor.of(wavelength_set) * all
-    }
-
-    /// About the mean of its luminance over all directions.
-    pub fn mean(&self) -> f64 {
-        let part = self.disc.as_ref().map_or(1.0, |disc| 1.0 / (2.0 * TAU * disc.pdf));
-        self.factor.mean().max() * self.map.as_ref().map_or(part, Map::mean)
     }
 
     fn forth(&self, direction: DVec3) -> DVec3 {
@@ -310,20 +304,14 @@ impl Map {
         self.light(sums, wavelength_set)
     }
 
-    fn mean(&self) -> f64 {
-        let [width, height] = self.panorama.size();
-        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
-        pixels.map(|[x, y]| self.panorama.texel(x, y).y).sum::<f64>() / (width * height) as f64
-    }
-
     /// A place, sampled about in proportion to its brightness.
     fn sample(&self, [x, y]: [f64; 2]) -> Option<DVec2> {
         if self.all <= 0.0 {
             return None;
         }
         let across = self.columns.len() / self.rows.len();
-        let (row, down) = within(&self.rows, y);
-        let (column, aside) = within(&self.columns[row * across..(row + 1) * across], x);
+        let (row, down) = part_of(&self.rows, y);
+        let (column, aside) = part_of(&self.columns[row * across..(row + 1) * across], x);
         let (cell, [s, t]) = if self.side == 1 {
             ([column, row], [aside, down])
         } else {
@@ -364,10 +352,10 @@ impl Map {
         }
         let of_rows = &mut of_rows[..rows.len()];
         add_up(of_rows);
-        let (row, down) = within(of_rows, y);
+        let (row, down) = part_of(of_rows, y);
         let cells = &mut light[row * BLOCK..][..columns.len()];
         add_up(cells);
-        let (column, aside) = within(cells, x);
+        let (column, aside) = part_of(cells, x);
         ([columns.start + column, rows.start + row], [aside, down])
     }
 
@@ -402,14 +390,6 @@ fn linear(a: f64, b: f64, uniform: f64) -> f64 {
     }
     let root = (a * a + uniform * (b * b - a * a)).max(0.0).sqrt();
     (uniform * (a + b) / (a + root).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
-}
-
-/// The part in which a number falls, and where in it, 0..1.
-fn within(below: &[f64], uniform: f64) -> (usize, f64) {
-    let index = below.partition_point(|part| *part <= uniform).min(below.len() - 1);
-    let from = if index == 0 { 0.0 } else { below[index - 1] };
-    let size = below[index] - from;
-    (index, if size > 0.0 { ((uniform - from) / size).clamp(0.0, 1.0_f64.next_down()) } else { 0.5 })
 }
 
 #[cfg(test)]

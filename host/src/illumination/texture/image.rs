@@ -140,11 +140,6 @@ impl Image {
         Image { name, levels: Arc::new(levels), range: Arc::default() }
     }
 
-    /// The name: that of its file.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
     /// Columns and rows.
     pub fn size(&self) -> [usize; 2] {
         [self.levels[0].width, self.levels[0].height]
@@ -169,11 +164,6 @@ impl Image {
     /// Whether every pixel is the same in sixteen bits.
     fn is_like(&self, other: &Image) -> bool {
         self.size() == other.size() && self.levels[0].texels.words().eq(other.levels[0].texels.words())
-    }
-
-    /// Bytes in memory.
-    pub fn bytes(&self) -> usize {
-        self.levels.iter().map(|level| level.texels.bytes()).sum()
     }
 
     /// The mean over a part; the image repeats in both directions.

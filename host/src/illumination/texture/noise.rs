@@ -1,5 +1,6 @@
 //! Gradient noise: a smooth function of space without period, between -1 and 1, of one frequency.
 
+use crate::numeric::sampling::mix;
 use glam::{DVec3, I64Vec3};
 
 /// Gradient noise of lattice spacing 1: 0 at all points of whole numbers, mean 0.
@@ -18,9 +19,9 @@ pub(super) fn noise(at: DVec3) -> f64 {
     let corner = |x: i64, y: i64, z: i64| {
         gradient(hash(cell + I64Vec3::new(x, y, z)), p - DVec3::new(x as f64, y as f64, z as f64))
     };
-    let mix = |a: f64, b: f64, t: f64| a + (b - a) * t;
-    let edge = |y: i64, z: i64| mix(corner(0, y, z), corner(1, y, z), fade.x);
-    mix(mix(edge(0, 0), edge(1, 0), fade.y), mix(edge(0, 1), edge(1, 1), fade.y), fade.z)
+    let between = |a: f64, b: f64, t: f64| a + (b - a) * t;
+    let edge = |y: i64, z: i64| between(corner(0, y, z), corner(1, y, z), fade.x);
+    between(between(edge(0, 0), edge(1, 0), fade.y), between(edge(0, 1), edge(1, 1), fade.y), fade.z)
 }
 
 /// Octaves of noise, each of twice the frequency and half the height of the one before; what is finer than `width` is
@@ -51,17 +52,8 @@ fn remaining(width: f64) -> f64 {
 }
 
 /// A number without pattern for a point of the lattice.
-///
-/// # Source
-/// The mixing function of Stafford's splitmix64, variant 13.
 fn hash(cell: I64Vec3) -> u64 {
-    let mix = |x: u64| {
-        let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        x ^ (x >> 31)
-    };
-    let step = |state: u64, x: i64| mix(state.wrapping_add(0x9e37_79b9_7f4a_7c15).wrapping_add(x as u64));
-    step(step(step(0, cell.x), cell.y), cell.z)
+    cell.to_array().into_iter().fold(0, |state: u64, x| mix(state.wrapping_add(x as u64)))
 }
 
 /// The product with one of the twelve directions to the middles of the edges of a cube.

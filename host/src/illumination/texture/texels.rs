@@ -80,6 +80,7 @@ impl Texels {
         }
     }
 
+    #[cfg(test)]
     pub(super) fn bytes(&self) -> usize {
         match self {
             Texels::Bytes { bytes, .. } => size_of_val(&bytes[..]),

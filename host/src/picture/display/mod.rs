@@ -23,7 +23,7 @@ use std::str::FromStr;
 pub const MIDDLE_GREY: f64 = 0.18;
 
 /// Stops beyond which an exposure that is asked for is taken for a mistake.
-pub const MAX_STOPS: f64 = 100.0;
+const MAX_STOPS: f64 = 100.0;
 
 /// How a picture of radiance is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

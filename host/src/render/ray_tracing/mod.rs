@@ -45,7 +45,6 @@ mod tests;
 
 pub use accumulation::{Accumulated, Checkpoints};
 pub use explain::PathNote;
-pub use tracer::ENERGY_CUTOFF;
 
 use super::film::Film;
 use super::indirect::IndirectLight;

@@ -18,7 +18,7 @@ use crate::scene::Caustics;
 use glam::DVec3;
 
 /// Throughput below which Russian roulette decides what continues (Arvo and Kirk 1990).
-pub const ENERGY_CUTOFF: f64 = 1.0 / 4096.0;
+const ENERGY_CUTOFF: f64 = 1.0 / 4096.0;
 /// Greatest value, 1/sr, with which narrow lobes reflect a lamp on an element reached by broad scattering, unless
 /// caustics count; Lambert's is at most 1/π. Ours, in the place of the path regularisation of Kaplanyan and Dachsbacher
 /// 2013.

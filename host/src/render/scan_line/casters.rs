@@ -7,6 +7,7 @@
 
 use super::lamp::LightPosition;
 use super::screen::Viewpoint;
+use super::sorted_groups::SortedGroups;
 use crate::scene::Prepared;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -64,28 +65,17 @@ impl<'a> Casters<'a> {
             let [a, b, c] = self.prepared.triangles[triangle as usize];
             [[a, b], [b, c], [c, a]].into_iter().filter(|[a, b]| a != b)
         };
-        let mut begins = vec![0u32; self.prepared.vertices.len() + 1];
-        for &triangle in &self.triangles {
-            sides(triangle).for_each(|[a, b]| begins[a.min(b) as usize] += 1);
-        }
-        let mut sum = 0;
-        for begin in &mut begins {
-            sum += std::mem::replace(begin, sum);
-        }
-        let mut ends = begins.clone();
-        // The higher vertex, and the triangle; whether it goes against the edge.
-        let mut half = vec![(0u32, 0u32, false); sum as usize];
-        for &triangle in &self.triangles {
-            for [a, b] in sides(triangle) {
-                let end = &mut ends[a.min(b) as usize];
-                half[*end as usize] = (a.max(b), triangle, a > b);
-                *end += 1;
-            }
-        }
-        let mut edges: Vec<CasterEdge> = Vec::with_capacity(half.len() / 2 + 16);
-        for (low, range) in begins.windows(2).enumerate() {
+        // By the lower vertex: the higher vertex, and the triangle; whether it goes against the edge.
+        let all = self
+            .triangles
+            .iter()
+            .flat_map(|&triangle| sides(triangle).map(move |[a, b]| (a.min(b) as usize, (a.max(b), triangle, a > b))));
+        let vertices = self.prepared.vertices.len();
+        let half = SortedGroups::new(vertices, all);
+        let mut edges: Vec<CasterEdge> = Vec::with_capacity(3 * self.triangles.len() / 2 + 16);
+        for low in 0..vertices {
             let first = edges.len();
-            for &(high, triangle, against) in &half[range[0] as usize..range[1] as usize] {
+            for &(high, triangle, against) in half.of(low) {
                 let side = usize::from(against);
                 let open = edges[first..].iter_mut().find(|edge| {
                     edge.ends[1] == high

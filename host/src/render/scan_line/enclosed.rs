@@ -7,6 +7,7 @@
 
 use super::casters::{Casters, Silhouette};
 use super::lamp::LightPosition;
+use super::sorted_groups::SortedGroups;
 use glam::{DVec2, DVec3};
 
 /// Cells along each side of the grid in which triangles and silhouettes are sorted, at the most.
@@ -30,14 +31,8 @@ struct Grid {
     least: DVec2,
     most: DVec2,
     cells: usize,
-    silhouettes: CellLists,
-    triangles: CellLists,
-}
-
-/// Numbers, sorted into cells.
-struct CellLists {
-    begins: Vec<u32>,
-    numbers: Vec<u32>,
+    silhouettes: SortedGroups<u32>,
+    triangles: SortedGroups<u32>,
 }
 
 impl<'a> ShadowVolumes<'a> {
@@ -184,19 +179,22 @@ impl<'a> ShadowVolumes<'a> {
         let (least, most) = (self.turned(bounds.min - margin).truncate(), self.turned(bounds.max + margin).truncate());
         let size = self.casters.triangles.len() + self.silhouettes.len();
         let cells = ((size as f64).sqrt() / 2.0).clamp(1.0, MOST_CELLS) as usize;
-        let mut grid = Grid { least, most, cells, silhouettes: CellLists::empty(), triangles: CellLists::empty() };
+        let (silhouettes, triangles) = Default::default();
+        let mut grid = Grid { least, most, cells, silhouettes, triangles };
         let silhouettes = self.silhouettes.iter().zip(0..).flat_map(|(silhouette, number)| {
             let grid = &grid;
             self.squares(grid, silhouette).into_iter().map(move |cell| (cell, number))
         });
-        let silhouettes = CellLists::new(silhouettes.collect(), cells * cells);
+        let silhouettes: Vec<(usize, u32)> = silhouettes.collect();
+        let silhouettes = SortedGroups::new(cells * cells, silhouettes.iter().copied());
         let triangles =
             self.casters.triangles.iter().filter(|t| self.facing[**t as usize] != 0).flat_map(|&triangle| {
                 let [a, b, c] = self.casters.prepared.triangles[triangle as usize].map(|i| self.vertex(i).truncate());
                 let (low, high) = (grid.place(a.min(b).min(c)), grid.place(a.max(b).max(c)));
                 (low[1]..=high[1]).flat_map(move |y| (low[0]..=high[0]).map(move |x| (y * cells + x, triangle)))
             });
-        let triangles = CellLists::new(triangles.collect(), cells * cells);
+        let triangles: Vec<(usize, u32)> = triangles.collect();
+        let triangles = SortedGroups::new(cells * cells, triangles.iter().copied());
         (grid.silhouettes, grid.triangles) = (silhouettes, triangles);
         grid
     }
@@ -276,31 +274,5 @@ impl Grid {
             let [x, y] = self.place(point);
             y * self.cells + x
         })
-    }
-}
-
-impl CellLists {
-    fn empty() -> CellLists {
-        CellLists { begins: Vec::new(), numbers: Vec::new() }
-    }
-
-    fn new(pairs: Vec<(usize, u32)>, cells: usize) -> CellLists {
-        let mut begins = vec![0u32; cells + 1];
-        pairs.iter().for_each(|(cell, _)| begins[*cell] += 1);
-        let mut sum = 0;
-        for begin in &mut begins {
-            sum += std::mem::replace(begin, sum);
-        }
-        let mut ends = begins.clone();
-        let mut numbers = vec![0; pairs.len()];
-        for (cell, number) in pairs {
-            numbers[ends[cell] as usize] = number;
-            ends[cell] += 1;
-        }
-        CellLists { begins, numbers }
-    }
-
-    fn of(&self, cell: usize) -> &[u32] {
-        &self.numbers[self.begins[cell] as usize..self.begins[cell + 1] as usize]
     }
 }

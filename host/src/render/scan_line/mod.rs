@@ -15,6 +15,7 @@
 //! Memory: 25 bytes for each vertex, about 30 for each triangle and 24 for each side, 310 for each silhouette and
 //! light, and for each thread 16 bytes and 4 for each light in each sample of some rows of pixels.
 
+mod sorted_groups;
 mod casters;
 mod enclosed;
 mod lamp;

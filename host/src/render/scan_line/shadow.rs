@@ -13,8 +13,9 @@ use super::enclosed::ShadowVolumes;
 use super::lamp::LightPosition;
 use super::reach::Reach;
 use super::screen::{ClipCorner, ClippedPolygon, MOST_CORNERS, Screen, ScreenPoint};
+use super::sorted_groups::SortedGroups;
 use super::spans::{Nearness, PictureRegion, SampleLines};
-use super::visibility::{BandLists, ScreenTriangles, Strip, lines_of};
+use super::visibility::{ScreenTriangles, Strip, by_band, lines_of};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -39,7 +40,7 @@ impl ShadowPolygon {
 /// The shadow volumes of one light in the picture.
 pub(super) struct Shadow {
     polygons: Vec<ShadowPolygon>,
-    bands: BandLists,
+    bands: SortedGroups<u32>,
     /// In how many volumes of each group the eye is.
     start: Vec<i32>,
     pub(super) facing: Vec<i8>,
@@ -85,7 +86,7 @@ impl Shadow {
             }
         }
         let ranges: Vec<[f64; 2]> = polygons.iter().map(ShadowPolygon::lines).collect();
-        let bands = BandLists::new(&ranges, lines, bands);
+        let bands = by_band(&ranges, lines, bands);
         Shadow { polygons, bands, start, facing, silhouettes, light }
     }
 

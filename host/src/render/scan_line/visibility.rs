@@ -1,6 +1,7 @@
 //! Visible triangles of the samples of a strip of the picture.
 
 use super::screen::{ClipCorner, ClippedPolygon, Screen, ScreenPoint};
+use super::sorted_groups::SortedGroups;
 use super::spans::{Nearness, PictureRegion, SampleLines, Span};
 use crate::scene::Prepared;
 use rayon::prelude::*;
@@ -17,42 +18,16 @@ struct ScreenTriangle {
     outline: u32,
 }
 
-/// Numbers of what is drawn, for each band of the picture, in order.
-pub(super) struct BandLists {
-    begins: Vec<u32>,
-    numbers: Vec<u32>,
-}
-
-impl BandLists {
-    /// Sorts what is drawn by the bands that it is in.
-    ///
-    /// - `ranges`: the first and the last line of each. `lines`: of a band; `bands`: how many there are.
-    pub(super) fn new(ranges: &[[f64; 2]], lines: usize, bands: usize) -> BandLists {
-        let of = |range: &[f64; 2]| {
-            let [from, to] = range.map(|y| (y / lines as f64).floor().clamp(0.0, bands as f64 - 1.0) as usize);
-            if range[1] < 0.0 || range[0] >= (lines * bands) as f64 { 0..0 } else { from..to + 1 }
-        };
-        let mut begins = vec![0u32; bands + 1];
-        ranges.iter().for_each(|range| of(range).for_each(|band| begins[band] += 1));
-        let mut sum = 0;
-        for begin in &mut begins {
-            sum += std::mem::replace(begin, sum);
-        }
-        let mut ends = begins.clone();
-        let mut numbers = vec![0; sum as usize];
-        for (range, number) in ranges.iter().zip(0..) {
-            for band in of(range) {
-                numbers[ends[band] as usize] = number;
-                ends[band] += 1;
-            }
-        }
-        BandLists { begins, numbers }
-    }
-
-    /// The numbers of a band.
-    pub(super) fn of(&self, band: usize) -> &[u32] {
-        &self.numbers[self.begins[band] as usize..self.begins[band + 1] as usize]
-    }
+/// Numbers of what is drawn, in order, for each band of the picture that it is in.
+///
+/// - `ranges`: the first and the last line of each. `lines`: of a band; `bands`: how many there are.
+pub(super) fn by_band(ranges: &[[f64; 2]], lines: usize, bands: usize) -> SortedGroups<u32> {
+    let of = |range: &[f64; 2]| {
+        let [from, to] = range.map(|y| (y / lines as f64).floor().clamp(0.0, bands as f64 - 1.0) as usize);
+        if range[1] < 0.0 || range[0] >= (lines * bands) as f64 { 0..0 } else { from..to + 1 }
+    };
+    let all = ranges.iter().zip(0..).flat_map(|(range, number)| of(range).map(move |band| (band, number)));
+    SortedGroups::new(bands, all)
 }
 
 /// The first and the last line of a polygon.
@@ -66,7 +41,7 @@ pub(super) struct ScreenTriangles<'a> {
     points: Vec<ScreenPoint>,
     triangles: Vec<ScreenTriangle>,
     outlines: Vec<ClippedPolygon>,
-    bands: BandLists,
+    bands: SortedGroups<u32>,
     /// For each triangle of the scene, whether light goes straight through it; empty if none is so.
     passable: &'a [bool],
 }
@@ -143,7 +118,7 @@ impl<'a> ScreenTriangles<'a> {
             ranges.push(range);
             facets.push(ScreenTriangle { triangle, outline });
         }
-        let bands = BandLists::new(&ranges, lines, bands);
+        let bands = by_band(&ranges, lines, bands);
         ScreenTriangles { prepared, points, triangles: facets, outlines, bands, passable }
     }
 

@@ -2,7 +2,7 @@
 //! worth photons.
 
 use crate::numeric::bounds::Bounds;
-use crate::numeric::sampling::{disk, sphere};
+use crate::numeric::sampling::{cap, disk, disk_across, part_of, sphere};
 use crate::scene::Prepared;
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
@@ -38,7 +38,7 @@ impl BoundingSphere {
     /// A direction towards it from a point, even in solid angle; every direction from inside.
     pub(super) fn direction(&self, from: DVec3, uniform: [f64; 2]) -> DVec3 {
         let offset = self.center - from;
-        let Some(cap) = self.cap(offset) else { return sphere(uniform) };
+        let Some(cap) = cap(offset, self.radius) else { return sphere(uniform) };
         let [x, y] = disk(uniform);
         let square = x * x + y * y;
         let height = cap * square;
@@ -54,7 +54,7 @@ impl BoundingSphere {
     /// - `above`: the normal of the plane, unit length.
     pub(super) fn solid_angle(&self, from: DVec3, above: DVec3) -> f64 {
         let offset = self.center - from;
-        match self.cap(offset) {
+        match cap(offset, self.radius) {
             Some(_) if offset.dot(above) <= -self.radius => 0.0,
             Some(cap) => TAU * cap,
             None => 2.0 * TAU,
@@ -64,7 +64,7 @@ impl BoundingSphere {
     /// Whether a ray from a point in a direction, unit length, hits it; from inside, whether at all.
     pub(super) fn is_hit(&self, from: DVec3, direction: DVec3) -> bool {
         let offset = self.center - from;
-        let Some(cap) = self.cap(offset) else { return true };
+        let Some(cap) = cap(offset, self.radius) else { return true };
         // 1 − cos of the angle to the middle, without the loss of digits of a difference.
         0.5 * (direction - offset.normalize()).length_squared() <= cap * WIDER
     }
@@ -73,7 +73,7 @@ impl BoundingSphere {
     /// the bounding sphere.
     pub(super) fn pdf(&self, from: DVec3, direction: DVec3) -> Option<DirectionPdf> {
         let offset = self.center - from;
-        let Some(cap) = self.cap(offset) else { return Some((0.5 / TAU, sphere_inverse(direction))) };
+        let Some(cap) = cap(offset, self.radius) else { return Some((0.5 / TAU, sphere_inverse(direction))) };
         let along = offset.dot(direction);
         let aside = (offset - direction * along).length();
         if along <= 0.0 || aside > self.radius * WIDER {
@@ -88,9 +88,7 @@ impl BoundingSphere {
 
     /// A point on a line that goes in a direction and hits the bounding sphere, even in area across the direction.
     pub(super) fn line(&self, direction: DVec3, uniform: [f64; 2]) -> DVec3 {
-        let (u, v) = direction.any_orthonormal_pair();
-        let [x, y] = disk(uniform);
-        self.center + (u * x + v * y) * self.radius
+        self.center + disk_across(direction, uniform) * self.radius
     }
 
     /// The pdf of [`BoundingSphere::line`], one over an area, and the point of the square that gives a line; none
@@ -106,12 +104,6 @@ impl BoundingSphere {
         let (u, v) = direction.any_orthonormal_pair();
         let place = disk_inverse([u, v].map(|side| aside.dot(side) / self.radius));
         Some(((PI * square).recip(), place))
-    }
-
-    /// 1 − cos of the half angle under which it is seen from the other end of an offset; none from inside.
-    fn cap(&self, offset: DVec3) -> Option<f64> {
-        let sine = self.radius / offset.length();
-        (sine < 1.0).then(|| sine * sine / (1.0 + (1.0 - sine * sine).sqrt()))
     }
 }
 
@@ -196,8 +188,8 @@ impl ProjectionMap {
 
     /// A point of the square, more often in cells that are worth photons.
     pub(super) fn sample(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        let (row, y) = within(&self.rows, y);
-        let (column, x) = within(&self.columns[row * ProjectionMap::SIDE..(row + 1) * ProjectionMap::SIDE], x);
+        let (row, y) = part_of(&self.rows, y);
+        let (column, x) = part_of(&self.columns[row * ProjectionMap::SIDE..(row + 1) * ProjectionMap::SIDE], x);
         [(column as f64 + x) / ProjectionMap::SIDE as f64, (row as f64 + y) / ProjectionMap::SIDE as f64]
     }
 
@@ -208,13 +200,6 @@ impl ProjectionMap {
         let columns = &self.columns[row * ProjectionMap::SIDE..(row + 1) * ProjectionMap::SIDE];
         part(&self.rows, row) * part(columns, column) * (ProjectionMap::SIDE * ProjectionMap::SIDE) as f64
     }
-}
-
-/// The part in which a number falls, and where in it, 0..1.
-fn within(below: &[f64], uniform: f64) -> (usize, f64) {
-    let index = below.partition_point(|part| *part <= uniform).min(below.len() - 1);
-    let from = if index == 0 { 0.0 } else { below[index - 1] };
-    (index, ((uniform - from) / (below[index] - from)).clamp(0.0, BELOW_ONE))
 }
 
 /// Bounding spheres around all triangles that a test chooses, as tight as so many allow.

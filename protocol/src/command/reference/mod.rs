@@ -21,7 +21,7 @@ use super::{operate, spelling::nearest, words::Word};
 use std::fmt::Write;
 
 /// The rows of each group in parts, with its title.
-pub const GROUPS: &[(&str, &[&[CommandRow]])] = &[
+const GROUPS: &[(&str, &[&[CommandRow]])] = &[
     ("Structures", &[structure::ROWS]),
     ("Data", &[data::ROWS]),
     ("Curves", &[curve::ROWS]),

@@ -32,7 +32,7 @@ fn a_long_list_is_cut_into_packets_between_records() {
     };
     let command = Command::Define { name: None, object: Object::VectorList(list) };
     let mut packets = 0;
-    let sent: Result<(), SendError<()>> = send_commands([&command], |packet| {
+    let sent: Result<(), SendError<()>> = send_commands(Sending::default(), [&command], |packet| {
         packets += 1;
         assert!(packet.len() <= PREFERRED_PAYLOAD + 12);
         Ok(())
@@ -47,7 +47,7 @@ fn a_long_list_is_cut_into_packets_between_records() {
 fn the_failure_of_the_receiver_ends_the_sending() {
     let commands = vec![Command::Define { name: None, object: Object::Instance(vec![name(); 10_000]) }; 10];
     let mut packets = 0;
-    let result = send_commands(&commands, |_| {
+    let result = send_commands(Sending::default(), &commands, |_| {
         packets += 1;
         if packets == 2 { Err("closed") } else { Ok(()) }
     });
@@ -151,7 +151,7 @@ fn short_packets_carry_long_lists_and_long_runs() {
     let runs: Vec<Run> = (0..3_000).map(|i| Run { count: i, color: [22, 16, i as u8] }).collect();
     for sending in sendings() {
         let (mut stream, mut packets) = (Vec::new(), 0);
-        let sent: Result<(), SendError<()>> = send_commands_as(sending, &commands, |packet| {
+        let sent: Result<(), SendError<()>> = send_commands(sending, &commands, |packet| {
             packets += 1;
             assert!(sending.packets == PacketForm::Long || packet.len() <= 2 * MAX_COUNT_DATA + 5);
             stream.extend_from_slice(packet);

@@ -1,7 +1,8 @@
 //! Sheen: fibres that stand up from a cloth are seen, and lit, at grazing angles.
 
+use crate::numeric::sampling::around_z;
 use glam::DVec3;
-use std::f64::consts::{FRAC_1_PI, TAU};
+use std::f64::consts::FRAC_1_PI;
 
 /// The least roughness of a sheen: below it there is hardly any.
 const LEAST: f64 = 0.04;
@@ -51,10 +52,7 @@ impl Sheen {
 
     /// A direction of light.
     pub(super) fn sample(self, point: [f64; 2]) -> DVec3 {
-        let cosine = self.cosine(point[0]);
-        let (sin, cos) = (TAU * point[1]).sin_cos();
-        let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
-        DVec3::new(sine * cos, sine * sin, cosine)
+        around_z(self.cosine(point[0]), point[1])
     }
 
     /// The cosine c of which a part `uniform` lies below: 1 − (1 − c)^(k+1) (1 + (k + 1) c) is that part.
