@@ -17,8 +17,10 @@ use glam::DVec3;
 use std::sync::Arc;
 
 /// Makes an enumeration of lights, each of which calls its own functions.
+///
+/// What stands behind `tried` makes lights of the kind for the contract of all lights, all above the plane y = 1.
 macro_rules! lights {
-    ($($kind:ident($light:ty),)*) => {
+    ($($kind:ident($light:ty) $(tried $tried:path)?,)*) => {
         #[derive(Clone, Debug)]
         enum Kind {
             $($kind($light),)*
@@ -28,6 +30,12 @@ macro_rules! lights {
         impl LightSource {
             /// The words for all kinds.
             pub(super) const KINDS: &[&str] = &[$(stringify!($kind),)*];
+
+            /// The lights that rows bring for the contract.
+            pub(super) fn tried() -> Vec<Light> {
+                let all: &[Vec<Light>] = &[$($($tried(),)?)*];
+                all.concat()
+            }
 
             /// The word for its kind.
             pub(super) fn kind(&self) -> &'static str {
@@ -51,8 +59,8 @@ macro_rules! lights {
 lights! {
     Point(PointLight<Isotropic>),
     Directional(DirectionalLight),
-    Spot(PointLight<SpotProfile>),
-    Luminaire(PointLight<GoniometricProfile>),
+    Spot(PointLight<SpotProfile>) tried super::spot::tried,
+    Luminaire(PointLight<GoniometricProfile>) tried super::goniometric::tried,
     Area(AreaLight),
     Mesh(MeshLight),
     Sky(EnvironmentLight),
