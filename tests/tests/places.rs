@@ -45,7 +45,6 @@ const FAMILIES: &[Family] = &[
         kind: &["SpotProfile", "Spot"],
         files: &[
             "host/src/illumination/light/mod.rs",
-            "host/src/illumination/light/source.rs",
             "host/src/illumination/light/spot.rs",
             "host/src/script/lighting.rs",
         ],

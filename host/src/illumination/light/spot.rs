@@ -30,9 +30,15 @@ impl AngularProfile for SpotProfile {
     }
 }
 
-/// A spot light for the contract of all lights.
 #[cfg(test)]
-pub(super) fn tried() -> Vec<super::Light> {
-    let (at, intensity) = (DVec3::new(0.5, 3.0, 0.4), crate::color::Color::grey(1.0));
-    vec![super::Light::Spot { at, direction: DVec3::NEG_Y, intensity, inner: 20.0, outer: 60.0 }]
+pub(super) mod tests {
+    use super::*;
+    use crate::color::Color;
+    use crate::illumination::Light;
+
+    /// A spot light for the contract of all lights.
+    pub fn tried() -> Vec<Light> {
+        let (at, intensity) = (DVec3::new(0.5, 3.0, 0.4), Color::grey(1.0));
+        vec![Light::Spot { at, direction: DVec3::NEG_Y, intensity, inner: 20.0, outer: 60.0 }]
+    }
 }
