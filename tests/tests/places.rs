@@ -54,6 +54,22 @@ const FAMILIES: &[Family] = &[
         kind: &["Marble"],
         files: &["host/src/illumination/texture/motif/mod.rs", "host/src/script/texturing.rs"],
     },
+    Family {
+        name: "renderer",
+        kind: &["ScanLine"],
+        files: &[
+            "host/src/render/renderers.rs",
+            "host/src/render/scan_line/mod.rs",
+            // Which renderers are studied if nobody says.
+            "host/src/study/rendering/setup.rs",
+        ],
+    },
+    Family { name: "sub-command", kind: &["diff"], files: &["host/src/cli/mod.rs", "host/src/cli/program.rs"] },
+    Family {
+        name: "knob of a study",
+        kind: &["leaf_size"],
+        files: &["host/src/study/knobs.rs", "host/src/study/octree.rs"],
+    },
     Family { name: "function of scripts", kind: &["sharpen_vertices"], files: &["host/src/script/subdividing.rs"] },
 ];
 
