@@ -45,7 +45,6 @@ const FAMILIES: &[Family] = &[
         kind: &["SpotProfile", "Spot"],
         files: &[
             "host/src/illumination/light/mod.rs",
-            "host/src/illumination/light/source.rs",
             "host/src/illumination/light/spot.rs",
             "host/src/script/lighting.rs",
         ],
@@ -54,6 +53,22 @@ const FAMILIES: &[Family] = &[
         name: "texture",
         kind: &["Marble"],
         files: &["host/src/illumination/texture/motif/mod.rs", "host/src/script/texturing.rs"],
+    },
+    Family {
+        name: "renderer",
+        kind: &["ScanLine"],
+        files: &[
+            "host/src/render/renderers.rs",
+            "host/src/render/scan_line/mod.rs",
+            // Which renderers are studied if nobody says.
+            "host/src/study/rendering/setup.rs",
+        ],
+    },
+    Family { name: "sub-command", kind: &["diff"], files: &["host/src/cli/mod.rs", "host/src/cli/program.rs"] },
+    Family {
+        name: "knob of a study",
+        kind: &["leaf_size"],
+        files: &["host/src/study/knobs.rs", "host/src/study/octree.rs"],
     },
     Family { name: "function of scripts", kind: &["sharpen_vertices"], files: &["host/src/script/subdividing.rs"] },
 ];

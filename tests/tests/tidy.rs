@@ -181,6 +181,7 @@ const FAMILIES: &[(&str, &str, Option<&str>)] = &[
     ("host", "Technique", Some("render/renderers")),
     ("host", "AnyLobe", Some("illumination/optics")),
     ("host", "Light", Some("illumination/light")),
+    ("host", "AnyEmitter", Some("illumination/light")),
     ("protocol", "Operate", Some("command/operate")),
     ("protocol", "OperateKind", Some("command/operate")),
     ("ps340", "Operate", Some("structure/operation")),

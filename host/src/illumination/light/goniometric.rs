@@ -54,3 +54,19 @@ fn over_the_sphere(function: impl Fn(DVec3) -> f64) -> f64 {
     };
     points().map(ring).sum()
 }
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::color::Color;
+    use crate::illumination::Light;
+
+    /// A luminaire for the contract of all lights.
+    pub fn tried() -> Vec<Light> {
+        let vertical: Vec<f64> = (0..=180).map(f64::from).collect();
+        let candelas = vertical.iter().map(|v| LUMENS_PER_WATT * (1.0 + v.to_radians().cos())).collect();
+        let goniometry = Goniometry::new(vertical, vec![0.0], candelas).expect("a table");
+        let (at, color) = (DVec3::new(0.5, 3.0, 0.4), Color::grey(1.0));
+        vec![Light::Luminaire { at, down: DVec3::NEG_Y, front: DVec3::X, goniometry, color }]
+    }
+}

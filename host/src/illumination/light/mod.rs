@@ -1,9 +1,13 @@
 //! Sources of light: what a scene says of them, and their samples in rendering.
+//!
+//! A new light is a file, what stands here of its kind, and a function of scripts.
 
+mod error;
 mod light_sample;
 mod emitter;
 mod goniometry;
 mod panorama;
+mod sky_map;
 mod spherical_rectangle;
 mod light_shape;
 mod portal;
@@ -23,18 +27,28 @@ mod emission_tests;
 #[cfg(test)]
 mod tests;
 
+pub use error::LightError;
 pub use goniometry::{Goniometry, GoniometryError};
 pub use light_sample::{EmissionSample, LightHit, LightOrigin, LightPoint, LightSample};
 pub use light_shape::LightShape;
 pub use panorama::Panorama;
 pub use sky::Sky;
+pub use sky_map::{SkyDisc, SkyMap};
 pub use source::LightSource;
 
-use crate::color::Color;
+use crate::color::{Color, WavelengthSets};
 use crate::numeric::bounds::Bounds;
+use area::AreaLight;
+use directional::DirectionalLight;
+use emitter::Emitter;
+use environment::EnvironmentLight;
+use error::{directed, place};
 use glam::DVec3;
+use goniometric::GoniometricProfile;
+use mesh::MeshLight;
+use point::{Isotropic, PointLight};
 use serde::{Deserialize, Serialize};
-use std::f64::consts::PI;
+use spot::SpotProfile;
 use std::sync::Arc;
 
 /// A source of light.
@@ -101,76 +115,6 @@ pub enum Light {
     },
 }
 
-/// The map of a sky that is not the same all around.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct SkyMap {
-    /// The file of its picture, or what it was made of, for messages.
-    pub file: String,
-    /// The picture; empty where it is not kept.
-    #[serde(skip)]
-    pub panorama: Option<Arc<Panorama>>,
-    /// The only part that shines, if it is but a disc.
-    pub disc: Option<SkyDisc>,
-}
-
-/// A part of the sky that shines evenly: the sun.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SkyDisc {
-    /// Towards its middle, unit length.
-    pub towards: DVec3,
-    /// Its radius, radians, above 0.
-    pub radius: f64,
-}
-
-impl SkyDisc {
-    /// Its solid angle, sr.
-    pub fn solid_angle(&self) -> f64 {
-        4.0 * PI * (0.5 * self.radius).sin().powi(2)
-    }
-}
-
-/// A reason for which a light is none.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum LightError {
-    /// A place or a length that is not finite.
-    #[error("{what} {value} is not finite")]
-    NotFinite {
-        /// The quantity.
-        what: &'static str,
-        /// Its value.
-        value: DVec3,
-    },
-    /// A direction without length.
-    #[error("{what} {value} has no length")]
-    NoLength {
-        /// The quantity.
-        what: &'static str,
-        /// Its value.
-        value: DVec3,
-    },
-    /// A strength that is negative or not finite.
-    #[error("{what} {least} to {most} is negative or not finite")]
-    Strength {
-        /// The quantity.
-        what: &'static str,
-        /// Its least value.
-        least: f64,
-        /// Its greatest value.
-        most: f64,
-    },
-    /// Angles of a cone that is none.
-    #[error("a cone of {inner} to {outer} degrees: they must rise and lie within 0 to 180")]
-    Cone {
-        /// The angle where the light begins to fall.
-        inner: f64,
-        /// The angle where it ends.
-        outer: f64,
-    },
-    /// A surface that is flat or too large.
-    #[error("its surface is {0}")]
-    Patch(&'static str),
-}
-
 impl Light {
     /// Its strength, in the unit of its kind, and the word for that.
     pub fn strength(&self) -> (&'static str, &Color) {
@@ -235,6 +179,31 @@ impl Light {
         self.strength().1.is_spectral()
     }
 
+    /// The light, prepared for rendering. It should have been checked before.
+    fn emitter(&self, wavelengths: &WavelengthSets) -> AnyEmitter {
+        let strength = wavelengths.light(self.strength().1);
+        match self {
+            Light::Point { at, .. } => AnyEmitter::Point(PointLight { at: *at, strength, profile: Isotropic }),
+            Light::Directional { direction, .. } => {
+                AnyEmitter::Directional(DirectionalLight { towards: -direction.normalize_or(DVec3::NEG_Y), strength })
+            }
+            Light::Spot { at, direction, inner, outer, .. } => {
+                let axis = direction.normalize_or(DVec3::NEG_Y);
+                let [inner, outer] = [inner, outer].map(|angle| angle.to_radians().cos());
+                AnyEmitter::Spot(PointLight { at: *at, strength, profile: SpotProfile { axis, inner, outer } })
+            }
+            Light::Luminaire { at, down, front, goniometry, .. } => {
+                let profile = GoniometricProfile::new(*down, *front, Arc::new(goniometry.clone()));
+                AnyEmitter::Luminaire(PointLight { at: *at, strength, profile })
+            }
+            Light::Area { patch, .. } => AnyEmitter::Area(AreaLight { patch: *patch, strength }),
+            Light::Sky { map, radiance, turned } => {
+                let sky = Sky::new(map.as_ref(), radiance, *turned, wavelengths);
+                AnyEmitter::Sky(EnvironmentLight { sky: Box::new(sky), strength })
+            }
+        }
+    }
+
     /// Checks every number.
     ///
     /// # Errors
@@ -267,10 +236,53 @@ impl Light {
     }
 }
 
-fn place(at: DVec3) -> Result<(), LightError> {
-    if at.is_finite() { Ok(()) } else { Err(LightError::NotFinite { what: "its place", value: at }) }
+/// Makes an enumeration of lights, each of which calls its own functions.
+///
+/// What stands behind `tried` makes lights of the kind for the contract of all lights, all above the plane y = 1.
+macro_rules! lights {
+    ($($kind:ident($light:ty) $(tried $tried:path)?,)*) => {
+        /// A light of any kind, prepared for rendering.
+        #[derive(Clone, Debug)]
+        enum AnyEmitter {
+            $($kind($light),)*
+        }
+
+        #[cfg(test)]
+        impl AnyEmitter {
+            /// The words for all kinds.
+            const KINDS: &[&str] = &[$(stringify!($kind),)*];
+
+            /// The lights that rows bring for the contract.
+            fn tried() -> Vec<Light> {
+                let all: &[Vec<Light>] = &[$($($tried(),)?)*];
+                all.concat()
+            }
+
+            /// The word for its kind.
+            fn kind(&self) -> &'static str {
+                match self {
+                    $(AnyEmitter::$kind(_) => stringify!($kind),)*
+                }
+            }
+        }
+
+        impl AnyEmitter {
+            #[inline]
+            fn emitter(&self) -> &dyn Emitter {
+                match self {
+                    $(AnyEmitter::$kind(light) => light,)*
+                }
+            }
+        }
+    };
 }
 
-fn directed(what: &'static str, value: DVec3) -> Result<(), LightError> {
-    if value.try_normalize().is_some() { Ok(()) } else { Err(LightError::NoLength { what, value }) }
+lights! {
+    Point(PointLight<Isotropic>),
+    Directional(DirectionalLight),
+    Spot(PointLight<SpotProfile>) tried spot::tests::tried,
+    Luminaire(PointLight<GoniometricProfile>) tried goniometric::tests::tried,
+    Area(AreaLight),
+    Mesh(MeshLight),
+    Sky(EnvironmentLight),
 }

@@ -1,91 +1,21 @@
-//! Light sources: lights prepared for rendering, a row for each kind. A new light is a file, a row, and what scenes say
-//! of it.
+//! Light sources: lights prepared for rendering.
 
-use super::area::AreaLight;
-use super::directional::DirectionalLight;
-use super::emitter::Emitter;
 use super::environment::EnvironmentLight;
-use super::goniometric::GoniometricProfile;
 use super::light_sample::{EmissionSample, LightHit, LightOrigin, LightPoint, LightSample};
 use super::mesh::MeshLight;
-use super::point::{Isotropic, PointLight};
-use super::spot::SpotProfile;
-use super::{Light, LightShape, Sky};
+use super::{AnyEmitter, Light, LightShape};
 use crate::color::{Channels, SpectralTable, WavelengthSets};
 use crate::numeric::ray::Ray;
 use glam::DVec3;
-use std::sync::Arc;
-
-/// Makes an enumeration of lights, each of which calls its own functions.
-macro_rules! lights {
-    ($($kind:ident($light:ty),)*) => {
-        #[derive(Clone, Debug)]
-        enum Kind {
-            $($kind($light),)*
-        }
-
-        #[cfg(test)]
-        impl LightSource {
-            /// The words for all kinds.
-            pub(super) const KINDS: &[&str] = &[$(stringify!($kind),)*];
-
-            /// The word for its kind.
-            pub(super) fn kind(&self) -> &'static str {
-                match &self.0 {
-                    $(Kind::$kind(_) => stringify!($kind),)*
-                }
-            }
-        }
-
-        impl Kind {
-            #[inline]
-            fn emitter(&self) -> &dyn Emitter {
-                match self {
-                    $(Kind::$kind(light) => light,)*
-                }
-            }
-        }
-    };
-}
-
-lights! {
-    Point(PointLight<Isotropic>),
-    Directional(DirectionalLight),
-    Spot(PointLight<SpotProfile>),
-    Luminaire(PointLight<GoniometricProfile>),
-    Area(AreaLight),
-    Mesh(MeshLight),
-    Sky(EnvironmentLight),
-}
 
 /// A light source: a light prepared for rendering.
 #[derive(Clone, Debug)]
-pub struct LightSource(Kind);
+pub struct LightSource(AnyEmitter);
 
 impl LightSource {
     /// A light, prepared. It should have been checked before.
     pub fn new(light: &Light, wavelengths: &WavelengthSets) -> LightSource {
-        let strength = wavelengths.light(light.strength().1);
-        LightSource(match light {
-            Light::Point { at, .. } => Kind::Point(PointLight { at: *at, strength, profile: Isotropic }),
-            Light::Directional { direction, .. } => {
-                Kind::Directional(DirectionalLight { towards: -direction.normalize_or(DVec3::NEG_Y), strength })
-            }
-            Light::Spot { at, direction, inner, outer, .. } => {
-                let axis = direction.normalize_or(DVec3::NEG_Y);
-                let [inner, outer] = [inner, outer].map(|angle| angle.to_radians().cos());
-                Kind::Spot(PointLight { at: *at, strength, profile: SpotProfile { axis, inner, outer } })
-            }
-            Light::Luminaire { at, down, front, goniometry, .. } => {
-                let profile = GoniometricProfile::new(*down, *front, Arc::new(goniometry.clone()));
-                Kind::Luminaire(PointLight { at: *at, strength, profile })
-            }
-            Light::Area { patch, .. } => Kind::Area(AreaLight { patch: *patch, strength }),
-            Light::Sky { map, radiance, turned } => {
-                let sky = Sky::new(map.as_ref(), radiance, *turned, wavelengths);
-                Kind::Sky(EnvironmentLight { sky: Box::new(sky), strength })
-            }
-        })
+        LightSource(light.emitter(wavelengths))
     }
 
     /// The light; of one that is a sky, directions are then sampled through portals from where these are.
@@ -93,8 +23,8 @@ impl LightSource {
     /// - `portals`: rectangles whose normals, across x up, point inwards.
     pub fn with_portals(self, portals: &[LightShape]) -> LightSource {
         match self.0 {
-            Kind::Sky(EnvironmentLight { sky, strength }) if !portals.is_empty() => {
-                LightSource(Kind::Sky(EnvironmentLight { sky: Box::new(sky.with_portals(portals)), strength }))
+            AnyEmitter::Sky(EnvironmentLight { sky, strength }) if !portals.is_empty() => {
+                LightSource(AnyEmitter::Sky(EnvironmentLight { sky: Box::new(sky.with_portals(portals)), strength }))
             }
             other => LightSource(other),
         }
@@ -102,7 +32,7 @@ impl LightSource {
 
     /// Triangles that emit the same radiance on both sides; none without area.
     pub fn of_triangles(corners: Vec<[DVec3; 3]>, radiance: SpectralTable) -> Option<LightSource> {
-        Some(LightSource(Kind::Mesh(MeshLight::new(corners, radiance)?)))
+        Some(LightSource(AnyEmitter::Mesh(MeshLight::new(corners, radiance)?)))
     }
 
     /// A light sample at a point if nothing stands between; none where no light comes, and at the light itself.
@@ -214,5 +144,13 @@ impl LightSource {
     #[inline]
     pub fn is_sky(&self) -> bool {
         self.0.emitter().is_sky()
+    }
+}
+
+#[cfg(test)]
+impl LightSource {
+    /// The word for its kind.
+    pub(super) fn kind(&self) -> &'static str {
+        self.0.kind()
     }
 }

@@ -29,3 +29,16 @@ impl AngularProfile for SpotProfile {
         Some((self.axis, self.outer))
     }
 }
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::color::Color;
+    use crate::illumination::Light;
+
+    /// A spot light for the contract of all lights.
+    pub fn tried() -> Vec<Light> {
+        let (at, intensity) = (DVec3::new(0.5, 3.0, 0.4), Color::grey(1.0));
+        vec![Light::Spot { at, direction: DVec3::NEG_Y, intensity, inner: 20.0, outer: 60.0 }]
+    }
+}

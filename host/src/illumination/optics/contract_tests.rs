@@ -87,7 +87,7 @@ fn lobes() -> Vec<AnyLobe> {
     ];
     let wavelengths = WavelengthSets::bands();
     let mut library = BsdfBuilder::new(&wavelengths, false);
-    let mut all = Vec::new();
+    let mut all = AnyLobe::tried();
     for material in &materials {
         all.extend(library.bsdf(material, Interreflection::Followed).expect("a material").lobes().cloned());
     }

@@ -20,8 +20,11 @@ use std::sync::Arc;
 
 /// Makes an enumeration of lobes, each of which calls its own functions: lobes are called so often that a table of
 /// functions would cost more than a choice.
+///
+/// What stands behind `tried` makes lobes of the kind for the contract of all lobes; materials of the contract make the
+/// others.
 macro_rules! lobes {
-    ($($(#[$doc:meta])* $kind:ident($lobe:ty),)*) => {
+    ($($(#[$doc:meta])* $kind:ident($lobe:ty) $(tried $tried:path)?,)*) => {
         /// A lobe of any kind.
         #[derive(Clone, Debug)]
         pub(super) enum AnyLobe {
@@ -32,6 +35,12 @@ macro_rules! lobes {
         impl AnyLobe {
             /// The words for all kinds.
             pub(super) const KINDS: &[&str] = &[$(stringify!($kind),)*];
+
+            /// The lobes that rows bring for the contract.
+            pub(super) fn tried() -> Vec<AnyLobe> {
+                let all: &[Vec<AnyLobe>] = &[$($($tried().into_iter().map(AnyLobe::$kind).collect(),)?)*];
+                all.concat()
+            }
 
             /// The word for its kind.
             pub(super) fn kind(&self) -> &'static str {
@@ -95,7 +104,7 @@ lobes! {
     /// Phong's highlight.
     Phong(DistributedLobe<Phong>),
     /// A mirror.
-    Mirror(MirrorLobe),
+    Mirror(MirrorLobe) tried super::mirror::tried,
     /// Transmission straight through.
     Straight(StraightLobe),
     /// A fraction, distributed by a D.

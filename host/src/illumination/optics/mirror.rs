@@ -27,3 +27,9 @@ impl Lobe for MirrorLobe {
         self.0.of(context)
     }
 }
+
+/// Mirrors for the contract of all lobes.
+#[cfg(test)]
+pub(super) fn tried() -> Vec<MirrorLobe> {
+    vec![MirrorLobe(PreparedPaint::Plain(crate::color::WavelengthSets::bands().constant(0.6)))]
+}

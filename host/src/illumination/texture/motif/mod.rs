@@ -11,11 +11,11 @@ use sampled::Sampled;
 use serde::{Deserialize, Serialize};
 
 /// Makes the enumeration of patterns. A row is the word for a kind, its numbers, what is checked of them, how much there is
-/// of each paint over a footprint, and in all.
+/// of each paint over a footprint, and in all; and a pattern of the kind that tests of all of them try, of two paints.
 macro_rules! motifs {
     ($($(#[doc = $doc:literal])* $kind:ident $word:literal $({
         $($(#[doc = $help:literal])* $field:ident: $type:ty,)*
-    })? check $check:expr, parts |$sampled:ident| $parts:expr, mean $mean:expr;)*) => {
+    })? check $check:expr, parts |$sampled:ident| $parts:expr, mean $mean:expr $(, tried $tried:expr)?;)*) => {
         /// The kind of a pattern, of which one repetition has the size 1.
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
         pub enum Motif {
@@ -25,6 +25,14 @@ macro_rules! motifs {
         }
 
         impl Motif {
+            /// Patterns of two paints that tests try, one of each kind.
+            #[cfg(test)]
+            pub(super) const TRIED: &[Motif] = &[$($($tried,)?)*];
+
+            /// The words for all kinds.
+            #[cfg(test)]
+            pub(super) const WORDS: &[&str] = &[$($word,)*];
+
             /// The word for the kind.
             pub fn word(&self) -> &'static str {
                 match self {
@@ -75,14 +83,16 @@ motifs! {
 
     /// Squares or cubes of two paints in turn, two of which are as long as a unit.
     Checker "checker"
-    check Ok(()), parts |sampled| two(checker::second(sampled)), mean two(checker::MEAN);
+    check Ok(()), parts |sampled| two(checker::second(sampled)), mean two(checker::MEAN),
+    tried Motif::Checker;
 
     /// Clouds of a second paint in the first.
     Noise "noise" {
         /// How many frequencies it has, each twice the one before, 1 to 16.
         octaves: u32,
     }
-    check clouds::check(*octaves), parts |sampled| two(clouds::second(sampled, *octaves)), mean two(clouds::MEAN);
+    check clouds::check(*octaves), parts |sampled| two(clouds::second(sampled, *octaves)), mean two(clouds::MEAN),
+    tried Motif::Noise { octaves: 6 };
 
     /// Veins of a second paint in the first, across the x direction, a unit apart.
     Marble "marble" {
@@ -93,7 +103,8 @@ motifs! {
     }
     check marble::check(*turbulence, *sharpness),
     parts |sampled| two(marble::second(sampled, *turbulence, *sharpness)),
-    mean two(marble::mean(*sharpness));
+    mean two(marble::mean(*sharpness)),
+    tried Motif::Marble { turbulence: 0.7, sharpness: 3.0 };
 
     /// Rings about the y axis, a unit wide: the first paint is early wood, the second late wood.
     Wood "wood" {
@@ -104,7 +115,8 @@ motifs! {
     }
     check wood::check(*turbulence, *grain),
     parts |sampled| two(wood::second(sampled, *turbulence, *grain)),
-    mean two(wood::mean());
+    mean two(wood::mean()),
+    tried Motif::Wood { turbulence: 0.2, grain: 0.3 };
 }
 
 impl Motif {
