@@ -1,27 +1,13 @@
 //! PERIS, the host: models an environment, keeps it in a linear octree, renders it, and shows it on a PS 340.
 //!
-//! The order of the modules is their layer order, lowest first.
+//! It stands on three floors, each a crate that knows nothing of those above it: `foundation`, `modelling` and
+//! `synthesis`. What is here is the top: studies, scripts, the workstation and the command line. The order of the modules
+//! is their layer order, lowest first.
 
-pub mod memory;
-pub mod stages;
-pub mod encoding;
-pub mod spelling;
-pub mod numeric;
-pub mod color;
-pub mod polygon;
-pub mod picture;
-pub mod curve;
-pub mod mesh;
-pub mod octree;
-pub mod subdivision;
-pub mod surface;
-pub mod solid;
-pub mod intersection;
-pub mod illumination;
-pub mod database;
-pub mod scene;
-pub mod plan;
-pub mod render;
+pub use foundation::{color, encoding, memory, numeric, picture, polygon, spelling, stages};
+pub use modelling::{curve, intersection, mesh, octree, solid, subdivision, surface};
+pub use synthesis::{database, illumination, plan, render, scene};
+
 pub mod study;
 pub mod script;
 pub mod workstation;

@@ -10,18 +10,38 @@ pub struct Crate {
     pub name: &'static str,
     /// Where it is, seen from the root.
     pub folder: &'static str,
+    /// The crate of which it is a floor; its own name for one that stands alone.
+    pub house: &'static str,
     /// The crates of the workspace that it may name.
     pub below: &'static [&'static str],
 }
 
 /// All of them, lowest first.
 pub const CRATES: &[Crate] = &[
-    Crate { name: "files", folder: "protocol/files", below: &[] },
-    Crate { name: "processes", folder: "protocol/processes", below: &[] },
-    Crate { name: "protocol", folder: "protocol", below: &[] },
-    Crate { name: "ps340", folder: "ps340", below: &["protocol", "files", "processes"] },
-    Crate { name: "host", folder: "host", below: &["protocol", "files", "processes"] },
-    Crate { name: "tests", folder: "tests", below: &["protocol", "files", "processes", "ps340", "host"] },
+    Crate { name: "files", folder: "protocol/files", house: "files", below: &[] },
+    Crate { name: "processes", folder: "protocol/processes", house: "processes", below: &[] },
+    Crate { name: "protocol", folder: "protocol", house: "protocol", below: &[] },
+    Crate { name: "ps340", folder: "ps340", house: "ps340", below: &["protocol", "files", "processes"] },
+    Crate { name: "foundation", folder: "host/foundation", house: "host", below: &["protocol", "files"] },
+    Crate { name: "modelling", folder: "host/modelling", house: "host", below: &["foundation", "protocol", "files"] },
+    Crate {
+        name: "synthesis",
+        folder: "host/synthesis",
+        house: "host",
+        below: &["modelling", "foundation", "protocol", "files", "processes"],
+    },
+    Crate {
+        name: "host",
+        folder: "host",
+        house: "host",
+        below: &["synthesis", "modelling", "foundation", "protocol", "files", "processes"],
+    },
+    Crate {
+        name: "tests",
+        folder: "tests",
+        house: "tests",
+        below: &["protocol", "files", "processes", "ps340", "host"],
+    },
 ];
 
 /// The folder of the workspace.

@@ -23,7 +23,7 @@ struct Lane {
 
 const LANES: [Lane; 2] = [
     Lane {
-        crates: &["-p", "host"],
+        crates: &["-p", "foundation", "-p", "modelling", "-p", "synthesis", "-p", "host"],
         tests: &[
             "cli::objects::",
             "cli::program::",

@@ -24,42 +24,45 @@ const FAMILIES: &[Family] = &[
     Family {
         name: "solid",
         kind: &["Paraboloid"],
-        files: &["host/src/script/solids.rs", "host/src/solid/primitive/kind.rs"],
+        files: &["host/src/script/solids.rs", "host/modelling/src/solid/primitive/kind.rs"],
     },
     Family {
         name: "distribution",
         kind: &["Blinn", "blinn"],
-        files: &["host/src/illumination/distribution/blinn.rs", "host/src/illumination/distribution/mod.rs"],
+        files: &[
+            "host/synthesis/src/illumination/distribution/blinn.rs",
+            "host/synthesis/src/illumination/distribution/mod.rs",
+        ],
     },
     Family {
         name: "lobe",
         kind: &["MirrorLobe"],
         files: &[
-            "host/src/illumination/optics/builder.rs",
-            "host/src/illumination/optics/lobes.rs",
-            "host/src/illumination/optics/mirror.rs",
+            "host/synthesis/src/illumination/optics/builder.rs",
+            "host/synthesis/src/illumination/optics/lobes.rs",
+            "host/synthesis/src/illumination/optics/mirror.rs",
         ],
     },
     Family {
         name: "light",
         kind: &["SpotProfile", "Spot"],
         files: &[
-            "host/src/illumination/light/mod.rs",
-            "host/src/illumination/light/spot.rs",
+            "host/synthesis/src/illumination/light/mod.rs",
+            "host/synthesis/src/illumination/light/spot.rs",
             "host/src/script/lighting.rs",
         ],
     },
     Family {
         name: "texture",
         kind: &["Marble"],
-        files: &["host/src/illumination/texture/motif/mod.rs", "host/src/script/texturing.rs"],
+        files: &["host/synthesis/src/illumination/texture/motif/mod.rs", "host/src/script/texturing.rs"],
     },
     Family {
         name: "renderer",
         kind: &["ScanLine"],
         files: &[
-            "host/src/render/renderers.rs",
-            "host/src/render/scan_line/mod.rs",
+            "host/synthesis/src/render/renderers.rs",
+            "host/synthesis/src/render/scan_line/mod.rs",
             // Which renderers are studied if nobody says.
             "host/src/study/rendering/setup.rs",
         ],

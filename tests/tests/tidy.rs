@@ -133,7 +133,7 @@ fn a_folder_uses_only_the_layers_below_it() {
 #[test]
 fn crates_name_only_the_crates_below_them() {
     let mut faults = Vec::new();
-    for Crate { name, folder, below } in CRATES {
+    for Crate { name, folder, below, .. } in CRATES {
         let forbidden = CRATES.iter().map(|row| row.name).filter(|other| other != name && !below.contains(other));
         let manifest = read(&root().join(folder).join("Cargo.toml"));
         for other in forbidden {
@@ -170,10 +170,11 @@ fn no_files_use_each_other_in_circles() {
 
 #[test]
 fn one_file_of_the_host_names_the_crate_of_binary_forms() {
-    let src = root().join("host/src");
-    let names = |path: &&PathBuf| code(&read(path)).contains("bincode");
-    let files: Vec<PathBuf> = sources(&src).iter().filter(names).cloned().collect();
-    assert_eq!(files, [src.join("encoding.rs")]);
+    let floors = CRATES.iter().filter(|one| one.house == "host");
+    let names = |path: &PathBuf| code(&read(path)).contains("bincode");
+    let files: Vec<PathBuf> =
+        floors.flat_map(|one| sources(&root().join(one.folder).join("src"))).filter(names).collect();
+    assert_eq!(files, [root().join("host/foundation/src/encoding.rs")]);
 }
 
 /// Families of kinds that grow: the crate, the enumeration, and the module that may distinguish its kinds, if any may.
@@ -218,15 +219,16 @@ fn kinds_of_a_family_are_told_apart_in_their_room_only() {
     assert!(arms("BlendOperation::Add => 1,\nNode::Operate { .. } => 2,", "Operation").is_empty());
     let mut faults = Vec::new();
     for (name, family, room) in FAMILIES {
-        let folder = CRATES.iter().find(|row| row.name == *name).expect("a crate").folder;
-        let src = root().join(folder).join("src");
-        let room = room.map(|room| src.join(room));
-        assert!(room.iter().all(|room| room.exists() || room.with_extension("rs").exists()), "{name}: no {room:?}");
-        let is_inside = |path: &PathBuf| {
-            room.as_ref().is_some_and(|room| path.starts_with(room) || *path == room.with_extension("rs"))
-        };
-        for path in sources(&src).iter().filter(|path| !is_inside(path) && !is_test(path)) {
-            let text = code(&read(path));
+        let floors = CRATES.iter().filter(|row| row.house == *name);
+        let floors: Vec<PathBuf> = floors.map(|row| root().join(row.folder).join("src")).collect();
+        let rooms: Vec<PathBuf> = floors.iter().flat_map(|src| room.map(|room| src.join(room))).collect();
+        let is_room = |room: &PathBuf| room.exists() || room.with_extension("rs").exists();
+        assert!(room.is_none() || rooms.iter().any(is_room), "{name}: no {room:?}");
+        let is_inside =
+            |path: &PathBuf| rooms.iter().any(|room| path.starts_with(room) || *path == room.with_extension("rs"));
+        let files = floors.iter().flat_map(|src| sources(src));
+        for path in files.filter(|path| !is_inside(path) && !is_test(path)) {
+            let text = code(&read(&path));
             let text = &text[..text.find("mod tests {").unwrap_or(text.len())];
             let place = path.display();
             faults.extend(arms(text, family).into_iter().map(|arm| format!("{place}: {arm}")));

@@ -87,16 +87,16 @@ fn a_type_name_that_leaves_its_file_means_one_thing_in_its_crate() {
     let source = "pub(super) struct A(u8);\nstruct B;\n    pub type C<T> = T;\npub unsafe trait D {}";
     assert_eq!(public_types(source), ["A", "C", "D"]);
     let mut faults = Vec::new();
+    let mut meanings: BTreeMap<(&str, String), Vec<PathBuf>> = BTreeMap::new();
     for one in CRATES {
-        let mut meanings: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
         for path in sources(&root().join(one.folder)) {
             for name in public_types(&code(&read(&path))) {
-                meanings.entry(name).or_default().push(path.clone());
+                meanings.entry((one.house, name)).or_default().push(path.clone());
             }
         }
-        let twice = meanings.into_iter().filter(|(_, paths)| paths.len() > 1);
-        faults.extend(twice.map(|(name, paths)| format!("{} in {paths:?}", name)));
     }
+    let twice = meanings.into_iter().filter(|(_, paths)| paths.len() > 1);
+    faults.extend(twice.map(|((_, name), paths)| format!("{name} in {paths:?}")));
     assert!(faults.is_empty(), "one name, several things:\n{}", faults.join("\n"));
 }
 

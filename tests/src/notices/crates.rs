@@ -6,8 +6,15 @@ use std::path::Path;
 use toml_edit::{Item, TableLike};
 
 /// The programs, and the crates of the workspace below them, with the folders of their manifests.
-const OWN: [(&str, &str); 4] =
-    [("host", "host"), ("ps340", "ps340"), ("protocol", "protocol"), ("files", "protocol/files")];
+const OWN: [(&str, &str); 7] = [
+    ("host", "host"),
+    ("synthesis", "host/synthesis"),
+    ("modelling", "host/modelling"),
+    ("foundation", "host/foundation"),
+    ("ps340", "ps340"),
+    ("protocol", "protocol"),
+    ("files", "protocol/files"),
+];
 
 /// A crate in one version.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -19,7 +19,7 @@ mod rounded;
 
 pub use body::{Body, Face, Measures};
 pub use boolean::{Counts, Expression, Outcome};
-pub(crate) use cleaning::retain;
+pub use cleaning::retain;
 pub use closed::Solid;
 pub use error::{OpenLoop, SolidError};
 pub use exact::{ExactSolid, moved};

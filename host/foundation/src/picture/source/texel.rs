@@ -8,7 +8,7 @@ pub(super) type Buffered = BufReader<File>;
 
 /// How a file tells its pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum TexelFormat {
+pub enum TexelFormat {
     /// Eight bits a band, encoded as sRGB.
     Eight,
     /// Sixteen bits a band, encoded as sRGB; `grey` where all bands are the same.
@@ -25,7 +25,7 @@ pub(crate) enum TexelFormat {
 
 /// A pixel of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Texel {
+pub enum Texel {
     /// Red, green, blue, each encoded as sRGB, and coverage.
     Eight([u8; 4]),
     /// Red, green, blue, each encoded as sRGB, and coverage.

@@ -6,7 +6,7 @@ use std::hash::Hasher;
 
 /// A number that values with the same text for programmers have in common, and others hardly ever: values that hold
 /// floating-point numbers are sorted by it before they are compared.
-pub(crate) fn debug_hash(value: &impl Debug) -> u64 {
+pub fn debug_hash(value: &impl Debug) -> u64 {
     struct Hashed(FxHasher);
     impl Write for Hashed {
         fn write_str(&mut self, text: &str) -> fmt::Result {

@@ -9,8 +9,8 @@ mod layer;
 mod workers;
 mod record;
 
+pub use crate::{part, stage};
 pub use layer::{StageEvent, StageLayer, observed};
 pub use record::{StageRecord, StageTotal};
 pub use span::{StageSpan, TARGET};
-pub(crate) use span::{part, stage};
 pub use workers::Workers;

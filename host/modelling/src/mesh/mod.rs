@@ -40,7 +40,7 @@ pub use file::{
 pub use groups::{Grouped, MetallicRoughness};
 pub use json_path::JsonPath;
 pub(crate) use measure::bits;
-pub(crate) use placement::normal_matrix;
+pub use placement::normal_matrix;
 pub use polylines::{Polylines, polylines, polylines_of_groups};
 pub use triangles::Mesh;
 pub use wire::wire;

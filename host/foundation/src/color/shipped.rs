@@ -9,44 +9,44 @@ use std::sync::LazyLock;
 
 /// Light of lamps and standard illuminants, relative to any unit.
 const LIGHTS: &[&str] =
-    &[include_str!("../../data/color/illuminants.txt"), include_str!("../../data/color/fluorescent.txt")];
+    &[include_str!("../../../data/color/illuminants.txt"), include_str!("../../../data/color/fluorescent.txt")];
 /// Refractive indices of metals and alloys: of each two columns, its name with `.n` and with `.k`.
 const METALS: &[&str] = &[
-    include_str!("../../data/color/noble_metals.txt"),
-    include_str!("../../data/color/transition_metals.txt"),
-    include_str!("../../data/color/aluminium.txt"),
-    include_str!("../../data/color/brasses.txt"),
-    include_str!("../../data/color/steels.txt"),
-    include_str!("../../data/color/platinum.txt"),
-    include_str!("../../data/color/rhodium.txt"),
-    include_str!("../../data/color/tungsten.txt"),
-    include_str!("../../data/color/molybdenum.txt"),
-    include_str!("../../data/color/mercury.txt"),
-    include_str!("../../data/color/lead.txt"),
-    include_str!("../../data/color/magnesium.txt"),
-    include_str!("../../data/color/electrum.txt"),
-    include_str!("../../data/color/permalloy.txt"),
-    include_str!("../../data/color/titanium_nitride.txt"),
+    include_str!("../../../data/color/noble_metals.txt"),
+    include_str!("../../../data/color/transition_metals.txt"),
+    include_str!("../../../data/color/aluminium.txt"),
+    include_str!("../../../data/color/brasses.txt"),
+    include_str!("../../../data/color/steels.txt"),
+    include_str!("../../../data/color/platinum.txt"),
+    include_str!("../../../data/color/rhodium.txt"),
+    include_str!("../../../data/color/tungsten.txt"),
+    include_str!("../../../data/color/molybdenum.txt"),
+    include_str!("../../../data/color/mercury.txt"),
+    include_str!("../../../data/color/lead.txt"),
+    include_str!("../../../data/color/magnesium.txt"),
+    include_str!("../../../data/color/electrum.txt"),
+    include_str!("../../../data/color/permalloy.txt"),
+    include_str!("../../../data/color/titanium_nitride.txt"),
 ];
 /// Transparent solids.
-const GLASSES: &str = include_str!("../../data/color/glasses.txt");
+const GLASSES: &str = include_str!("../../../data/color/glasses.txt");
 /// Liquids.
-const LIQUIDS: &str = include_str!("../../data/color/liquids.txt");
+const LIQUIDS: &str = include_str!("../../../data/color/liquids.txt");
 /// Reflectances of surfaces; the patches of the colour checker first.
 const REFLECTANCES: &[&str] = &[
     CHECKER,
-    include_str!("../../data/color/paints.txt"),
-    include_str!("../../data/color/stones.txt"),
-    include_str!("../../data/color/woods.txt"),
-    include_str!("../../data/color/fabrics.txt"),
-    include_str!("../../data/color/oak.txt"),
-    include_str!("../../data/color/test_colors.txt"),
+    include_str!("../../../data/color/paints.txt"),
+    include_str!("../../../data/color/stones.txt"),
+    include_str!("../../../data/color/woods.txt"),
+    include_str!("../../../data/color/fabrics.txt"),
+    include_str!("../../../data/color/oak.txt"),
+    include_str!("../../../data/color/test_colors.txt"),
 ];
-const CHECKER: &str = include_str!("../../data/color/checker.txt");
+const CHECKER: &str = include_str!("../../../data/color/checker.txt");
 /// Functions that belong together: the observer, and daylight.
 const FUNCTIONS: &[(&str, &str)] = &[
-    ("observer", include_str!("../../data/color/observer.txt")),
-    ("daylight", include_str!("../../data/color/daylight.txt")),
+    ("observer", include_str!("../../../data/color/observer.txt")),
+    ("daylight", include_str!("../../../data/color/daylight.txt")),
 ];
 
 /// A metal: its complex index of refraction n + ik over the wavelength.

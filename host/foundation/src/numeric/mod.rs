@@ -12,4 +12,4 @@ pub mod sampling;
 pub mod sequence;
 pub mod triangle;
 
-pub(crate) use debug_hash::debug_hash;
+pub use debug_hash::debug_hash;

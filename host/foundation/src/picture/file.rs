@@ -120,7 +120,7 @@ fn written_as(path: &Path) -> Result<ImageFormat, PictureError> {
 }
 
 /// The pixel that a file tells. Colors beside a coverage are premultiplied by it.
-pub(crate) fn pixel_of(texel: Texel) -> Pixel {
+pub fn pixel_of(texel: Texel) -> Pixel {
     let beside = |light: [f32; 3], coverage: f32| Pixel { radiance: light.map(|c| coverage * c), coverage };
     match texel {
         Texel::Eight([r, g, b, a]) => beside([r, g, b].map(linear_from_srgb), f32::from(a) / 255.0),

@@ -19,7 +19,7 @@ pub struct NoBunny;
 /// Stanford 3D Scanning Repository, scan of Greg Turk and Marc Levoy, 1994; the holes of its base are filled.
 pub fn bunny() -> Result<Mesh, NoBunny> {
     #[cfg(feature = "bunny")]
-    let file = Some(include_bytes!("../../data/bunny.cmesh"));
+    let file = Some(include_bytes!("../../../data/bunny.cmesh"));
     #[cfg(not(feature = "bunny"))]
     let file = None::<&[u8]>;
     let file = file.ok_or(NoBunny)?;

@@ -45,7 +45,7 @@ impl RandomStream {
 /// # Source
 /// Steele, Lea and Flood 2014 (SplitMix), constants of variant 13 by Stafford.
 #[inline]
-pub(crate) fn mix(x: u64) -> u64 {
+pub fn mix(x: u64) -> u64 {
     let x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -75,7 +75,7 @@ pub fn sphere(point: [f64; 2]) -> DVec3 {
 
 /// A unit vector whose cosine with z is given, turned about z by a part of a whole turn.
 #[inline]
-pub(crate) fn around_z(cosine: f64, turn: f64) -> DVec3 {
+pub fn around_z(cosine: f64, turn: f64) -> DVec3 {
     let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
     let (sin, cos) = (TAU * turn).sin_cos();
     DVec3::new(sine * cos, sine * sin, cosine)
@@ -100,7 +100,7 @@ pub fn disk(point: [f64; 2]) -> [f64; 2] {
 ///
 /// - `normal`: unit length.
 #[inline]
-pub(crate) fn disk_across(normal: DVec3, point: [f64; 2]) -> DVec3 {
+pub fn disk_across(normal: DVec3, point: [f64; 2]) -> DVec3 {
     let (x, y) = normal.any_orthonormal_pair();
     let [a, b] = disk(point);
     x * a + y * b
@@ -110,7 +110,7 @@ pub(crate) fn disk_across(normal: DVec3, point: [f64; 2]) -> DVec3 {
 ///
 /// - `offset`: from where it is seen to its middle.
 #[inline]
-pub(crate) fn cap(offset: DVec3, radius: f64) -> Option<f64> {
+pub fn cap(offset: DVec3, radius: f64) -> Option<f64> {
     let sine = radius / offset.length();
     (sine < 1.0).then(|| sine * sine / (1.0 + (1.0 - sine * sine).sqrt()))
 }
@@ -118,7 +118,7 @@ pub(crate) fn cap(offset: DVec3, radius: f64) -> Option<f64> {
 /// The part in which a number falls, and where in it, 0..1: the middle of a part that is empty.
 ///
 /// - `below`: the sum of the parts up to each, rising to 1.
-pub(crate) fn part_of(below: &[f64], uniform: f64) -> (usize, f64) {
+pub fn part_of(below: &[f64], uniform: f64) -> (usize, f64) {
     let index = below.partition_point(|part| *part <= uniform).min(below.len() - 1);
     let from = if index == 0 { 0.0 } else { below[index - 1] };
     let size = below[index] - from;

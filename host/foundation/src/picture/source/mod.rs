@@ -5,7 +5,7 @@ mod exr;
 mod hdr;
 mod png;
 
-pub(crate) use texel::{Texel, TexelFormat};
+pub use texel::{Texel, TexelFormat};
 
 use super::{Picture, PictureError};
 use image::ImageFormat;
@@ -13,7 +13,7 @@ use std::io::BufReader;
 use std::path::Path;
 
 /// A picture file that is open, whose pixels are not read yet.
-pub(crate) struct PictureReader<'a> {
+pub struct PictureReader<'a> {
     path: &'a Path,
     /// Columns and rows.
     size: [u32; 2],
@@ -31,7 +31,7 @@ impl<'a> PictureReader<'a> {
     ///
     /// # Errors
     /// [`PictureError`] for a file that is missing, broken, of another format or too large.
-    pub(crate) fn open(path: &'a Path) -> Result<PictureReader<'a>, PictureError> {
+    pub fn open(path: &'a Path) -> Result<PictureReader<'a>, PictureError> {
         let format = format_of(path)?;
         let file = files::open(path).map_err(|source| PictureError::Open { path: path.into(), source })?;
         let file = BufReader::new(file);
@@ -55,12 +55,12 @@ impl<'a> PictureReader<'a> {
     }
 
     /// Columns and rows.
-    pub(crate) fn size(&self) -> [u32; 2] {
+    pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
     /// How pixels are told.
-    pub(crate) fn precision(&self) -> TexelFormat {
+    pub fn precision(&self) -> TexelFormat {
         match &self.file {
             Format::Png(png) => png.precision(),
             Format::Exr(exr) => TexelFormat::Float { grey: exr.is_grey() },
@@ -69,7 +69,7 @@ impl<'a> PictureReader<'a> {
     }
 
     /// Whether there is a depth for each pixel.
-    pub(crate) fn has_depth(&self) -> bool {
+    pub fn has_depth(&self) -> bool {
         matches!(&self.file, Format::Exr(exr) if exr.has_depth())
     }
 
@@ -77,7 +77,7 @@ impl<'a> PictureReader<'a> {
     ///
     /// # Errors
     /// [`PictureError::Broken`]; some pixels may have been told then.
-    pub(crate) fn each(self, mut tell: impl FnMut(u32, u32, Texel)) -> Result<(), PictureError> {
+    pub fn each(self, mut tell: impl FnMut(u32, u32, Texel)) -> Result<(), PictureError> {
         let read = match self.file {
             Format::Png(png) => png.each(&mut tell),
             Format::Exr(exr) => exr.each(&mut tell),

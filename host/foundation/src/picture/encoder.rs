@@ -18,7 +18,7 @@ const D65: DVec2 = DVec2::new(0.3127, 0.3290);
 /// Writes eight-bit sRGB as a PNG file.
 ///
 /// - `bytes`: three a pixel, row by row from the top.
-pub(crate) fn png(
+pub fn png(
     file: &mut Writer<'_>,
     bytes: &[u8],
     [width, height]: [u32; 2],
@@ -47,7 +47,7 @@ pub(crate) fn png(
 }
 
 /// Linear sRGB as an EXR file, compressed by ZIP, its lines in order: the same bytes however many threads compress.
-pub(crate) fn exr<'c, C: WritableChannels<'c> + 'c>(
+pub fn exr<'c, C: WritableChannels<'c> + 'c>(
     [width, height]: [u32; 2],
     channels: C,
     provenance: &Provenance,
@@ -70,7 +70,7 @@ pub(crate) fn exr<'c, C: WritableChannels<'c> + 'c>(
 }
 
 /// The error of an encoder of EXR files.
-pub(crate) fn exr_error(error: exr::error::Error) -> Error {
+pub fn exr_error(error: exr::error::Error) -> Error {
     match error {
         exr::error::Error::Io(error) => error,
         other => Error::other(other),

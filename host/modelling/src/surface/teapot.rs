@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::{BezierPatch, PatchSet};
 
 static TEAPOT: LazyLock<PatchSet> = LazyLock::new(|| {
-    let set = PatchSet::parse(include_str!("../../data/teapot.bpt"))
+    let set = PatchSet::parse(include_str!("../../../data/teapot.bpt"))
         .expect("the embedded teapot is well formed; a test reads it");
     let upright = |point: DVec3| DVec3::new(point.x, point.z, -point.y);
     // The original order of u and v has the outside inside.

@@ -69,7 +69,7 @@ impl Mesh {
 /// The matrix that carries normals where `matrix` carries points, up to length, for singular matrices too.
 ///
 /// The cofactor matrix, whose columns are cross products of the columns of `matrix`, with the sign of the determinant.
-pub(crate) fn normal_matrix(matrix: DMat3) -> DMat3 {
+pub fn normal_matrix(matrix: DMat3) -> DMat3 {
     let [x, y, z]: [DVec3; 3] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
     let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
     if matrix.determinant() < 0.0 { cofactors * -1.0 } else { cofactors }

@@ -12,6 +12,7 @@ pub const TARGET: &str = "peris::stage";
 ///
 /// The stages within one that is `opaque`, as in `stage!("studying", 9.0, "measurements", opaque)`, are timed, but not
 /// shown to the person who waits.
+#[macro_export]
 macro_rules! stage {
     ($name:literal) => {
         $crate::stages::stage!(@ $name, 0.0, "", false)
@@ -39,14 +40,13 @@ macro_rules! stage {
 
 /// Opens a part of a stage, for profiles: `part!(stage, "row", y)` is the part with the number `y` of a stage, on any
 /// thread. It ends when what is given back is dropped.
+#[macro_export]
 macro_rules! part {
     ($stage:expr, $name:literal, $number:expr) => {
         tracing::debug_span!(target: $crate::stages::TARGET, parent: $stage.span(), $name, number = $number as u64)
             .entered()
     };
 }
-
-pub(crate) use {part, stage};
 
 /// A stage that is open in the thread in which it began, until this is dropped.
 #[derive(Debug)]

@@ -23,8 +23,7 @@ macro_rules! primitives {
 
         impl Primitive {
             /// The words for all kinds.
-            #[cfg(test)]
-            pub(crate) const WORDS: &[&str] = &[$($word),*];
+            pub const WORDS: &[&str] = &[$($word),*];
 
             /// The word for the kind.
             pub fn word(&self) -> &'static str {
