@@ -1,29 +1,13 @@
 //! The PS 340: a deterministic machine in a thin shell.
 //!
-//! The order of the modules is their layer order, lowest first.
+//! The machine is the crate `emulation`; what is here has its process, its window and its tools. The order of the modules
+//! is their layer order, lowest first.
 
-pub mod hue;
-pub mod matrices;
-pub mod curve;
-pub mod pattern;
-pub mod port;
-pub mod functions;
-pub mod network;
-pub mod structure;
-pub mod objects;
-pub mod memory;
-pub mod traversal;
-pub mod rendering;
-pub mod terminal;
-pub mod picture;
-pub mod calligraphic;
-pub mod raster;
-pub mod disk;
-pub mod interpreter;
-pub mod line;
-pub mod machine;
-pub mod example;
-pub mod operator;
+pub use emulation::{
+    calligraphic, curve, disk, example, functions, hue, interpreter, line, machine, matrices, memory, network, objects,
+    operator, pattern, picture, port, raster, rendering, structure, terminal, traversal,
+};
+
 pub mod shell;
 #[cfg(feature = "window")]
 pub mod console;

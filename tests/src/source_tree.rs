@@ -21,7 +21,8 @@ pub const CRATES: &[Crate] = &[
     Crate { name: "files", folder: "protocol/files", house: "files", below: &[] },
     Crate { name: "processes", folder: "protocol/processes", house: "processes", below: &[] },
     Crate { name: "protocol", folder: "protocol", house: "protocol", below: &[] },
-    Crate { name: "ps340", folder: "ps340", house: "ps340", below: &["protocol", "files", "processes"] },
+    Crate { name: "emulation", folder: "ps340/emulation", house: "ps340", below: &["protocol", "files", "processes"] },
+    Crate { name: "ps340", folder: "ps340", house: "ps340", below: &["emulation", "protocol", "files", "processes"] },
     Crate { name: "foundation", folder: "host/foundation", house: "host", below: &["protocol", "files"] },
     Crate { name: "modelling", folder: "host/modelling", house: "host", below: &["foundation", "protocol", "files"] },
     Crate {

@@ -55,7 +55,7 @@ const LANES: [Lane; 2] = [
         ],
     },
     Lane {
-        crates: &["-p", "protocol", "-p", "ps340", "--no-default-features"],
+        crates: &["-p", "protocol", "-p", "emulation", "--no-default-features"],
         tests: &["command::", "functions::", "network::contract::", "structure::"],
         contracts: &[
             "each_command_has_an_example_that_makes_an_operation",
@@ -192,7 +192,7 @@ fn run(lane: &Lane, tree: &Path, build: &Path) -> String {
     let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(tree).env("CARGO_TARGET_DIR", build).args(["test", "--locked", "--lib", "--no-fail-fast"]);
     // Optimised as far as it pays for so few tests.
-    for setting in ["debug=0", "package.host.opt-level=1", "package.ps340.opt-level=1"] {
+    for setting in ["debug=0", "package.host.opt-level=1", "package.emulation.opt-level=1"] {
         cargo.args(["--config", &format!("profile.dev.{setting}")]);
     }
     let ended = cargo.args(lane.crates).arg("--").args(lane.tests).output().expect("cargo runs");

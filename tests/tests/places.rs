@@ -15,11 +15,15 @@ struct Family {
 
 /// The families that grow; a new kind touches as many files as the kind that stands here.
 const FAMILIES: &[Family] = &[
-    Family { name: "function of the PS 340", kind: &["average"], files: &["ps340/src/functions/accumulation.rs"] },
+    Family {
+        name: "function of the PS 340",
+        kind: &["average"],
+        files: &["ps340/emulation/src/functions/accumulation.rs"],
+    },
     Family {
         name: "operate command",
         kind: &["SetRate"],
-        files: &["protocol/src/command/operate/attribute.rs", "ps340/src/structure/operation/attribute.rs"],
+        files: &["protocol/src/command/operate/attribute.rs", "ps340/emulation/src/structure/operation/attribute.rs"],
     },
     Family {
         name: "solid",

@@ -6,12 +6,13 @@ use std::path::Path;
 use toml_edit::{Item, TableLike};
 
 /// The programs, and the crates of the workspace below them, with the folders of their manifests.
-const OWN: [(&str, &str); 7] = [
+const OWN: [(&str, &str); 8] = [
     ("host", "host"),
     ("synthesis", "host/synthesis"),
     ("modelling", "host/modelling"),
     ("foundation", "host/foundation"),
     ("ps340", "ps340"),
+    ("emulation", "ps340/emulation"),
     ("protocol", "protocol"),
     ("files", "protocol/files"),
 ];

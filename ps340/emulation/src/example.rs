@@ -13,10 +13,10 @@ pub struct ExampleProgram {
 
 /// Every program.
 pub const EXAMPLES: &[ExampleProgram] = &[
-    ExampleProgram { name: "dials", text: include_str!("../programs/dials.ps300") },
-    ExampleProgram { name: "pick", text: include_str!("../programs/pick.ps300") },
-    ExampleProgram { name: "clock", text: include_str!("../programs/clock.ps300") },
-    ExampleProgram { name: "helix", text: include_str!("../programs/helix.ps300") },
+    ExampleProgram { name: "dials", text: include_str!("../../programs/dials.ps300") },
+    ExampleProgram { name: "pick", text: include_str!("../../programs/pick.ps300") },
+    ExampleProgram { name: "clock", text: include_str!("../../programs/clock.ps300") },
+    ExampleProgram { name: "helix", text: include_str!("../../programs/helix.ps300") },
 ];
 
 impl ExampleProgram {
