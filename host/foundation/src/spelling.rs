@@ -6,9 +6,9 @@ const MOST: usize = 4;
 /// What to say of a name that is not known: what it may have meant, or else the names that there are.
 ///
 /// ```
-/// assert_eq!(host::spelling::advice("coper", &["copper", "gold"]), "did you mean copper?");
-/// assert_eq!(host::spelling::advice("steel", &["stainless_steel", "gold"]), "did you mean stainless_steel?");
-/// assert_eq!(host::spelling::advice("jade", &["copper", "gold"]), "there are copper, gold");
+/// assert_eq!(foundation::spelling::advice("coper", &["copper", "gold"]), "did you mean copper?");
+/// assert_eq!(foundation::spelling::advice("steel", &["stainless_steel", "gold"]), "did you mean stainless_steel?");
+/// assert_eq!(foundation::spelling::advice("jade", &["copper", "gold"]), "there are copper, gold");
 /// ```
 pub fn advice(name: &str, known: &[&str]) -> String {
     question(name, known).unwrap_or_else(|| match known {

@@ -48,9 +48,9 @@ use glam::{DVec2, DVec3};
 ///
 /// ```
 /// use glam::DVec3;
-/// use host::illumination::distribution::measure::{check, emitted_share, light_at};
-/// use host::illumination::distribution::{Distribution, Tabulated};
-/// use host::illumination::material::DistributionForm;
+/// use synthesis::illumination::distribution::measure::{check, emitted_share, light_at};
+/// use synthesis::illumination::distribution::{Distribution, Tabulated};
+/// use synthesis::illumination::material::DistributionForm;
 /// use std::f64::consts::{PI, TAU};
 ///
 /// /// Brighter along the normal than Lambert's: D = 3 cos²θ / 2π.
