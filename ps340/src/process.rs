@@ -111,7 +111,7 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// Why the process ends without a machine, or with one that failed.
+/// The reason for which the process ends without a machine, or with one that failed.
 struct Failure {
     code: u8,
     message: String,

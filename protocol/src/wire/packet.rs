@@ -31,9 +31,9 @@ pub const MAX_PAYLOAD: usize = MAX_RECORD;
 /// The kind of packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PacketForm {
-    /// The historical one: start byte, two count characters, route, data.
+    /// Historical, with a count: start byte, two count characters, route, data.
     Count,
-    /// The other historical one: start byte, route, data, up to the next start byte.
+    /// Historical, without a count: start byte, route, data, up to the next start byte.
     Escape,
     /// Ours: checked, and up to [`MAX_PAYLOAD`] long.
     Long,

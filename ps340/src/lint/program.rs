@@ -49,7 +49,7 @@ pub(super) enum DefinitionKind {
     Structure,
     /// Any other node.
     Node,
-    /// Another name.
+    /// A name that stands for another one.
     Alias(Name),
 }
 

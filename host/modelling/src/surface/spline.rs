@@ -17,7 +17,7 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// The other direction.
+    /// The direction across this one.
     pub fn other(self) -> Direction {
         match self {
             Direction::U => Direction::V,

@@ -63,7 +63,7 @@ impl Surface for SurfaceOfRevolution {
         [turned(point), DVec3::new(cosine, 0.0, -sine) * (TAU * point.x), turned(along)]
     }
 
-    /// Also on the axis, where every angle has its own limit.
+    /// The normal; on the axis, where every angle has a limit of its own, that of the angle.
     fn normal(&self, uv: DVec2) -> DVec3 {
         let along = self.profile.direction(uv.y);
         SurfaceOfRevolution::revolve(DVec2::new(along.y, -along.x), uv.x)

@@ -195,7 +195,7 @@ impl Surface for Swept {
         [x * along.x + y * along.y, by_t]
     }
 
-    /// Also where the section has shrunk to a point, or the parameter of the curve stands still.
+    /// The normal; where the section has shrunk to a point, or the parameter of the curve stands still, its limit.
     fn normal(&self, uv: DVec2) -> DVec3 {
         let [x, y] = self.spine.axes(self.twist_and_taper, uv.y);
         let along = (self.edge[1] - self.edge[0]).normalize_or_zero();

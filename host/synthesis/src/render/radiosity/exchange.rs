@@ -43,8 +43,9 @@ pub(super) struct LeafVisibility {
 /// Two nodes that exchange light.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct ExchangeLink {
+    /// One node.
     pub(super) a: u32,
-    /// The other node, or `a` again for light that a node exchanges with itself.
+    /// Its partner, or `a` again for light that a node exchanges with itself.
     pub(super) b: u32,
     /// A F, square units.
     pub(super) exchange: f64,

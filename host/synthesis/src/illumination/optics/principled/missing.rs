@@ -60,7 +60,7 @@ impl PrincipledSurface {
         }
     }
 
-    /// The other side.
+    /// The side of the interface on which transmitted light goes on.
     pub(super) fn beyond(&self, at: &PrincipledValues) -> InterfaceSide {
         match at.side {
             InterfaceSide::Outside if !self.thin => InterfaceSide::Inside,
