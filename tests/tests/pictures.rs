@@ -47,6 +47,38 @@ fn a_pixel_is_explained_as_it_is_rendered() {
 }
 
 #[test]
+fn stages_are_timed_and_rows_lie_within_the_time_of_their_rendering() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("a.rhai"), SCENE).unwrap();
+    let told = json(&["render", "a.rhai", "--json", "-o", "a.png", "--profile", "a.json"], folder);
+    let depth = |name: &str| {
+        told["stages"].as_array().unwrap().iter().find(|stage| stage["name"] == name).unwrap()["depth"].clone()
+    };
+    assert_eq!(
+        ["preparing", "building the octree", "rendering", "writing"].map(|name| depth(name).as_u64().unwrap()),
+        [0, 1, 2, 0]
+    );
+    let profile: Value = serde_json::from_slice(&fs::read(folder.join("a.json")).unwrap()).unwrap();
+    let spans = |name: &str| -> Vec<[f64; 2]> {
+        let events = profile["traceEvents"].as_array().unwrap().iter().filter(|event| event["name"] == name);
+        events.map(|event| [&event["ts"], &event["dur"]].map(|number| number.as_f64().unwrap())).collect()
+    };
+    // One pass of a sample, one up to 8, one up to 16; and those of the meter.
+    let (renderings, rows) = (spans("rendering"), spans("row"));
+    assert!(renderings.len() == 2 && rows.len() >= 3 * 32, "{profile}");
+    let is_within = |[begin, length]: &[f64; 2]| {
+        renderings.iter().any(|[first, whole]| first <= begin && begin + length <= first + whole)
+    };
+    assert!(rows.iter().all(is_within), "{profile}");
+    let table = peris(&["plan", "a.rhai", "--seconds"], folder).out;
+    let octree = table.lines().find(|line| line.contains(" octree ")).unwrap();
+    assert!(octree.split_whitespace().any(|word| word.contains('.') && word.parse::<f64>().is_ok()), "{table}");
+    let ended = peris(&["plan", "a.rhai", "--profile", "none/a.json"], folder);
+    assert!(ended.code == Some(1) && ended.errors.contains("none"), "{}", ended.errors);
+}
+
+#[test]
 fn a_scene_without_light_comes_out_neither_black_nor_blown() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
