@@ -157,7 +157,7 @@ fn still() {
         let mut machine = Machine::new(Settings::default());
         let line = ps340::line::LineId(1);
         let coordinates: Vec<String> =
-            vectors(count, 0.02).iter().map(|p| format!("{},{},{}", p[0], p[1], p[2])).collect();
+            vectors(count, 0.02).iter().map(|p| format!("{:.6},{:.6},{:.6}", p[0], p[1], p[2])).collect();
         let text = format!("A := VECTOR_LIST SEPARATE_LINES {}; DISPLAY A;", coordinates.join(" "));
         machine.step([Input::Attach(line), Input::Bytes(line, text.into_bytes())], 0);
         machine.next_frame();

@@ -19,10 +19,10 @@ impl<T: Copy + Default> SortedGroups<T> {
         }
         let mut ends = begins.clone();
         let mut entries = vec![T::default(); sum as usize];
-        for (group, entry) in all {
+        all.for_each(|(group, entry)| {
             entries[ends[group] as usize] = entry;
             ends[group] += 1;
-        }
+        });
         SortedGroups { begins, entries }
     }
 
