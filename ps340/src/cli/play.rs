@@ -56,6 +56,7 @@ pub struct PlayArguments {
     #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
     /// Writes what was sent and said: > text, @ directive, = reply, < message to the host, ! message of the machine.
+    /// The file is FILE.part until the end, and stays so if the run is interrupted.
     #[arg(long, value_name = "FILE")]
     transcript: Option<PathBuf>,
     /// Lets directives write files and end the machine, such as '@ picture vector a.png' and '@ quit'; 'ps340 lint'
@@ -138,10 +139,12 @@ fn finish(
     picture: Option<&Destination>,
     screen: Transcript,
 ) -> Result<ExitCode, ToolError> {
-    if let Some(file) = picture {
+    // What an interrupted run leaves takes no older file's place.
+    let is_whole = end != PlayEnd::Stopped;
+    if let Some(file) = picture.filter(|_| is_whole) {
         player.machine().vector_picture(None).write(file)?;
     }
-    screen.close()?;
+    screen.close(is_whole)?;
     let failures = player.take_failures();
     for failure in &failures {
         eprintln!("{failure}");
@@ -196,14 +199,20 @@ impl Transcript {
         }
     }
 
-    fn close(mut self) -> Result<(), ToolError> {
+    /// Ends the transcript; one that is not whole stays beside its name.
+    fn close(mut self, is_whole: bool) -> Result<(), ToolError> {
         let Some(transcript) = self.transcript.take() else { return Ok(()) };
         let file = transcript.get_ref().part().display().to_string();
-        let whole = match self.broken {
+        let written = match self.broken {
             Some(error) => Err(error),
             None => transcript.into_inner().map_err(io::IntoInnerError::into_error),
         };
-        Ok(whole.map_err(|error| ToolError::File { file, error })?.finish()?)
+        let log = written.map_err(|error| ToolError::File { file: file.clone(), error })?;
+        if is_whole {
+            return Ok(log.finish()?);
+        }
+        eprintln!("interrupted: the transcript so far is in {file}");
+        Ok(())
     }
 }
 

@@ -6,6 +6,7 @@ use crate::color::Color;
 use crate::illumination::material::Classic;
 use crate::illumination::texture::{Motif, Pattern, TextureMapping};
 use crate::illumination::{Light, Paint};
+use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::Ray;
 use crate::render::ray_tracer;
 use crate::render::world::{BoundedRay, RayCone};
@@ -101,17 +102,22 @@ fn a_coarse_torus_is_hit_exactly_but_where_rays_pass_by_it() {
 #[test]
 fn patches_of_a_coarse_teapot_are_hit_on_the_patches() {
     let patches = teapot();
+    let bounds: Vec<Bounds> =
+        patches.iter().map(|patch| Bounds::of(patch.control().iter().flatten().copied())).collect();
     let (mut missed, mut far) = (0, 0.0f64);
     let pot = Object { tolerance: Some(0.03), ..coarse(Shape::Teapot, DMat4::IDENTITY) };
     let count = met(vec![pot], |_, found| {
         let at = found.element.position;
-        let of = |patch: &_| {
+        // A patch lies within the bounds of its control points: those whose bounds are farther need no search.
+        let distance = patches.iter().zip(&bounds).fold(f64::INFINITY, |least, (patch, bounds)| {
+            if (at - at.clamp(bounds.min, bounds.max)).length() >= least {
+                return least;
+            }
             let [low, high] = Surface::domain(patch);
             let guesses = [0.25, 0.75].map(|x| [0.25, 0.75].map(|y| low + (high - low) * DVec2::new(x, y)));
             let distance = |guess| Surface::point(patch, Surface::nearest(patch, at, guess)).distance(at);
-            guesses.into_iter().flatten().map(distance).fold(f64::INFINITY, f64::min)
-        };
-        let distance = patches.iter().map(of).fold(f64::INFINITY, f64::min);
+            guesses.into_iter().flatten().map(distance).fold(least, f64::min)
+        });
         missed += usize::from(distance > 1e-9);
         far = far.max(distance);
     });
