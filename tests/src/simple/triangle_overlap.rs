@@ -72,7 +72,7 @@ fn pierces(points: &Points, one: [u32; 3], sides: [i32; 3], two: [u32; 3]) -> bo
         })
 }
 
-/// As [`meet`], for triangles in one plane.
+/// Whether two triangles in one plane have more in common than corners and the edges between.
 fn meet_in_plane(points: &Points, one: [u32; 3], two: [u32; 3]) -> bool {
     let axis = axis_of(points, one);
     let has_corner_of =

@@ -169,7 +169,8 @@ fn each_by<L: Lanes>(
     search.visit::<L>(proof, |search, packet| search.any_of_packet::<L>(proof, packet, &mut enough))
 }
 
-/// As [`each`], among the triangles of some packets.
+/// Gives all hits among the triangles of some packets with `t_min < t < t_max`, in no order, until one is enough; says
+/// whether one was.
 #[inline]
 pub fn each_in(
     octree: &Octree,
@@ -199,7 +200,7 @@ pub fn each_in(
     each_in_by::<ScalarLanes>((), octree, packets, ray, [t_min, t_max], enough)
 }
 
-/// As [`is_any`], among the triangles of some packets.
+/// Says whether a triangle of some packets is hit with `t_min < t < t_max`.
 #[inline]
 pub fn is_any_in(octree: &Octree, packets: &[Packet], ray: &Ray, t_min: f64, t_max: f64) -> bool {
     #[cfg(target_arch = "x86_64")]

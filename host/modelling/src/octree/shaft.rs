@@ -144,7 +144,8 @@ impl Octree {
         Hull::new([from, to]).may_meet(&third)
     }
 
-    /// As [`Octree::each_hit`], for a ray of which all that counts lies in a shaft.
+    /// Gives all hits with `t_min < t < t_max` of a ray of which all that counts lies in a shaft, in no order, until one
+    /// is enough; says whether one was.
     pub fn each_hit_in(
         &self,
         shaft: &Shaft,
@@ -156,7 +157,7 @@ impl Octree {
         !shaft.is_empty() && each_in(self, &shaft.packets, ray, [t_min, t_max], enough)
     }
 
-    /// As [`Octree::occluded`], for a ray of which all that counts lies in a shaft.
+    /// Says whether a ray of which all that counts lies in a shaft hits anything with `t_min < t < t_max`.
     pub fn occluded_in(&self, shaft: &Shaft, ray: &Ray, t_min: f64, t_max: f64) -> bool {
         !shaft.is_empty() && is_any_in(self, &shaft.packets, ray, t_min, t_max)
     }
