@@ -196,7 +196,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     },
     function! {
         portal(corner: CORNER, across: ACROSS, up: UP)
-        "Tells of an opening through which the light of the sky comes into a room, a rectangle whose sides turn counter-clockwise seen from within: rays look for the sky there, and pictures of the room have less noise. It has no light of its own."
+        "Tells of an opening through which light comes into a room, a rectangle whose sides turn counter-clockwise seen from within: rays look for the sky there, radiosity for all light, and pictures of the room have less noise and error. It has no light of its own."
         "portal(#{ corner: [3, 1, -1], across: [0, 0, 2], up: [0, 1.5, 0] });"
         |builder| {
             if builder.scene.portals.len() >= MAX_PORTALS {

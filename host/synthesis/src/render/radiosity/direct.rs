@@ -31,6 +31,8 @@ const FEW_OF_SKY: u32 = 16;
 
 /// Times as many where some are hidden and some are not.
 const MORE: u32 = 4;
+/// Light samples of each light at random points of a leaf.
+const RANDOM_SAMPLES: u32 = 16;
 /// How far points are from the corners and edges of an element, as a part of the way to its middle: on an edge may lie
 /// another surface.
 const INWARDS: f64 = 1e-3;
@@ -43,6 +45,16 @@ pub(super) struct ExternalLight {
     pub(super) direct: Channels,
     /// Exitance from elsewhere.
     pub(super) extra: Channels,
+}
+
+/// What one light sample brings to a point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LightAtPoint {
+    /// W/m², the mean over all wavelength sets.
+    pub(super) irradiance: Channels,
+    /// Towards the light, unit length, and how far it is; infinite for light from infinitely far away.
+    pub(super) towards: DVec3,
+    distance: f64,
 }
 
 /// External light at the three corners of an element; of one that may be divided also at the middles of the edges from
@@ -156,7 +168,6 @@ impl VisibilityTester<'_> {
         ([of_light, of_sky], turn): ([u32; 2], u32),
     ) -> Channels {
         let appearance = &self.world.appearance;
-        let sets = appearance.wavelengths.count();
         let least = appearance.prepared.settings.light.samples;
         let mut sum = Channels::ZERO;
         for (index, (number, source)) in appearance.sources.iter().enumerate() {
@@ -178,44 +189,99 @@ impl VisibilityTester<'_> {
                 if sample == samples && seen > 0 && seen < asked {
                     samples = most;
                 }
-                let Some(light_sample) = source.sample_incident(point, Some(normal), uniform, 0) else { continue };
-                let cosine = light_sample.towards.dot(normal);
-                if cosine <= 0.0 {
-                    continue;
-                }
-                let origin = point + normal * self.clearance;
-                let (ray, t_max) = match light_sample.distance.is_finite() {
-                    false => (Ray { origin, direction: light_sample.towards }, f64::INFINITY),
-                    true => {
-                        let end = if source.is_delta() || source.is_surface() { 1.0 } else { SHORT };
-                        (Ray { origin, direction: point + light_sample.towards * light_sample.distance - origin }, end)
-                    }
-                };
+                let Some(light) = self.sample_light([point, normal], index, uniform, shadows) else { continue };
                 asked += 1;
-                for wavelength_set in 0..sets {
-                    let transmittance = match (shadows, wavelength_set) {
-                        (false, _) => Channels::ONE,
-                        (true, 0) => self.world.transmittance(&ray, t_max, index, None, 0, 0.0).0,
-                        (true, _) if !appearance.has_passable => Channels::ONE,
-                        (true, wavelength_set) => {
-                            self.world.transmittance(&ray, t_max, index, None, wavelength_set, 0.0).0
-                        }
-                    };
-                    if transmittance == Channels::ZERO {
-                        break;
-                    }
-                    seen += u32::from(wavelength_set == 0);
-                    let light_sample = if wavelength_set == 0 {
-                        Some(light_sample)
-                    } else {
-                        source.sample_incident(point, Some(normal), uniform, wavelength_set)
-                    };
-                    let arriving = light_sample.map_or(Channels::ZERO, |beam| beam.irradiance * transmittance * cosine);
-                    part += if arriving.is_finite() { arriving } else { Channels::ZERO };
-                }
+                seen += u32::from(light.irradiance != Channels::ZERO);
+                part += light.irradiance;
             }
             sum += part * f64::from(samples).recip();
         }
-        sum * (sets as f64).recip()
+        sum
+    }
+
+    /// The light of one light sample at a point of an element; none where it asks for no light.
+    ///
+    /// - `index`: of the light among the sources. `uniform`: a point of the unit square.
+    pub(super) fn sample_light(
+        &self,
+        [point, normal]: [DVec3; 2],
+        index: usize,
+        uniform: [f64; 2],
+        shadows: bool,
+    ) -> Option<LightAtPoint> {
+        let appearance = &self.world.appearance;
+        let sets = appearance.wavelengths.count();
+        let source = &appearance.sources[index].1;
+        let light_sample = source.sample_incident(point, Some(normal), uniform, 0)?;
+        let cosine = light_sample.towards.dot(normal);
+        if cosine <= 0.0 {
+            return None;
+        }
+        let origin = point + normal * self.clearance;
+        let (ray, t_max) = match light_sample.distance.is_finite() {
+            false => (Ray { origin, direction: light_sample.towards }, f64::INFINITY),
+            true => {
+                let end = if source.is_delta() || source.is_surface() { 1.0 } else { SHORT };
+                (Ray { origin, direction: point + light_sample.towards * light_sample.distance - origin }, end)
+            }
+        };
+        let (towards, distance) = (light_sample.towards, light_sample.distance);
+        let mut sum = Channels::ZERO;
+        for wavelength_set in 0..sets {
+            let transmittance = match (shadows, wavelength_set) {
+                (false, _) => Channels::ONE,
+                (true, 0) => self.world.transmittance(&ray, t_max, index, None, 0, 0.0).0,
+                (true, _) if !appearance.has_passable => Channels::ONE,
+                (true, wavelength_set) => self.world.transmittance(&ray, t_max, index, None, wavelength_set, 0.0).0,
+            };
+            if transmittance == Channels::ZERO {
+                break;
+            }
+            let light_sample = if wavelength_set == 0 {
+                Some(light_sample)
+            } else {
+                source.sample_incident(point, Some(normal), uniform, wavelength_set)
+            };
+            let arriving = light_sample.map_or(Channels::ZERO, |beam| beam.irradiance * transmittance * cosine);
+            sum += if arriving.is_finite() { arriving } else { Channels::ZERO };
+        }
+        Some(LightAtPoint { irradiance: sum * (sets as f64).recip(), towards, distance })
+    }
+
+    /// The mean irradiance of a leaf by light samples at random points of it, W/m², and the variance of that in all
+    /// lanes together; without what comes through openings.
+    ///
+    /// - `place`: a point with its unit normal, told which one and a point of the unit square.
+    /// - `number`: of the leaf: each has samples of its own.
+    pub(super) fn random_light(
+        &self,
+        place: impl Fn(u32, [f64; 2]) -> [DVec3; 2],
+        number: u64,
+        shadows: bool,
+    ) -> (Channels, f64) {
+        let sequence = SobolSequence::new(self.seed, number);
+        let sources = &self.world.appearance.sources;
+        let (mut sum, mut total, mut squares) = (Channels::ZERO, 0.0, 0.0);
+        for sample in 0..RANDOM_SAMPLES {
+            let place = place(sample, sequence.point(sample, 0));
+            let by = |index: usize| {
+                let uniform = sequence.point(sample, 1 + sources[index].0 as u64);
+                let crosses = |light: &LightAtPoint| {
+                    let ray = Ray { origin: place[0], direction: light.towards };
+                    self.openings.are_crossed(&ray, light.distance)
+                };
+                let light =
+                    self.sample_light(place, index, uniform, shadows).filter(|light| !shadows || !crosses(light));
+                light.map_or(Channels::ZERO, |light| light.irradiance)
+            };
+            let light = (0..sources.len()).map(by).fold(Channels::ZERO, |sum, light| sum + light);
+            let of_lanes: f64 = light.0.iter().sum();
+            sum += light;
+            total += of_lanes;
+            squares += of_lanes * of_lanes;
+        }
+        let count = f64::from(RANDOM_SAMPLES);
+        let mean = total / count;
+        (sum * count.recip(), (squares / count - mean * mean).max(0.0) / (count - 1.0))
     }
 }

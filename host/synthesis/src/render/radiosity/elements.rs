@@ -1,7 +1,11 @@
 //! Elements with their reflectance and external light.
 
+use super::bound::RefinementBound;
 use super::direct::{CornerLight, Exitance, ExternalLight, bend, of_parts};
-use super::hierarchy::{Hierarchy, HierarchyNode, RadiosityPatch, normal_and_area};
+use super::hierarchy::{Hierarchy, HierarchyNode, NONE, RadiosityPatch, normal_and_area};
+use super::regions::{self, FluxEstimate};
+use super::side_elements::SideElements;
+use super::through_openings::LightThroughOpening;
 use super::visibility::VisibilityTester;
 use crate::color::Channels;
 use crate::render::world::mean_diffuse_albedo;
@@ -10,6 +14,8 @@ use serde::{Deserialize, Serialize};
 
 /// Elements at the most.
 const MOST_ELEMENTS: usize = 2_000_000;
+/// Light through openings is more than corners tell if it is by so many standard errors.
+const SIGNIFICANT: f64 = 3.0;
 
 /// Nodes with what is known of them.
 pub(super) struct Elements<'a> {
@@ -21,11 +27,14 @@ pub(super) struct Elements<'a> {
     /// Radiosity from elsewhere, and all that a node sends, W/m².
     pub(super) extra: Vec<Channels>,
     pub(super) sent: Vec<Channels>,
+    /// The least irradiance of the leaves of each node that are not dark, in its brightest lane, W/m².
+    pub(super) least: Vec<f64>,
     /// External light at places of each node.
     pub(super) corner_light: Vec<CornerLight>,
     /// Elements are divided that are twice as long or longer.
     finest: f64,
     exitance: Option<Exitance<'a>>,
+    through: &'a [LightThroughOpening],
     shadows: bool,
 }
 
@@ -40,11 +49,13 @@ struct Known {
 impl<'a> Elements<'a> {
     /// Finds the external light of all patches.
     ///
+    /// - `through`: light that comes through openings.
     /// - `finest`: a length; elements are divided that are twice as long or longer.
     pub(super) fn new(
         hierarchy: Hierarchy,
         visibility: &VisibilityTester<'_>,
         exitance: Option<Exitance<'a>>,
+        through: &'a [LightThroughOpening],
         shadows: bool,
         finest: f64,
     ) -> Elements<'a> {
@@ -55,9 +66,11 @@ impl<'a> Elements<'a> {
             indirect: Vec::new(),
             extra: Vec::new(),
             sent: Vec::new(),
+            least: Vec::new(),
             corner_light: Vec::new(),
             finest,
             exitance,
+            through,
             shadows,
         };
         elements.evaluate(visibility, 0, &[]);
@@ -74,8 +87,9 @@ impl<'a> Elements<'a> {
                 self.hierarchy.divide(node);
                 let sliver = self.hierarchy.nodes[node as usize].sliver();
                 known.extend(of_parts(&self.corner_light[node as usize], sliver));
-                let indirect = self.indirect[node as usize];
+                let (indirect, least) = (self.indirect[node as usize], self.least[node as usize]);
                 self.indirect.resize(self.hierarchy.nodes.len(), indirect);
+                self.least.resize(self.hierarchy.nodes.len(), least);
             }
         }
         self.evaluate(visibility, first, &known);
@@ -86,15 +100,29 @@ impl<'a> Elements<'a> {
         node.longest_edge() >= 2.0 * self.finest
     }
 
-    /// Divides leaves over which external light is farther from linear than a bound, and those that are larger than a
-    /// length.
-    pub(super) fn divide_where_light_varies(&mut self, visibility: &VisibilityTester<'_>, bound: f64, coarsest: f64) {
+    /// Divides leaves over which external light is farther from linear than so many bounds, those on which more comes
+    /// through openings than their corners tell, and those that are larger than a length.
+    pub(super) fn divide_where_light_varies(
+        &mut self,
+        visibility: &VisibilityTester<'_>,
+        bound: RefinementBound,
+        times: f64,
+        coarsest: f64,
+    ) {
         let mut from = 0;
         loop {
             let nodes = &self.hierarchy.nodes;
+            let through = self.flux_through_openings(visibility);
             let varies = |node: &usize| {
                 let is_divisible = nodes[*node].is_leaf() && !nodes[*node].is_dark && self.may_divide(&nodes[*node]);
-                is_divisible && (nodes[*node].longest_edge() > coarsest || bend(&self.corner_light[*node]) > bound)
+                let bound = || times * bound.of(self.least[*node]);
+                let missed = || {
+                    let (flux, variance) = through[*node];
+                    let excess = flux.max() - self.direct[*node].max() * nodes[*node].area;
+                    excess > bound() * nodes[*node].area && excess > SIGNIFICANT * variance.sqrt()
+                };
+                is_divisible
+                    && (nodes[*node].longest_edge() > coarsest || bend(&self.corner_light[*node]) > bound() || missed())
             };
             let divided: Vec<u32> = (from..nodes.len()).filter(varies).map(|node| node as u32).collect();
             from = nodes.len();
@@ -117,6 +145,7 @@ impl<'a> Elements<'a> {
         };
         let known: Vec<Known> = visibility.map(nodes, of);
         self.indirect.resize(self.hierarchy.nodes.len(), Channels::ZERO);
+        self.least.resize(self.hierarchy.nodes.len(), 0.0);
         for (Known { reflectance, mean: ExternalLight { direct, extra }, corner_light: around }, place) in
             known.into_iter().zip(first..)
         {
@@ -173,16 +202,80 @@ impl<'a> Elements<'a> {
         Known { reflectance: reflected * f64::recip(all), mean, corner_light: CornerLight::default() }
     }
 
+    /// Flux of lights that comes through openings to each node that is a leaf, W, and the variance of that in all lanes
+    /// together.
+    fn flux_through_openings(&self, visibility: &VisibilityTester<'_>) -> Vec<(Channels, f64)> {
+        let mut of = vec![(Channels::ZERO, 0.0); self.hierarchy.nodes.len()];
+        let elements = SideElements::new(visibility, &self.hierarchy);
+        for LightThroughOpening { at, flux } in self.through {
+            let node = elements.find(*at);
+            if node != NONE {
+                let (sum, squares) = &mut of[node as usize];
+                *sum += *flux;
+                *squares += total(*flux).powi(2);
+            }
+        }
+        of
+    }
+
+    /// Corrects the light of lights by rays, to random points of all leaves and through openings: regions then receive
+    /// of lights what these tell.
+    ///
+    /// Light samples at the corners of elements are the same for all: light differs smoothly, but the errors are of one
+    /// sign over all of a room, and what comes through small openings is between them.
+    pub(super) fn correct_direct(&mut self, visibility: &VisibilityTester<'_>, leaves: &[u32]) {
+        let hierarchy = &self.hierarchy;
+        let light = |number: usize, leaf: &u32| {
+            // Beyond the numbers of what looks around.
+            let own = (1 << 41) + number as u64;
+            visibility.random_light(|index, uniform| hierarchy.place(*leaf, index, uniform), own, self.shadows)
+        };
+        let random: Vec<(Channels, f64)> = visibility.map(leaves, light);
+        let through = self.flux_through_openings(visibility);
+        let area = |leaf: u32| hierarchy.nodes[leaf as usize].area;
+        let by_rays: Vec<Channels> = leaves
+            .iter()
+            .zip(&random)
+            .map(|(leaf, (irradiance, _))| *irradiance * area(*leaf) + through[*leaf as usize].0)
+            .collect();
+        // What no corner sees is not there to be multiplied.
+        for (leaf, flux) in leaves.iter().map(|leaf| *leaf as usize).zip(&by_rays) {
+            if self.direct[leaf] == Channels::ZERO {
+                self.direct[leaf] = *flux * area(leaf as u32).recip();
+                self.corner_light[leaf].iter_mut().for_each(|light| light.direct = self.direct[leaf]);
+            }
+        }
+        let estimate = |((leaf, flux), (_, variance)): ((&u32, &Channels), &(Channels, f64))| FluxEstimate {
+            by_elements: area(*leaf) * total(self.direct[*leaf as usize]),
+            by_rays: total(*flux),
+            variance: area(*leaf).powi(2) * variance + through[*leaf as usize].1,
+        };
+        let estimates: Vec<FluxEstimate> = leaves.iter().zip(&by_rays).zip(&random).map(estimate).collect();
+        for (leaf, factor) in leaves.iter().zip(regions::factors(hierarchy, leaves, &estimates)) {
+            self.direct[*leaf as usize] *= factor;
+            self.corner_light[*leaf as usize].iter_mut().for_each(|light| light.direct *= factor);
+        }
+        self.pull();
+    }
+
     /// Brings what is known of leaves up to the root.
     pub(super) fn pull(&mut self) {
-        let Elements { hierarchy, reflectance, direct, indirect, extra, sent, .. } = self;
+        let Elements { hierarchy, reflectance, direct, indirect, extra, sent, least, .. } = self;
         for leaf in hierarchy.leaves().into_iter().map(|leaf| leaf as usize) {
-            sent[leaf] = extra[leaf] + reflectance[leaf] * (direct[leaf] + indirect[leaf]);
+            let irradiance = direct[leaf] + indirect[leaf];
+            sent[leaf] = extra[leaf] + reflectance[leaf] * irradiance;
+            least[leaf] = irradiance.max();
         }
+        hierarchy.pull_least(least);
         for values in [direct, indirect, extra, sent] {
             hierarchy.pull(values);
         }
     }
+}
+
+/// The sum over all lanes.
+fn total(channels: Channels) -> f64 {
+    channels.0.iter().sum()
 }
 
 /// The part of light that an element reflects diffusely, in the mean.

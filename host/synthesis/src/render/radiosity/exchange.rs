@@ -32,12 +32,40 @@ const NEIGHBOURING_RAYS: u64 = 2048;
 pub(super) struct LeafVisibility {
     /// How many directions are traced from each leaf.
     pub(super) directions: u32,
-    /// For each leaf, the part of them in which it sees something that exchanges light.
+    /// What rays in these directions hit, leaf by leaf.
+    pub(super) hits: Vec<LeafHit>,
+    /// For each leaf, the part of all light in these directions that comes from something that exchanges light.
     pub(super) seen_part: Vec<f64>,
     /// For each leaf, the part of all that it sees from its middle that exchanges light.
     pub(super) row: Vec<f64>,
     /// Whether no light can come to it.
     pub(super) is_dark: Vec<bool>,
+    /// Leaves that see each other through openings, by their numbers.
+    pub(super) through_openings: Vec<ExchangeLink>,
+}
+
+impl LeafVisibility {
+    /// What the rays of a leaf hit.
+    pub(super) fn hits_of(&self, leaf: usize) -> &[LeafHit] {
+        let directions = self.directions as usize;
+        &self.hits[leaf * directions..(leaf + 1) * directions]
+    }
+}
+
+/// The leaf that a ray from a leaf hits.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct LeafHit {
+    /// Which one of all leaves; [`NONE`] where light escapes.
+    pub(super) leaf: u32,
+    /// The part of light that is let through on the way, 0..=1.
+    pub(super) transmittance: f32,
+    /// Whether it crosses an opening.
+    pub(super) through_opening: bool,
+}
+
+impl LeafHit {
+    /// Light escapes.
+    pub(super) const NOTHING: LeafHit = LeafHit { leaf: NONE, transmittance: 0.0, through_opening: false };
 }
 
 /// Two nodes that exchange light.

@@ -7,6 +7,7 @@
 //! no light is lost, what is missing is filled up: in hollows by the neighbourhood, which links pass over, elsewhere in
 //! proportion. Light that is the same everywhere stays so.
 
+use super::bound::RefinementBound;
 use super::corners::{ElementCorner, ElementCorners};
 use super::form_factor::{from_point, kernel};
 use super::hierarchy::{Hierarchy, NONE, POINTS};
@@ -25,8 +26,10 @@ const UNEVEN: f64 = 0.1;
 pub(super) struct Gatherer<'g, 'a> {
     pub(super) visibility: &'g VisibilityTester<'a>,
     pub(super) hierarchy: &'g Hierarchy,
-    /// The error of the light of a link, W/m².
-    pub(super) error: f64,
+    /// The bound of the error of the light of a link.
+    pub(super) bound: RefinementBound,
+    /// The least irradiance of the leaves of each node, W/m².
+    pub(super) least: &'g [f64],
 }
 
 /// Corner views: what each corner of leaves sees of nodes.
@@ -81,6 +84,19 @@ impl CornerViews<'_> {
         (0..self.of.len()).into_par_iter().map(of).collect()
     }
 
+    /// The mean at each corner of what is known of its leaves.
+    pub(super) fn at_corners(&self, of_leaves: &[Channels]) -> Vec<Channels> {
+        let mut sums = vec![(Channels::ZERO, 0.0); self.of.len()];
+        for (corners, value) in self.corners.of.iter().zip(of_leaves) {
+            for corner in corners {
+                let (sum, count) = &mut sums[*corner as usize];
+                *sum += *value;
+                *count += 1.0;
+            }
+        }
+        sums.into_iter().map(|(sum, count)| sum * f64::recip(count)).collect()
+    }
+
     /// The mean over each leaf of what is known at its corners.
     pub(super) fn means(&self, values: &[Channels]) -> Vec<Channels> {
         let mean = |corners: &[u32; 3]| {
@@ -110,6 +126,7 @@ impl<'g> Gatherer<'g, '_> {
         let apart = self.apart(sent);
         let of = |number: usize, corner: &ElementCorner| {
             let from = corner.view();
+            let error = self.bound.of(self.least[corner.leaf as usize]);
             let (mut found, mut pending) = (Vec::new(), Vec::new());
             let mut at = corner.leaf;
             while at != NONE {
@@ -117,7 +134,7 @@ impl<'g> Gatherer<'g, '_> {
                 while let Some((other, is_clear)) = pending.pop() {
                     let partner = &nodes[other as usize];
                     let factor = self.factor(from, other);
-                    let is_uneven = || factor * apart[other as usize] > UNEVEN * self.error;
+                    let is_uneven = || factor * apart[other as usize] > UNEVEN * error;
                     // Points do not stand for a node that reaches below the horizon.
                     let sinks = || {
                         let points = self.hierarchy.points(other);
@@ -131,7 +148,7 @@ impl<'g> Gatherer<'g, '_> {
                     if factor <= 0.0 {
                         continue;
                     }
-                    let is_little = factor * sent[other as usize].max() < LITTLE * self.error;
+                    let is_little = factor * sent[other as usize].max() < LITTLE * error;
                     let seen = if is_clear { 1.0 } else { self.visible_part(number as u32, from, other, is_little) };
                     if seen > 0.0 {
                         found.push((other, (factor * seen) as f32));

@@ -344,6 +344,15 @@ impl Hierarchy {
             values[place] = sum * node.area.recip();
         }
     }
+
+    /// The least value of the leaves of each node that are not dark.
+    pub(super) fn pull_least(&self, values: &mut [f64]) {
+        let is_inner = |node: &HierarchyNode| !node.is_leaf() && !node.is_dark;
+        for place in (0..self.nodes.len()).rev().filter(|place| is_inner(&self.nodes[*place])) {
+            let lit = self.nodes[place].children().filter(|child| !self.nodes[*child].is_dark);
+            values[place] = lit.map(|child| values[child]).fold(f64::INFINITY, f64::min);
+        }
+    }
 }
 
 /// Orders the members so that the two halves are well apart.

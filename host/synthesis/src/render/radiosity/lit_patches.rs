@@ -4,8 +4,10 @@ use super::contact::Contacts;
 use super::direct::Exitance;
 use super::disjoint_sets::DisjointSets;
 use super::elements::Elements;
-use super::exchange::LeafVisibility;
+use super::exchange::{ExchangeLink, LeafHit, LeafVisibility};
 use super::hierarchy::{Hierarchy, HierarchyNode, NONE, RadiosityPatch};
+use super::side_elements::SideElements;
+use super::through_openings::{LightThroughOpening, SeenThroughOpening};
 use super::visibility::{RayTarget, VisibilityTester};
 use glam::DVec3;
 
@@ -16,18 +18,20 @@ const MOST_DIRECTIONS: u32 = 1024;
 /// The hierarchy of the patches to which light comes, straight or from others; elements of them to which none comes are
 /// dark.
 ///
+/// - `through`: light that comes through openings.
 /// - `finest`, `coarsest`: lengths; patches are tested in parts of the second.
 pub(super) fn lit_hierarchy(
     visibility: &VisibilityTester<'_>,
     patches: Vec<RadiosityPatch>,
     contacts: &Contacts,
     exitance: Option<Exitance<'_>>,
+    through: &[LightThroughOpening],
     shadows: bool,
     [finest, coarsest]: [f64; 2],
 ) -> Hierarchy {
     let mut all = Hierarchy::new(patches, finest);
     all.cut(contacts, finest);
-    let is_dark = dark(visibility, &all, exitance, shadows, coarsest);
+    let is_dark = dark(visibility, &all, exitance, through, shadows, coarsest);
     all.darken(&is_dark);
     let is_lit = |patch: usize| !all.nodes[all.node_of[patch] as usize].is_dark;
     if (0..all.patches.len()).all(is_lit) {
@@ -54,10 +58,16 @@ fn dark(
     visibility: &VisibilityTester<'_>,
     hierarchy: &Hierarchy,
     exitance: Option<Exitance<'_>>,
+    through: &[LightThroughOpening],
     shadows: bool,
     coarsest: f64,
 ) -> Vec<bool> {
     let nodes = &hierarchy.nodes;
+    let elements_of_sides = SideElements::new(visibility, hierarchy);
+    let mut is_lit_through_opening = vec![false; nodes.len()];
+    for node in through.iter().map(|light| elements_of_sides.find(light.at)).filter(|node| *node != NONE) {
+        is_lit_through_opening[node as usize] = true;
+    }
     let is_lit = |number: u32| {
         let node = &nodes[number as usize];
         let sends = |patch: u32, point: DVec3| {
@@ -65,8 +75,8 @@ fn dark(
             exitance.is_some_and(|of| of(patch.triangle, patch.outside, point).max() > 0.0)
         };
         let takes = |place: [DVec3; 2]| visibility.light_at(place, shadows).max() > 0.0;
-        if !node.is_leaf() {
-            false
+        if !node.is_leaf() || is_lit_through_opening[number as usize] {
+            node.is_leaf()
         } else if node.is_cluster() {
             let middle = |patch: u32| hierarchy.patches[patch as usize].middle();
             let mut members = hierarchy.members(number).iter();
@@ -75,7 +85,6 @@ fn dark(
             is_any_lit(node.corners, coarsest, &|point| sends(node.patch, point) || takes([point, node.normal]))
         }
     };
-    let patch_of = numbers(visibility, &hierarchy.patches);
     let looked = |number: usize, node: &HierarchyNode| {
         let number = number as u32;
         if !node.is_leaf() {
@@ -83,7 +92,7 @@ fn dark(
         }
         let parts = (node.area / (coarsest * coarsest)).ceil().max(1.0);
         let count = (f64::from(DIRECTIONS) * parts).min(f64::from(MOST_DIRECTIONS)) as u32;
-        let of = |seen: RayTarget| element(hierarchy, &patch_of, seen);
+        let of = |seen: RayTarget| elements_of_sides.find(seen);
         let seen = visibility.trace_hemisphere(
             |index, uniform| hierarchy.place(number, index, uniform),
             u64::from(number),
@@ -114,24 +123,6 @@ fn is_any_lit(corners: [DVec3; 3], coarsest: f64, at: &impl Fn(DVec3) -> bool) -
         && [[a, ab, ca], [ab, b, bc], [ca, bc, c], [bc, ca, ab]].iter().any(|part| is_any_lit(*part, coarsest, at))
 }
 
-/// The patch of each side of each triangle, outer and inner.
-fn numbers(visibility: &VisibilityTester<'_>, patches: &[RadiosityPatch]) -> Vec<[u32; 2]> {
-    let mut numbers = vec![[NONE; 2]; visibility.world.appearance.prepared.triangles.len()];
-    for (number, patch) in (0..).zip(patches) {
-        numbers[patch.triangle as usize][usize::from(!patch.outside)] = number;
-    }
-    numbers
-}
-
-/// The element that is seen.
-fn element(hierarchy: &Hierarchy, patch_of: &[[u32; 2]], seen: RayTarget) -> u32 {
-    let RayTarget::Side { triangle, outside, weights } = seen else { return NONE };
-    match patch_of[triangle as usize][usize::from(!outside)] {
-        NONE => NONE,
-        patch => hierarchy.leaf_at(patch, hierarchy.patches[patch as usize].weights(weights)).0,
-    }
-}
-
 /// Leaf visibility, by rays.
 ///
 /// - `row`: for each leaf, the part of all that it sees that exchanges light.
@@ -144,30 +135,44 @@ pub(super) fn leaf_visibility(
 ) -> LeafVisibility {
     let directions = directions.max(1);
     let hierarchy: &Hierarchy = &elements.hierarchy;
-    let patch_of = numbers(visibility, &hierarchy.patches);
+    let elements_of_sides = SideElements::new(visibility, hierarchy);
     let mut place = vec![NONE; hierarchy.nodes.len()];
     (0..).zip(leaves).for_each(|(number, leaf)| place[*leaf as usize] = number);
     let looked = |number: usize, leaf: &u32| {
         // Beyond the numbers of all patches.
         let own = (1 << 40) + number as u64;
-        let of = |seen: RayTarget| match element(hierarchy, &patch_of, seen) {
-            NONE => NONE,
-            leaf => place[leaf as usize],
+        let of = |seen: RayTarget| match (elements_of_sides.find(seen), seen) {
+            (NONE, _) | (_, RayTarget::Nothing | RayTarget::Lamp) => LeafHit::NOTHING,
+            (leaf, RayTarget::Side { transmittance, through_opening, .. }) => {
+                LeafHit { leaf: place[leaf as usize], transmittance: transmittance as f32, through_opening }
+            }
         };
         visibility
             .trace_hemisphere(|index, uniform| hierarchy.place(*leaf, index, uniform), own, directions)
             .into_iter()
             .map(of)
-            .collect::<Vec<u32>>()
+            .collect::<Vec<LeafHit>>()
     };
-    let seen: Vec<Vec<u32>> = visibility.map(leaves, looked);
+    let seen: Vec<Vec<LeafHit>> = visibility.map(leaves, looked);
     let mut joined = DisjointSets::new(leaves.len());
     for (number, seen) in (0..).zip(&seen) {
-        seen.iter().filter(|other| **other != NONE).for_each(|other| joined.join(number, *other));
+        seen.iter().filter(|hit| hit.leaf != NONE).for_each(|hit| joined.join(number, hit.leaf));
     }
     let sends = |leaf: u32| (elements.direct[leaf as usize] + elements.extra[leaf as usize]).max() > 0.0;
     let alight = joined.joined_to_lit(|some| some.iter().map(|number| sends(leaves[*number as usize])).collect());
-    let part = |seen: &Vec<u32>| seen.iter().filter(|other| **other != NONE).count() as f64 / f64::from(directions);
+    let part = |seen: &Vec<LeafHit>| {
+        let hits = seen.iter().filter(|hit| hit.leaf != NONE);
+        hits.map(|hit| f64::from(hit.transmittance)).sum::<f64>() / f64::from(directions)
+    };
+    let through = visibility.seen_through_openings();
+    let link = |SeenThroughOpening { sides, exchange }: SeenThroughOpening| {
+        let [a, b] = sides.map(|side| match elements_of_sides.find(side) {
+            NONE => NONE,
+            leaf => place[leaf as usize],
+        });
+        (a != NONE && b != NONE).then_some(ExchangeLink { a, b, exchange })
+    };
+    let through_openings = through.into_iter().filter_map(link).collect();
     let (part, is_dark) = (seen.iter().map(part).collect(), alight.iter().map(|alight| !alight).collect());
-    LeafVisibility { directions, seen_part: part, row, is_dark }
+    LeafVisibility { directions, hits: seen.concat(), seen_part: part, row, is_dark, through_openings }
 }

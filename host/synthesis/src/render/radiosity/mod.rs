@@ -8,6 +8,10 @@
 //! where nothing escapes, they add up to 1, and stay symmetric. With the light that is then solved for, what comes to
 //! the corners of elements is gathered once more, each by its own view, a few times.
 //!
+//! Many small errors of one sign may add up, where elements see little of each other or of lights. So rays tell what
+//! parts of the scene receive, and what elements have is multiplied to agree with that. Through openings that the scene
+//! tells of, lights and surfaces are looked for from points of the opening.
+//!
 //! What light cannot come to is left out first: rays join patches that see each other, and only what is joined to a lit
 //! one takes part. A closed dark room stays dark to the last bit.
 //!
@@ -16,24 +20,30 @@
 //! the time. Of spectra, eight bands are known, each 59 nm wide: within a band, light of other surfaces has the same
 //! strength everywhere.
 
+mod bound;
 mod contact;
-mod corners;
+mod disjoint_sets;
+mod openings;
+mod visibility;
 mod direct;
+mod through_openings;
+mod side_elements;
+mod regions;
 mod elements;
+mod corners;
 mod exchange;
+mod correction;
+mod refinement;
+mod gather;
 mod faces;
 mod form_factor;
-mod gather;
 mod hierarchy;
-mod refinement;
-mod disjoint_sets;
 mod report;
-mod visibility;
 mod solver;
 mod surface;
+mod lit_patches;
 #[cfg(test)]
 mod tests;
-mod lit_patches;
 
 pub use direct::Exitance;
 pub use report::RadiosityReport;
@@ -46,13 +56,15 @@ use crate::color::Channels;
 use crate::plan::{Plan, Stage};
 use crate::scene::{Prepared, RadiositySettings};
 use crate::stages::stage;
+use bound::RefinementBound;
 use contact::Contacts;
 use corners::ElementCorners;
+use correction::{LeafLight, RegionCorrection};
 use elements::Elements;
 use exchange::{Exchange, ExchangeLink, LeafVisibility};
 use gather::{CornerViews, Gatherer};
 use hierarchy::{RadiosityPatch, normal_and_area};
-use refinement::{AssessedLink, RefinementBound, refine};
+use refinement::{AssessedLink, refine};
 use solver::solve;
 use surface::SurfaceLight;
 use visibility::VisibilityTester;
@@ -65,6 +77,9 @@ const PASSES: usize = 4;
 const COARSEST: f64 = 16.0;
 /// The light of lights may be so many errors from linear over an element.
 const BENT: f64 = 4.0;
+
+/// What receives light counts as no dimmer than this part of the mean irradiance, where errors are bounded by it.
+const DIM: f64 = 1e-4;
 
 /// The light of a scene, for all views.
 #[derive(Clone, Debug)]
@@ -103,25 +118,34 @@ impl Radiosity {
             plan.includes_object(prepared.object_of[t as usize] as usize)
         });
         let patches = patches(prepared, plan, &visibility);
-        let hierarchy = lit_patches::lit_hierarchy(&visibility, patches, &contacts, exitance, shadows, lengths);
+        let through = visibility.light_through_openings(shadows);
+        let hierarchy =
+            lit_patches::lit_hierarchy(&visibility, patches, &contacts, exitance, &through, shadows, lengths);
         if hierarchy.nodes.is_empty() {
             return Ok(Radiosity { light: SurfaceLight::dark(prepared), report: RadiosityReport::default() });
         }
-        let mut elements = Elements::new(hierarchy, &visibility, exitance, shadows, finest);
-        let mean = elements.mean_irradiance();
-        elements.divide_where_light_varies(&visibility, BENT * settings.error * mean, lengths[1]);
+        let mut elements = Elements::new(hierarchy, &visibility, exitance, &through, shadows, finest);
+        let bound = |mean: f64, dimmest: f64| RefinementBound { error: settings.error, mean, dimmest, finest };
+        elements.divide_where_light_varies(&visibility, bound(elements.mean_irradiance(), 1.0), BENT, lengths[1]);
         let mut links: Vec<AssessedLink> = Vec::new();
         let mut report = RadiosityReport { patches: elements.hierarchy.patches.len(), ..RadiosityReport::default() };
         let mut leaves = Vec::new();
         let mut at_corners = None;
         for round in 0..ROUNDS {
-            let bound = RefinementBound { irradiance: settings.error * elements.mean_irradiance(), finest };
+            // What comes from other elements is not known at first: nothing is too dark then.
+            let bound = bound(elements.mean_irradiance(), if round == 0 { 1.0 } else { DIM });
+            if round > 0 {
+                elements.divide_where_light_varies(&visibility, bound, BENT, lengths[1]);
+            }
             refine(&visibility, &mut elements, &mut links, bound, &stopped);
             stage.progress((2 * round + 1) as f64);
             let is_last = round + 1 == ROUNDS || stopped();
             leaves = elements.hierarchy.leaves();
+            if is_last {
+                elements.correct_direct(&visibility, &leaves);
+            }
             let gatherer =
-                Gatherer { visibility: &visibility, hierarchy: &elements.hierarchy, error: bound.irradiance };
+                Gatherer { visibility: &visibility, hierarchy: &elements.hierarchy, bound, least: &elements.least };
             let corners = is_last.then(|| ElementCorners::new(prepared, &elements.hierarchy, &leaves));
             let views = corners.as_ref().map(|corners| gatherer.views(&links, corners, &elements.sent));
             let leaf_visibility = views.as_ref().map(|views| {
@@ -224,6 +248,12 @@ fn light(
                 .filter(|(_, dark)| **dark)
                 .for_each(|(light, _)| *light = Channels::ZERO);
         }
+        let light = LeafLight { first: &first, reflectance: &reflectance, irradiance: &irradiance };
+        let correction = RegionCorrection::new(&elements.hierarchy, &leaves, leaf_visibility, &light);
+        (report.correction, report.standard_error) = (correction.change, correction.standard_error);
+        let factors = views.at_corners(&correction.factor);
+        at_corners.iter_mut().zip(&factors).for_each(|(light, factor)| *light *= *factor);
+        irradiance = views.means(&at_corners);
     }
     Ok((irradiance, at_corners))
 }

@@ -5,6 +5,7 @@
 //! Hanrahan, Salzman and Aupperle 1991, with the radiosity in the bound; clusters as Smits, Arvo and Greenberg 1994,
 //! here of patches that face alike as Willmott, Heckbert and Garland 1999.
 
+use super::bound::RefinementBound;
 use super::elements::Elements;
 use super::exchange::ExchangeLink;
 use super::form_factor::{self, kernel};
@@ -48,15 +49,6 @@ enum RefinementStep {
     Within(u32),
 }
 
-/// The bounds of refinement: how far links are divided.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct RefinementBound {
-    /// The greatest error of an irradiance by one link, W/m².
-    pub(super) irradiance: f64,
-    /// No edge is divided that is shorter than twice this.
-    pub(super) finest: f64,
-}
-
 /// Assesses all links again and divides those whose error bound is too large; at first, the root with itself.
 pub(super) fn refine(
     visibility: &VisibilityTester<'_>,
@@ -71,7 +63,7 @@ pub(super) fn refine(
     }
     links.retain(|assessed| {
         let ExchangeLink { a, b, .. } = assessed.link;
-        let is_sure = uncertainty(elements, a, b, assessed.error_bound) <= bound.irradiance;
+        let is_sure = is_within(elements, bound, [a, b], assessed.error_bound);
         if !is_sure {
             pending.push(([a, b], assessed.is_clear));
         }
@@ -80,7 +72,7 @@ pub(super) fn refine(
     while !pending.is_empty() {
         let may_divide = elements.hierarchy.nodes.len() < MOST_NODES && !stopped();
         let bound =
-            if may_divide { bound } else { RefinementBound { finest: f64::INFINITY, irradiance: f64::INFINITY } };
+            if may_divide { bound } else { RefinementBound { finest: f64::INFINITY, mean: f64::INFINITY, ..bound } };
         let decide = |_, (pair, is_clear): &([u32; 2], bool)| {
             RefinementOracle { visibility, elements, bound }.decide(*pair, *is_clear)
         };
@@ -113,11 +105,13 @@ pub(super) fn refine(
     }
 }
 
-/// The error of the irradiance of either node by an error of their exchange, W/m².
-fn uncertainty(elements: &Elements<'_>, a: u32, b: u32, exchange: f64) -> f64 {
-    let side =
-        |to: u32, from: u32| elements.sent[from as usize].max() * exchange / elements.hierarchy.nodes[to as usize].area;
-    side(a, b).max(side(b, a))
+/// Whether the error of the irradiance of both nodes by an error of their exchange is within the bound.
+fn is_within(elements: &Elements<'_>, bound: RefinementBound, [a, b]: [u32; 2], exchange: f64) -> bool {
+    let side = |to: u32, from: u32| {
+        let error = elements.sent[from as usize].max() * exchange / elements.hierarchy.nodes[to as usize].area;
+        error <= bound.of(elements.least[to as usize])
+    };
+    side(a, b) && side(b, a)
 }
 
 struct RefinementOracle<'j, 'a> {
@@ -132,7 +126,7 @@ impl RefinementOracle<'_, '_> {
     }
 
     fn is_fine(&self, a: u32, b: u32, exchange: f64) -> bool {
-        uncertainty(self.elements, a, b, exchange) <= self.bound.irradiance
+        is_within(self.elements, self.bound, [a, b], exchange)
     }
 
     fn decide(&self, [a, b]: [u32; 2], is_clear: bool) -> RefinementStep {

@@ -17,6 +17,10 @@ pub struct RadiosityReport {
     pub solver_error: f64,
     /// The part of all light exchanged that elements keep to themselves because form factors did not add up.
     pub unbalanced: f64,
+    /// How far rays changed what large regions receive of each other: the sum of all changes, as a part of all flux.
+    pub correction: f64,
+    /// The standard error of what all elements receive of each other, as rays tell it, as a part of that.
+    pub standard_error: f64,
     /// Flux that comes to elements straight from lights, and that they send from elsewhere: W, all bands together.
     pub arrived: f64,
     /// Flux that they absorb.
@@ -31,13 +35,18 @@ pub struct RadiosityReport {
 
 impl RadiosityReport {
     /// The report in words, a line each.
-    pub fn lines(&self) -> [String; 2] {
+    pub fn lines(&self) -> [String; 3] {
         let RadiosityReport { patches, elements, links, steps, solver_error, unbalanced, seconds, .. } = *self;
-        let RadiosityReport { arrived, absorbed, escaped, left, .. } = *self;
+        let RadiosityReport { correction, standard_error, arrived, absorbed, escaped, left, .. } = *self;
         [
             format!(
                 "{elements} elements of {patches} patches, {links} links, {steps} steps of the solver in {seconds:.3} s; \
                  error of the solver at most {solver_error:.1e}, form factors out of balance by {unbalanced:.1e}"
+            ),
+            format!(
+                "regions corrected by rays by {:.2} %, standard error of all light of others {:.2} %",
+                100.0 * correction,
+                100.0 * standard_error
             ),
             format!("flux {arrived:.6}: {absorbed:.6} absorbed, {escaped:.6} escaped, {left:.1e} left"),
         ]

@@ -1,6 +1,7 @@
 //! Visibility of elements by rays: whether something is between two points, and what is hit in all directions.
 
 use super::hierarchy::{HierarchyNode, RadiosityPatch};
+use super::openings::Openings;
 use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::Ray;
 use crate::numeric::sampling::cosine_hemisphere;
@@ -8,11 +9,13 @@ use crate::numeric::sequence::SobolSequence;
 use crate::render::Memo;
 use crate::render::world::World;
 use glam::DVec3;
-use serde::Serialize;
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 
 /// Rounding errors, in units of the last place of the largest coordinate, that rays keep clear of.
 const CLEARANCE_ULPS: f64 = 64.0;
+/// Length of a ray to what it hits, over the distance, so that it does not hit it.
+const SHORT: f64 = 1.0 - 1e-7;
 /// Surfaces that let light straight through and that a ray passes, at the most.
 const MOST_PASSABLE: usize = 64;
 
@@ -20,20 +23,22 @@ const MOST_PASSABLE: usize = 64;
 pub(super) struct VisibilityTester<'a> {
     pub(super) world: &'a World<'a>,
     pub(super) clearance: f64,
-    seed: u64,
+    pub(super) seed: u64,
+    pub(super) openings: Openings,
     /// The memo in which results are kept, if there is one.
     memo: Option<&'a Memo>,
 }
 
 /// The target of a ray from an element.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) enum RayTarget {
     /// No target: light escapes.
     Nothing,
     /// A lamp that is no object.
     Lamp,
-    /// A side of a triangle, and the weights of its corners, as the scene orders them.
-    Side { triangle: u32, outside: bool, weights: [f64; 3] },
+    /// A side of a triangle, the weights of its corners, as the scene orders them, how far it is in lengths of the
+    /// ray's direction, the part of light that is let through on the way, 0..=1, and whether an opening is crossed there.
+    Side { triangle: u32, outside: bool, weights: [f64; 3], t: f64, transmittance: f64, through_opening: bool },
 }
 
 impl<'a> VisibilityTester<'a> {
@@ -41,7 +46,8 @@ impl<'a> VisibilityTester<'a> {
         let prepared = world.appearance.prepared;
         let largest = prepared.vertices.iter().fold(0.0f64, |most, vertex| most.max(vertex.abs().max_element()));
         let clearance = (CLEARANCE_ULPS * f64::EPSILON * largest).max(f64::MIN_POSITIVE);
-        VisibilityTester { world, clearance, seed: prepared.settings.image.seed, memo }
+        let (seed, openings) = (prepared.settings.image.seed, Openings::new(&prepared.portals));
+        VisibilityTester { world, clearance, seed, openings, memo }
     }
 
     /// Maps a function over items, on all threads; see [`Memo::map`].
@@ -59,7 +65,12 @@ impl<'a> VisibilityTester<'a> {
     pub(super) fn transmittance(&self, [from, from_normal]: [DVec3; 2], [to, to_normal]: [DVec3; 2]) -> f64 {
         let origin = from + from_normal * self.clearance;
         let direction = to + to_normal * self.clearance - origin;
-        let transmittance = self.world.transmittance(&Ray { origin, direction }, 1.0, usize::MAX, None, 0, 0.0).0;
+        self.along(&Ray { origin, direction }, 1.0)
+    }
+
+    /// Transmittance of a ray up to a parameter, in the mean over the lanes, 0..=1.
+    fn along(&self, ray: &Ray, t_max: f64) -> f64 {
+        let transmittance = self.world.transmittance(ray, t_max, usize::MAX, None, 0, 0.0).0;
         let lanes = self.world.appearance.wavelengths.lanes();
         transmittance.0[..lanes].iter().sum::<f64>() / lanes as f64
     }
@@ -98,7 +109,7 @@ impl<'a> VisibilityTester<'a> {
     }
 
     /// The first hit of a ray that light does not go straight through.
-    fn trace(&self, ray: &Ray) -> RayTarget {
+    pub(super) fn trace(&self, ray: &Ray) -> RayTarget {
         let (world, prepared) = (self.world, self.world.appearance.prepared);
         let mut from = 0.0;
         for _ in 0..MOST_PASSABLE {
@@ -112,7 +123,10 @@ impl<'a> VisibilityTester<'a> {
             if !bsdf.is_passable() {
                 let [a, b, c] = prepared.corners(triangle);
                 let outside = (b - a).cross(c - a).dot(ray.direction) < 0.0;
-                return RayTarget::Side { triangle, outside, weights: [1.0 - hit.u - hit.v, hit.u, hit.v] };
+                let transmittance = if from > 0.0 { self.along(ray, hit.t * SHORT) } else { 1.0 };
+                let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
+                let through_opening = self.openings.are_crossed(ray, hit.t);
+                return RayTarget::Side { triangle, outside, weights, t: hit.t, transmittance, through_opening };
             }
             from = hit.t;
         }

@@ -1,0 +1,229 @@
+//! The correction of regions: what large parts of a scene exchange, as rays tell it.
+//!
+//! A link is kept where its error is small, but small errors of one sign add up: of two nodes that see little of each
+//! other through an opening, a few rays mostly tell that they see nothing. Rays from all leaves know without such errors
+//! what large regions exchange, though not what elements do. So the irradiance of all leaves of a region is multiplied by
+//! one factor: with it, regions receive what rays tell that they receive of each other.
+//!
+//! A ray from leaf i to leaf j tells of the exchange of both: with n rays from each, A F is estimated as the count of
+//! rays either way over n / A(i) + n / A(j), which is the balance heuristic. Rows of regions are then balanced to the
+//! part of their rays that hits something, so that where nothing escapes no light is lost.
+//!
+//! # Source
+//! Aggregation and disaggregation: Chatelin and Miranker 1982. The balance heuristic: Veach and Guibas 1995.
+
+use super::exchange::{ExchangeLink, LeafHit, LeafVisibility};
+use super::hierarchy::{Hierarchy, NONE};
+use super::regions::{FluxEstimate, Regions};
+use crate::color::{Channels, LANES};
+use rustc_hash::FxHashMap as HashMap;
+
+/// No factor is greater than this, or less than one over it.
+const MOST_FACTOR: f64 = 4.0;
+/// Rounds of balancing and sweeps of the solver at the most, and the greatest change that ends them.
+const MOST_ROUNDS: u32 = 200;
+const MOST_SWEEPS: u32 = 1000;
+const CONVERGED: f64 = 1e-7;
+
+/// What is known of each leaf, in the order of the leaves.
+pub(super) struct LeafLight<'a> {
+    /// What it sends without the light of other elements, W/m².
+    pub(super) first: &'a [Channels],
+    pub(super) reflectance: &'a [Channels],
+    /// Irradiance by other elements, W/m².
+    pub(super) irradiance: &'a [Channels],
+}
+
+/// Factors by which rays correct the irradiance of leaves.
+#[derive(Clone, Debug, Default)]
+pub(super) struct RegionCorrection {
+    /// For each leaf, the factor of its irradiance by other elements.
+    pub(super) factor: Vec<Channels>,
+    /// How far fluxes changed: the sum of all changes over the sum of all fluxes.
+    pub(super) change: f64,
+    /// The standard error of the flux that all leaves receive from each other, as a part of it.
+    pub(super) standard_error: f64,
+}
+
+/// What one region receives from another.
+#[derive(Clone, Copy, Default)]
+struct RegionExchange {
+    /// A F, square units.
+    exchange: f64,
+    /// Flux of what is sent without the light of other elements, and of what is reflected of that: W.
+    first: Channels,
+    reflected: Channels,
+}
+
+impl RegionCorrection {
+    /// - `leaves`: their nodes. `visibility`: what rays from them hit.
+    pub(super) fn new(
+        hierarchy: &Hierarchy,
+        leaves: &[u32],
+        visibility: &LeafVisibility,
+        light: &LeafLight<'_>,
+    ) -> RegionCorrection {
+        let areas: Vec<f64> = leaves.iter().map(|leaf| hierarchy.nodes[*leaf as usize].area).collect();
+        let regions = Regions::new(hierarchy, leaves, &estimates(&areas, visibility, light));
+        let region = &regions.of_leaves;
+        let mut system = RegionSystem {
+            pairs: exchange(&areas, region, visibility, light),
+            goal: vec![0.0; regions.count],
+            received: vec![Channels::ZERO; regions.count],
+        };
+        for (i, region) in region.iter().enumerate().filter(|(i, _)| !visibility.is_dark[*i]) {
+            system.goal[*region] += areas[i] * visibility.seen_part[i];
+            system.received[*region] += light.irradiance[i] * areas[i];
+        }
+        let factors = system.solve();
+        let total =
+            |of: &dyn Fn(usize) -> Channels| -> f64 { (0..factors.len()).map(|i| of(i).0.iter().sum::<f64>()).sum() };
+        let all = total(&|i| system.received[i]);
+        let change = total(&|i| system.received[i] * (factors[i] - Channels::ONE).map(f64::abs));
+        RegionCorrection {
+            factor: region.iter().map(|region| factors[*region]).collect(),
+            change: if all > 0.0 { change / all } else { 0.0 },
+            standard_error: regions.all.relative_error(),
+        }
+    }
+}
+
+/// What each leaf receives of others.
+fn estimates(areas: &[f64], visibility: &LeafVisibility, light: &LeafLight<'_>) -> Vec<FluxEstimate> {
+    let total = |channels: Channels| channels.0.iter().sum::<f64>();
+    let sent: Vec<f64> =
+        (0..areas.len()).map(|i| total(light.first[i] + light.reflectance[i] * light.irradiance[i])).collect();
+    let count = f64::from(visibility.directions);
+    let of = |i: usize| {
+        let value = |hit: &LeafHit| sent[hit.leaf as usize] * f64::from(hit.transmittance);
+        let is_counted = |hit: &&LeafHit| hit.leaf != NONE && !hit.through_opening;
+        let values = visibility.hits_of(i).iter().filter(is_counted).map(value);
+        let (sum, squares) = values.fold((0.0, 0.0), |(sum, squares), value| (sum + value, squares + value * value));
+        let mean = sum / count;
+        let variance = (squares / count - mean * mean).max(0.0) / (count - 1.0).max(1.0);
+        FluxEstimate {
+            by_elements: areas[i] * total(light.irradiance[i]),
+            by_rays: areas[i] * mean,
+            variance: areas[i] * areas[i] * variance,
+        }
+    };
+    let mut estimates: Vec<FluxEstimate> = (0..areas.len()).map(of).collect();
+    for ExchangeLink { a, b, exchange } in &visibility.through_openings {
+        for (to, from) in [(*a as usize, *b as usize), (*b as usize, *a as usize)] {
+            let flux = exchange * sent[from];
+            estimates[to].by_rays += flux;
+            estimates[to].variance += flux * flux;
+        }
+    }
+    for (estimate, _) in estimates.iter_mut().zip(&visibility.is_dark).filter(|(_, is_dark)| **is_dark) {
+        *estimate = FluxEstimate::default();
+    }
+    estimates
+}
+
+/// What regions exchange by all rays: the region that receives, that which sends, and how much; in the order in which
+/// rays found them.
+fn exchange(
+    areas: &[f64],
+    region: &[usize],
+    visibility: &LeafVisibility,
+    light: &LeafLight<'_>,
+) -> Vec<([usize; 2], RegionExchange)> {
+    let mut pairs: Vec<([usize; 2], RegionExchange)> = Vec::new();
+    let mut place_of: HashMap<[usize; 2], usize> = HashMap::default();
+    let count = f64::from(visibility.directions);
+    let mut add = |to: usize, from: usize, exchange: f64| {
+        let key = [region[to], region[from]];
+        let place = *place_of.entry(key).or_insert_with(|| {
+            pairs.push((key, RegionExchange::default()));
+            pairs.len() - 1
+        });
+        let pair = &mut pairs[place].1;
+        pair.exchange += exchange;
+        pair.first += light.first[from] * exchange;
+        pair.reflected += light.reflectance[from] * light.irradiance[from] * exchange;
+    };
+    for ExchangeLink { a, b, exchange } in &visibility.through_openings {
+        add(*a as usize, *b as usize, *exchange);
+        add(*b as usize, *a as usize, *exchange);
+    }
+    for i in (0..areas.len()).filter(|i| !visibility.is_dark[*i]) {
+        for hit in visibility.hits_of(i).iter().filter(|hit| hit.leaf != NONE && !hit.through_opening) {
+            let j = hit.leaf as usize;
+            let exchange = f64::from(hit.transmittance) / (count * (areas[i].recip() + areas[j].recip()));
+            add(i, j, exchange);
+            add(j, i, exchange);
+        }
+    }
+    pairs
+}
+
+/// The equations of regions: what each receives is a factor times what it received before.
+struct RegionSystem {
+    pairs: Vec<([usize; 2], RegionExchange)>,
+    /// What each region exchanges with all others, square units.
+    goal: Vec<f64>,
+    /// What each receives before the correction, W.
+    received: Vec<Channels>,
+}
+
+impl RegionSystem {
+    /// The factors of all regions.
+    fn solve(&mut self) -> Vec<Channels> {
+        self.balance();
+        let count = self.goal.len();
+        let mut rows: Vec<Vec<(usize, Channels)>> = vec![Vec::new(); count];
+        let mut first = vec![Channels::ZERO; count];
+        for ([to, from], pair) in &self.pairs {
+            first[*to] += pair.first;
+            rows[*to].push((*from, pair.reflected));
+        }
+        let mut factors = vec![Channels::ONE; count];
+        for _ in 0..MOST_SWEEPS {
+            let mut change = 0.0f64;
+            for to in 0..count {
+                let flux = rows[to].iter().fold(first[to], |sum, (from, flux)| sum + *flux * factors[*from]);
+                let next: [f64; LANES] = std::array::from_fn(|lane| match self.received[to].0[lane] {
+                    received if received > 0.0 => (flux.0[lane] / received).clamp(MOST_FACTOR.recip(), MOST_FACTOR),
+                    _ => 1.0,
+                });
+                change = change.max((Channels(next) - factors[to]).map(f64::abs).max());
+                factors[to] = Channels(next);
+            }
+            if change < CONVERGED {
+                break;
+            }
+        }
+        factors
+    }
+
+    /// Makes what each region exchanges with all add up to its goal, and leaves the exchange symmetric.
+    ///
+    /// # Source
+    /// Sinkhorn and Knopp 1967, symmetric.
+    fn balance(&mut self) {
+        let mut factor = vec![1.0; self.goal.len()];
+        for _ in 0..MOST_ROUNDS {
+            let mut rows = vec![0.0; self.goal.len()];
+            for ([to, from], pair) in &self.pairs {
+                rows[*to] += factor[*to] * factor[*from] * pair.exchange;
+            }
+            let mut worst = 0.0f64;
+            for ((factor, row), goal) in factor.iter_mut().zip(rows).zip(&self.goal).filter(|((_, row), _)| *row > 0.0)
+            {
+                let ratio = goal / row;
+                worst = worst.max((ratio - 1.0).abs());
+                *factor = (*factor * ratio.sqrt()).clamp(MOST_FACTOR.recip(), MOST_FACTOR);
+            }
+            if worst < CONVERGED {
+                break;
+            }
+        }
+        for ([to, from], pair) in &mut self.pairs {
+            let factor = factor[*to] * factor[*from];
+            pair.exchange *= factor;
+            pair.first *= factor;
+            pair.reflected *= factor;
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! Regions: parts of a scene whose light rays know better than elements do.
+
+use super::hierarchy::Hierarchy;
+
+/// The standard error of the light of a region, as a part of it, at the most.
+const MOST_ERROR: f64 = 0.03;
+/// A part of a region is one of its own if its light is wrong by another factor, by so many standard errors and by no
+/// less than this.
+const SIGNIFICANT: f64 = 3.0;
+const LEAST_DIFFERENCE: f64 = 0.002;
+
+/// So many times what chance explains of a difference is taken from it.
+const CAUTION: f64 = 2.0;
+
+/// The flux that a leaf receives, in all lanes together: W.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct FluxEstimate {
+    /// As elements have it.
+    pub(super) by_elements: f64,
+    /// As random rays tell it, and the variance of that.
+    pub(super) by_rays: f64,
+    pub(super) variance: f64,
+}
+
+impl FluxEstimate {
+    /// What rays tell, over what elements have.
+    fn factor(&self) -> f64 {
+        self.by_rays / self.by_elements
+    }
+
+    /// The standard error of what rays tell, as a part of it.
+    pub(super) fn relative_error(&self) -> f64 {
+        if self.by_rays > 0.0 { self.variance.sqrt() / self.by_rays } else { 0.0 }
+    }
+
+    /// The standard error of the factor.
+    ///
+    /// Where few rays bring light, their variance is too small just where the light is: it is no less than that of as
+    /// much light of a larger part.
+    fn error(&self, larger: &FluxEstimate) -> f64 {
+        let each = if larger.by_rays > 0.0 { larger.variance / larger.by_rays } else { 0.0 };
+        self.variance.max(each * self.by_elements).sqrt() / self.by_elements
+    }
+}
+
+/// Parts of a scene over each of which light is wrong by the same factor.
+pub(super) struct Regions {
+    /// For each leaf its region, numbered from 0: the first are leaves that rays do not tell to be wrong.
+    pub(super) of_leaves: Vec<usize>,
+    pub(super) count: usize,
+    /// All leaves together.
+    pub(super) all: FluxEstimate,
+}
+
+/// Sums of estimates over all nodes.
+fn sums(hierarchy: &Hierarchy, leaves: &[u32], estimates: &[FluxEstimate]) -> Vec<FluxEstimate> {
+    let nodes = &hierarchy.nodes;
+    let mut of = vec![FluxEstimate::default(); nodes.len()];
+    for (leaf, estimate) in leaves.iter().zip(estimates) {
+        of[*leaf as usize] = *estimate;
+    }
+    for place in (0..nodes.len()).rev() {
+        for child in nodes[place].children() {
+            let (child, sum) = (of[child], &mut of[place]);
+            sum.by_elements += child.by_elements;
+            sum.by_rays += child.by_rays;
+            sum.variance += child.variance;
+        }
+    }
+    of
+}
+
+/// For each leaf, by what its light is multiplied so that all nodes receive what rays tell, as far as that is certain.
+///
+/// From the root down, the factors of the children of a node differ as rays tell, times a part that is the nearer to 1
+/// the less chance explains the difference, and together the children receive what the node does.
+///
+/// - `leaves`: their nodes. `estimates`: what each receives.
+///
+/// # Source
+/// The part: James and Stein 1961.
+pub(super) fn factors(hierarchy: &Hierarchy, leaves: &[u32], estimates: &[FluxEstimate]) -> Vec<f64> {
+    let nodes = &hierarchy.nodes;
+    let of = sums(hierarchy, leaves, estimates);
+    let mut factor = vec![1.0; nodes.len()];
+    let certain = |parts: f64, surprise: f64| (1.0 - CAUTION * parts / surprise).max(0.0);
+    if let Some(root) = of.first().filter(|root| root.by_elements > 0.0) {
+        let off = root.factor() - 1.0;
+        factor[0] = 1.0 + off * certain(1.0, (off / root.error(root)).powi(2));
+    }
+    for place in 0..nodes.len() {
+        let known = of[place];
+        let lit = || nodes[place].children().filter(|child| of[*child].by_elements > 0.0);
+        let off = |child: usize| of[child].factor() - known.factor();
+        let surprise: f64 = lit().map(|child| (off(child) / of[child].error(&known)).powi(2)).sum();
+        let part = certain(lit().count() as f64 - 1.0, surprise);
+        lit().for_each(|child| factor[child] = (factor[place] + off(child) * part).max(0.0));
+    }
+    leaves.iter().map(|leaf| factor[*leaf as usize]).collect()
+}
+
+impl Regions {
+    /// Divides the scene, from the root down, wherever rays tell with certainty that parts differ.
+    ///
+    /// - `leaves`: their nodes. `estimates`: what each receives.
+    pub(super) fn new(hierarchy: &Hierarchy, leaves: &[u32], estimates: &[FluxEstimate]) -> Regions {
+        let nodes = &hierarchy.nodes;
+        let of = sums(hierarchy, leaves, estimates);
+        // The region of a node, or that of its parent, whose light is wrong by another factor; at the root, by none.
+        let region_of = |node: usize, parent: usize, within: Option<usize>| {
+            let known = within.map_or(1.0, |region| of[region].factor());
+            let error = of[node].error(&of[parent]);
+            let difference = (of[node].factor() - known).abs();
+            let is_apart = error <= MOST_ERROR && difference > (SIGNIFICANT * error).max(LEAST_DIFFERENCE);
+            if is_apart { Some(node) } else { within }
+        };
+        let mut region = vec![None; nodes.len()];
+        if !nodes.is_empty() {
+            region[0] = region_of(0, 0, None);
+        }
+        for place in 0..nodes.len() {
+            for child in nodes[place].children() {
+                region[child] = region_of(child, place, region[place]);
+            }
+        }
+        let (mut number, mut count) = (vec![usize::MAX; nodes.len()], 1);
+        let mut of_leaf = |leaf: &u32| {
+            let Some(region) = region[*leaf as usize] else { return 0 };
+            if number[region] == usize::MAX {
+                (number[region], count) = (count, count + 1);
+            }
+            number[region]
+        };
+        let of_leaves = leaves.iter().map(&mut of_leaf).collect();
+        Regions { of_leaves, count, all: of.first().copied().unwrap_or_default() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::hierarchy::RadiosityPatch;
+    use super::*;
+    use glam::DVec3;
+
+    /// Triangles side by side, and the nodes that are leaves.
+    fn row(count: u32) -> (Hierarchy, Vec<u32>) {
+        let patch = |triangle: u32| {
+            let at = DVec3::X * f64::from(triangle);
+            RadiosityPatch { corners: [at, at + DVec3::X, at + DVec3::Y], triangle, outside: true }
+        };
+        let hierarchy = Hierarchy::new((0..count).map(patch).collect(), 1e-9);
+        let leaves = hierarchy.leaves();
+        (hierarchy, leaves)
+    }
+
+    #[test]
+    fn light_is_corrected_where_rays_are_certain_and_only_there() {
+        let (hierarchy, leaves) = row(64);
+        let estimate = |by_rays: f64, error: f64| FluxEstimate { by_elements: 1.0, by_rays, variance: error * error };
+        let near = |leaf: u32| hierarchy.nodes[leaf as usize].middle.x < 32.0;
+        // Half of it has 20 % too little light.
+        let half = |error: f64| -> Vec<FluxEstimate> {
+            leaves.iter().map(|leaf| estimate(if near(*leaf) { 1.2 } else { 1.0 }, error)).collect()
+        };
+        let certain = factors(&hierarchy, &leaves, &half(0.01));
+        let off = |(leaf, factor): (&u32, &f64)| (factor - if near(*leaf) { 1.2 } else { 1.0 }).abs();
+        assert!(leaves.iter().zip(&certain).map(off).fold(0.0, f64::max) < 0.01, "{certain:?}");
+        let regions = Regions::new(&hierarchy, &leaves, &half(0.01));
+        let [one, other] = [true, false].map(|side| {
+            let of: Vec<usize> = leaves
+                .iter()
+                .zip(&regions.of_leaves)
+                .filter(|(leaf, _)| near(**leaf) == side)
+                .map(|(_, r)| *r)
+                .collect();
+            assert!(of.iter().all(|region| *region == of[0]));
+            of[0]
+        });
+        assert!(one != other);
+        assert!(factors(&hierarchy, &leaves, &half(3.0)).iter().all(|factor| *factor == 1.0));
+    }
+
+    #[test]
+    fn corrected_leaves_receive_together_what_rays_tell() {
+        let (hierarchy, leaves) = row(100);
+        let light = |i: usize| 1.0 + 0.9 * (i as f64 * 0.7).sin();
+        let estimates: Vec<FluxEstimate> = (0..leaves.len())
+            .map(|i| FluxEstimate { by_elements: light(i), by_rays: 1.1 * light(3 * i), variance: 1e-4 * light(i) })
+            .collect();
+        let factors = factors(&hierarchy, &leaves, &estimates);
+        let sum: f64 = factors.iter().zip(&estimates).map(|(factor, estimate)| factor * estimate.by_elements).sum();
+        let rays: f64 = estimates.iter().map(|estimate| estimate.by_rays).sum();
+        assert!((sum / rays - 1.0).abs() < 1e-3, "{sum} {rays}");
+        let none = vec![FluxEstimate::default(); leaves.len()];
+        assert!(super::factors(&hierarchy, &leaves, &none).iter().all(|factor| *factor == 1.0));
+    }
+}

@@ -1,0 +1,30 @@
+//! The elements of sides of triangles: which one a ray hits.
+
+use super::hierarchy::{Hierarchy, NONE};
+use super::visibility::{RayTarget, VisibilityTester};
+
+/// Finds elements of a hierarchy.
+pub(super) struct SideElements<'a> {
+    hierarchy: &'a Hierarchy,
+    /// The patch of each side of each triangle, outer and inner; [`NONE`] where there is none.
+    patch_of: Vec<[u32; 2]>,
+}
+
+impl<'a> SideElements<'a> {
+    pub(super) fn new(visibility: &VisibilityTester<'_>, hierarchy: &'a Hierarchy) -> SideElements<'a> {
+        let mut patch_of = vec![[NONE; 2]; visibility.world.appearance.prepared.triangles.len()];
+        for (number, patch) in (0..).zip(&hierarchy.patches) {
+            patch_of[patch.triangle as usize][usize::from(!patch.outside)] = number;
+        }
+        SideElements { hierarchy, patch_of }
+    }
+
+    /// The node of the element that is hit; [`NONE`] where there is none.
+    pub(super) fn find(&self, target: RayTarget) -> u32 {
+        let RayTarget::Side { triangle, outside, weights, .. } = target else { return NONE };
+        match self.patch_of[triangle as usize][usize::from(!outside)] {
+            NONE => NONE,
+            patch => self.hierarchy.leaf_at(patch, self.hierarchy.patches[patch as usize].weights(weights)).0,
+        }
+    }
+}
