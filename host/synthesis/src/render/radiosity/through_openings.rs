@@ -64,6 +64,7 @@ impl VisibilityTester<'_> {
         if sources == 0 || !shadows {
             return Vec::new();
         }
+        // Each ray asks one light, all are as likely.
         let weight = f64::from(sources) / f64::from(self.rays_through_each());
         let batch = |_, RayBatch { opening: number, first }: &RayBatch| {
             let opening = &self.openings.0[*number];
@@ -71,8 +72,8 @@ impl VisibilityTester<'_> {
             let mut found = Vec::new();
             for index in *first..*first + AT_ONCE {
                 let at = opening.point(sequence.point(index, 0));
-                let source = index % sources;
-                let uniform = sequence.point(index / sources, 1 + u64::from(source));
+                let source = (sequence.number(index, 1) * f64::from(sources)) as u32;
+                let uniform = sequence.point(index, 2);
                 for outwards in [opening.normal, -opening.normal] {
                     let Some(LightAtPoint { irradiance, towards, .. }) =
                         self.sample_light([at, outwards], source as usize, uniform, true)
