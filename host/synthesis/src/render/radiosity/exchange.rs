@@ -55,7 +55,7 @@ impl LeafVisibility {
 /// The leaf that a ray from a leaf hits.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct LeafHit {
-    /// Which one of all leaves; [`NONE`] where light escapes.
+    /// The number of the leaf among all leaves; [`NONE`] where light escapes.
     pub(super) leaf: u32,
     /// The part of light that is let through on the way, 0..=1.
     pub(super) transmittance: f32,

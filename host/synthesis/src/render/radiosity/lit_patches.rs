@@ -75,8 +75,10 @@ fn dark(
             exitance.is_some_and(|of| of(patch.triangle, patch.outside, point).max() > 0.0)
         };
         let takes = |place: [DVec3; 2]| visibility.light_at(place, shadows).max() > 0.0;
-        if !node.is_leaf() || is_lit_through_opening[number as usize] {
-            node.is_leaf()
+        if !node.is_leaf() {
+            false
+        } else if is_lit_through_opening[number as usize] {
+            true
         } else if node.is_cluster() {
             let middle = |patch: u32| hierarchy.patches[patch as usize].middle();
             let mut members = hierarchy.members(number).iter();

@@ -77,7 +77,6 @@ const PASSES: usize = 4;
 const COARSEST: f64 = 16.0;
 /// The light of lights may be so many errors from linear over an element.
 const BENT: f64 = 4.0;
-
 /// What receives light counts as no dimmer than this part of the mean irradiance, where errors are bounded by it.
 const DIM: f64 = 1e-4;
 

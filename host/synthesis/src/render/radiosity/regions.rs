@@ -8,16 +8,15 @@ const MOST_ERROR: f64 = 0.03;
 /// less than this.
 const SIGNIFICANT: f64 = 3.0;
 const LEAST_DIFFERENCE: f64 = 0.002;
-
 /// So many times what chance explains of a difference is taken from it.
 const CAUTION: f64 = 2.0;
 
 /// The flux that a leaf receives, in all lanes together: W.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct FluxEstimate {
-    /// As elements have it.
+    /// What elements have.
     pub(super) by_elements: f64,
-    /// As random rays tell it, and the variance of that.
+    /// What random rays tell, and the variance of that.
     pub(super) by_rays: f64,
     pub(super) variance: f64,
 }
