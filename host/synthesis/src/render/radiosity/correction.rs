@@ -12,9 +12,9 @@
 //! # Source
 //! Aggregation and disaggregation: Chatelin and Miranker 1982. The balance heuristic: Veach and Guibas 1995.
 
-use super::exchange::{ExchangeLink, LeafHit, LeafVisibility};
+use super::exchange::{ExchangeLink, LeafVisibility};
 use super::hierarchy::{Hierarchy, NONE};
-use super::regions::{FluxEstimate, Regions};
+use super::regions::{self, FluxEstimate, Regions};
 use crate::color::{Channels, LANES};
 use rustc_hash::FxHashMap as HashMap;
 
@@ -23,7 +23,11 @@ const MOST_FACTOR: f64 = 4.0;
 /// Rounds of balancing and sweeps of the solver at the most, and the greatest change that ends them.
 const MOST_ROUNDS: u32 = 200;
 const MOST_SWEEPS: u32 = 1000;
+/// So many times what chance explains of a difference within a region is taken from it.
+const CAUTION: f64 = 2.0;
 const CONVERGED: f64 = 1e-7;
+/// What a leaf sees counts as no smaller part of all, where a mean is taken over it.
+const LEAST_SEEN_PART: f64 = 0.1;
 
 /// What is known of each leaf, in the order of the leaves.
 pub(super) struct LeafLight<'a> {
@@ -64,7 +68,7 @@ impl RegionCorrection {
         light: &LeafLight<'_>,
     ) -> RegionCorrection {
         let areas: Vec<f64> = leaves.iter().map(|leaf| hierarchy.nodes[*leaf as usize].area).collect();
-        let regions = Regions::new(hierarchy, leaves, &estimates(&areas, visibility, light));
+        let regions = Regions::new(hierarchy, leaves, &flux_estimates(&areas, visibility, light));
         let region = &regions.of_leaves;
         let mut system = RegionSystem {
             pairs: exchange(&areas, region, visibility, light),
@@ -80,41 +84,65 @@ impl RegionCorrection {
             |of: &dyn Fn(usize) -> Channels| -> f64 { (0..factors.len()).map(|i| of(i).0.iter().sum::<f64>()).sum() };
         let all = total(&|i| system.received[i]);
         let change = total(&|i| system.received[i] * (factors[i] - Channels::ONE).map(f64::abs));
+        let factor = region.iter().map(|region| factors[*region]);
+        // Within regions, what rays tell of parts of them.
+        let irradiance: Vec<Channels> =
+            light.irradiance.iter().zip(factor.clone()).map(|(light, factor)| *light * factor).collect();
+        let estimates = flux_estimates(&areas, visibility, &LeafLight { irradiance: &irradiance, ..*light });
+        let own = regions::factors(hierarchy, leaves, &estimates, CAUTION);
         RegionCorrection {
-            factor: region.iter().map(|region| factors[*region]).collect(),
+            factor: factor.zip(own).map(|(factor, own)| factor * own).collect(),
             change: if all > 0.0 { change / all } else { 0.0 },
             standard_error: regions.all.relative_error(),
         }
     }
 }
 
+/// Calls a function with all exchange that rays found, both ways: the leaf that receives, that which sends, and A F.
+fn for_each_exchange(areas: &[f64], visibility: &LeafVisibility, mut f: impl FnMut(usize, usize, f64)) {
+    for ExchangeLink { a, b, exchange } in &visibility.through_openings {
+        f(*a as usize, *b as usize, *exchange);
+        f(*b as usize, *a as usize, *exchange);
+    }
+    let count = f64::from(visibility.directions);
+    for i in (0..areas.len()).filter(|i| !visibility.is_dark[*i]) {
+        for hit in visibility.hits_of(i).iter().filter(|hit| hit.leaf != NONE && !hit.through_opening) {
+            let j = hit.leaf as usize;
+            let exchange = f64::from(hit.transmittance) / (count * (areas[i].recip() + areas[j].recip()));
+            f(i, j, exchange);
+            f(j, i, exchange);
+        }
+    }
+}
+
 /// What each leaf receives of others.
-fn estimates(areas: &[f64], visibility: &LeafVisibility, light: &LeafLight<'_>) -> Vec<FluxEstimate> {
+///
+/// Rays tell how much more or less than the mean that elements have is sent by what each leaf sees: where all send the
+/// same, chance tells nothing.
+pub(super) fn flux_estimates(areas: &[f64], visibility: &LeafVisibility, light: &LeafLight<'_>) -> Vec<FluxEstimate> {
     let total = |channels: Channels| channels.0.iter().sum::<f64>();
     let sent: Vec<f64> =
         (0..areas.len()).map(|i| total(light.first[i] + light.reflectance[i] * light.irradiance[i])).collect();
-    let count = f64::from(visibility.directions);
-    let of = |i: usize| {
-        let value = |hit: &LeafHit| sent[hit.leaf as usize] * f64::from(hit.transmittance);
-        let is_counted = |hit: &&LeafHit| hit.leaf != NONE && !hit.through_opening;
-        let values = visibility.hits_of(i).iter().filter(is_counted).map(value);
-        let (sum, squares) = values.fold((0.0, 0.0), |(sum, squares), value| (sum + value, squares + value * value));
-        let mean = sum / count;
-        let variance = (squares / count - mean * mean).max(0.0) / (count - 1.0).max(1.0);
-        FluxEstimate {
-            by_elements: areas[i] * total(light.irradiance[i]),
-            by_rays: areas[i] * mean,
-            variance: areas[i] * areas[i] * variance,
-        }
+    let received: Vec<f64> = light.irradiance.iter().map(|irradiance| total(*irradiance)).collect();
+    // The mean of what is sent by all that a leaf sees.
+    let mean = |i: usize| {
+        let row = if visibility.seen_part[i] < 1.0 { visibility.row[i] } else { 1.0 };
+        received[i] / row.clamp(LEAST_SEEN_PART, 1.0)
     };
-    let mut estimates: Vec<FluxEstimate> = (0..areas.len()).map(of).collect();
-    for ExchangeLink { a, b, exchange } in &visibility.through_openings {
-        for (to, from) in [(*a as usize, *b as usize), (*b as usize, *a as usize)] {
-            let flux = exchange * sent[from];
-            estimates[to].by_rays += flux;
-            estimates[to].variance += flux * flux;
-        }
-    }
+    let mean: Vec<f64> = (0..areas.len()).map(mean).collect();
+    let known = |i: usize| FluxEstimate {
+        by_elements: areas[i] * received[i],
+        by_rays: areas[i] * mean[i] * visibility.seen_part[i],
+        variance: 0.0,
+        rays: 0,
+    };
+    let mut estimates: Vec<FluxEstimate> = (0..areas.len()).map(known).collect();
+    for_each_exchange(areas, visibility, |to, from, exchange| {
+        let flux = (sent[from] - mean[to]) * exchange;
+        estimates[to].by_rays += flux;
+        estimates[to].variance += flux * flux;
+        estimates[to].rays += 1;
+    });
     for (estimate, _) in estimates.iter_mut().zip(&visibility.is_dark).filter(|(_, is_dark)| **is_dark) {
         *estimate = FluxEstimate::default();
     }
@@ -131,8 +159,7 @@ fn exchange(
 ) -> Vec<([usize; 2], RegionExchange)> {
     let mut pairs: Vec<([usize; 2], RegionExchange)> = Vec::new();
     let mut place_of: HashMap<[usize; 2], usize> = HashMap::default();
-    let count = f64::from(visibility.directions);
-    let mut add = |to: usize, from: usize, exchange: f64| {
+    for_each_exchange(areas, visibility, |to, from, exchange| {
         let key = [region[to], region[from]];
         let place = *place_of.entry(key).or_insert_with(|| {
             pairs.push((key, RegionExchange::default()));
@@ -142,19 +169,7 @@ fn exchange(
         pair.exchange += exchange;
         pair.first += light.first[from] * exchange;
         pair.reflected += light.reflectance[from] * light.irradiance[from] * exchange;
-    };
-    for ExchangeLink { a, b, exchange } in &visibility.through_openings {
-        add(*a as usize, *b as usize, *exchange);
-        add(*b as usize, *a as usize, *exchange);
-    }
-    for i in (0..areas.len()).filter(|i| !visibility.is_dark[*i]) {
-        for hit in visibility.hits_of(i).iter().filter(|hit| hit.leaf != NONE && !hit.through_opening) {
-            let j = hit.leaf as usize;
-            let exchange = f64::from(hit.transmittance) / (count * (areas[i].recip() + areas[j].recip()));
-            add(i, j, exchange);
-            add(j, i, exchange);
-        }
-    }
+    });
     pairs
 }
 

@@ -7,6 +7,7 @@ use crate::numeric::ray::Ray;
 use crate::numeric::sequence::SobolSequence;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// Exitance from elsewhere at a point of a side of a triangle, W/m², in lanes that are means over all wavelength sets:
 /// light that surfaces send beside what they reflect of lights and of each other, such as the photons that two-way ray
@@ -31,8 +32,6 @@ const FEW_OF_SKY: u32 = 16;
 
 /// Times as many where some are hidden and some are not.
 const MORE: u32 = 4;
-/// Light samples of each light at random points of a leaf.
-const RANDOM_SAMPLES: u32 = 16;
 /// How far points are from the corners and edges of an element, as a part of the way to its middle: on an edge may lie
 /// another surface.
 const INWARDS: f64 = 1e-3;
@@ -96,6 +95,16 @@ pub(super) fn bend(around: &CornerLight) -> f64 {
         of(|lit| lit.direct).max(of(|lit| lit.extra))
     };
     middles.iter().enumerate().map(off).fold(0.0, f64::max)
+}
+
+/// The irradiance of a leaf by light samples at random points of it.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(super) struct RandomLight {
+    /// The mean, W/m².
+    pub(super) irradiance: Channels,
+    /// The variance of the mean in all lanes together.
+    pub(super) variance: f64,
+    pub(super) samples: u32,
 }
 
 impl VisibilityTester<'_> {
@@ -248,21 +257,22 @@ impl VisibilityTester<'_> {
         Some(LightAtPoint { irradiance: sum * (sets as f64).recip(), towards, distance })
     }
 
-    /// The mean irradiance of a leaf by light samples at random points of it, W/m², and the variance of that in all
-    /// lanes together; without what comes through openings.
+    /// The mean irradiance of a leaf by light samples at random points of it, without what comes through openings.
     ///
     /// - `place`: a point with its unit normal, told which one and a point of the unit square.
-    /// - `number`: of the leaf: each has samples of its own.
+    /// - `number`: of the leaf: each has samples of its own. `samples`: which of them.
     pub(super) fn random_light(
         &self,
         place: impl Fn(u32, [f64; 2]) -> [DVec3; 2],
         number: u64,
+        samples: Range<u32>,
         shadows: bool,
-    ) -> (Channels, f64) {
+    ) -> RandomLight {
         let sequence = SobolSequence::new(self.seed, number);
         let sources = &self.world.appearance.sources;
         let (mut sum, mut total, mut squares) = (Channels::ZERO, 0.0, 0.0);
-        for sample in 0..RANDOM_SAMPLES {
+        let count = samples.len() as u32;
+        for sample in samples {
             let place = place(sample, sequence.point(sample, 0));
             let by = |index: usize| {
                 let uniform = sequence.point(sample, 1 + sources[index].0 as u64);
@@ -280,8 +290,9 @@ impl VisibilityTester<'_> {
             total += of_lanes;
             squares += of_lanes * of_lanes;
         }
-        let count = f64::from(RANDOM_SAMPLES);
-        let mean = total / count;
-        (sum * count.recip(), (squares / count - mean * mean).max(0.0) / (count - 1.0))
+        let all = f64::from(count);
+        let mean = total / all;
+        let variance = (squares / all - mean * mean).max(0.0) / (all - 1.0);
+        RandomLight { irradiance: sum * all.recip(), variance, samples: count }
     }
 }

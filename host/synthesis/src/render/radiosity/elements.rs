@@ -1,7 +1,9 @@
 //! Elements with their reflectance and external light.
 
 use super::bound::RefinementBound;
-use super::direct::{CornerLight, Exitance, ExternalLight, bend, of_parts};
+use super::correction::{LeafLight, flux_estimates};
+use super::direct::{CornerLight, Exitance, ExternalLight, RandomLight, bend, of_parts};
+use super::exchange::LeafVisibility;
 use super::hierarchy::{Hierarchy, HierarchyNode, NONE, RadiosityPatch, normal_and_area};
 use super::regions::{self, FluxEstimate};
 use super::side_elements::SideElements;
@@ -11,11 +13,23 @@ use crate::color::Channels;
 use crate::render::world::mean_diffuse_albedo;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// Elements at the most.
 const MOST_ELEMENTS: usize = 2_000_000;
 /// Light through openings is more than corners tell if it is by so many standard errors.
 const SIGNIFICANT: f64 = 3.0;
+
+/// Light samples at random points of a leaf: at first, and at the most; and of all leaves that need more.
+const FEW_SAMPLES: u32 = 16;
+const MOST_SAMPLES: u32 = 512;
+const SAMPLES: u32 = 1 << 21;
+/// The standard error of the irradiance of a leaf by light samples, as a part of it, that needs no more.
+const SAMPLED_ERROR: f64 = 0.02;
+/// So many times what chance explains of a difference is taken from it.
+const CAUTION: f64 = 1.0;
+/// Leaves that tell together how many light samples each of them needs.
+const NEIGHBOURS: f64 = 16.0;
 
 /// Nodes with what is known of them.
 pub(super) struct Elements<'a> {
@@ -31,8 +45,9 @@ pub(super) struct Elements<'a> {
     pub(super) least: Vec<f64>,
     /// External light at places of each node.
     pub(super) corner_light: Vec<CornerLight>,
-    /// Elements are divided that are twice as long or longer.
+    /// Elements are divided that are twice as long or longer; or, of each patch, than what it needs beside openings.
     finest: f64,
+    beside_openings: Vec<f64>,
     exitance: Option<Exitance<'a>>,
     through: &'a [LightThroughOpening],
     shadows: bool,
@@ -44,6 +59,16 @@ struct Known {
     reflectance: Channels,
     mean: ExternalLight,
     corner_light: CornerLight,
+}
+
+/// Flux of lights that comes through openings.
+#[derive(Clone, Copy, Default)]
+struct FluxThroughOpenings {
+    /// W.
+    flux: Channels,
+    /// In all lanes together.
+    variance: f64,
+    rays: u32,
 }
 
 impl<'a> Elements<'a> {
@@ -59,6 +84,8 @@ impl<'a> Elements<'a> {
         shadows: bool,
         finest: f64,
     ) -> Elements<'a> {
+        let beside_openings =
+            hierarchy.patches.iter().map(|patch| visibility.openings.finest_of(patch.corners)).collect();
         let mut elements = Elements {
             hierarchy,
             reflectance: Vec::new(),
@@ -69,6 +96,7 @@ impl<'a> Elements<'a> {
             least: Vec::new(),
             corner_light: Vec::new(),
             finest,
+            beside_openings,
             exitance,
             through,
             shadows,
@@ -97,7 +125,14 @@ impl<'a> Elements<'a> {
 
     /// Whether an element is long enough to be divided.
     pub(super) fn may_divide(&self, node: &HierarchyNode) -> bool {
-        node.longest_edge() >= 2.0 * self.finest
+        node.longest_edge() >= 2.0 * self.finest_of(node, self.finest)
+    }
+
+    /// The finest elements of a leaf.
+    ///
+    /// - `finest`: a length, where there is no opening.
+    pub(super) fn finest_of(&self, node: &HierarchyNode, finest: f64) -> f64 {
+        if node.is_cluster() { finest } else { finest.min(self.beside_openings[node.patch as usize]) }
     }
 
     /// Divides leaves over which external light is farther from linear than so many bounds, those on which more comes
@@ -117,7 +152,7 @@ impl<'a> Elements<'a> {
                 let is_divisible = nodes[*node].is_leaf() && !nodes[*node].is_dark && self.may_divide(&nodes[*node]);
                 let bound = || times * bound.of(self.least[*node]);
                 let missed = || {
-                    let (flux, variance) = through[*node];
+                    let FluxThroughOpenings { flux, variance, .. } = through[*node];
                     let excess = flux.max() - self.direct[*node].max() * nodes[*node].area;
                     excess > bound() * nodes[*node].area && excess > SIGNIFICANT * variance.sqrt()
                 };
@@ -202,17 +237,17 @@ impl<'a> Elements<'a> {
         Known { reflectance: reflected * f64::recip(all), mean, corner_light: CornerLight::default() }
     }
 
-    /// Flux of lights that comes through openings to each node that is a leaf, W, and the variance of that in all lanes
-    /// together.
-    fn flux_through_openings(&self, visibility: &VisibilityTester<'_>) -> Vec<(Channels, f64)> {
-        let mut of = vec![(Channels::ZERO, 0.0); self.hierarchy.nodes.len()];
+    /// Flux of lights that comes through openings to each node that is a leaf.
+    fn flux_through_openings(&self, visibility: &VisibilityTester<'_>) -> Vec<FluxThroughOpenings> {
+        let mut of = vec![FluxThroughOpenings::default(); self.hierarchy.nodes.len()];
         let elements = SideElements::new(visibility, &self.hierarchy);
         for LightThroughOpening { at, flux } in self.through {
             let node = elements.find(*at);
             if node != NONE {
-                let (sum, squares) = &mut of[node as usize];
-                *sum += *flux;
-                *squares += total(*flux).powi(2);
+                let sum = &mut of[node as usize];
+                sum.flux += *flux;
+                sum.variance += total(*flux).powi(2);
+                sum.rays += 1;
             }
         }
         of
@@ -225,18 +260,13 @@ impl<'a> Elements<'a> {
     /// sign over all of a room, and what comes through small openings is between them.
     pub(super) fn correct_direct(&mut self, visibility: &VisibilityTester<'_>, leaves: &[u32]) {
         let hierarchy = &self.hierarchy;
-        let light = |number: usize, leaf: &u32| {
-            // Beyond the numbers of what looks around.
-            let own = (1 << 41) + number as u64;
-            visibility.random_light(|index, uniform| hierarchy.place(*leaf, index, uniform), own, self.shadows)
-        };
-        let random: Vec<(Channels, f64)> = visibility.map(leaves, light);
+        let random = self.random_light(visibility, leaves);
         let through = self.flux_through_openings(visibility);
         let area = |leaf: u32| hierarchy.nodes[leaf as usize].area;
         let by_rays: Vec<Channels> = leaves
             .iter()
             .zip(&random)
-            .map(|(leaf, (irradiance, _))| *irradiance * area(*leaf) + through[*leaf as usize].0)
+            .map(|(leaf, light)| light.irradiance * area(*leaf) + through[*leaf as usize].flux)
             .collect();
         // What no corner sees is not there to be multiplied.
         for (leaf, flux) in leaves.iter().map(|leaf| *leaf as usize).zip(&by_rays) {
@@ -245,17 +275,85 @@ impl<'a> Elements<'a> {
                 self.corner_light[leaf].iter_mut().for_each(|light| light.direct = self.direct[leaf]);
             }
         }
-        let estimate = |((leaf, flux), (_, variance)): ((&u32, &Channels), &(Channels, f64))| FluxEstimate {
+        let estimate = |((leaf, flux), light): ((&u32, &Channels), &RandomLight)| FluxEstimate {
             by_elements: area(*leaf) * total(self.direct[*leaf as usize]),
             by_rays: total(*flux),
-            variance: area(*leaf).powi(2) * variance + through[*leaf as usize].1,
+            variance: area(*leaf).powi(2) * light.variance + through[*leaf as usize].variance,
+            rays: light.samples + through[*leaf as usize].rays,
         };
         let estimates: Vec<FluxEstimate> = leaves.iter().zip(&by_rays).zip(&random).map(estimate).collect();
-        for (leaf, factor) in leaves.iter().zip(regions::factors(hierarchy, leaves, &estimates)) {
+        for (leaf, factor) in leaves.iter().zip(regions::factors(hierarchy, leaves, &estimates, CAUTION)) {
             self.direct[*leaf as usize] *= factor;
             self.corner_light[*leaf as usize].iter_mut().for_each(|light| light.direct *= factor);
         }
         self.pull();
+    }
+
+    /// The light of lights at random points of leaves, the more of them the less few tell.
+    fn random_light(&self, visibility: &VisibilityTester<'_>, leaves: &[u32]) -> Vec<RandomLight> {
+        let light = |number: usize, leaf: u32, samples: Range<u32>| {
+            // Beyond the numbers of what looks around.
+            let own = (1 << 41) + number as u64;
+            let place = |index: u32, uniform: [f64; 2]| self.hierarchy.place(leaf, index, uniform);
+            visibility.random_light(place, own, samples, self.shadows)
+        };
+        let few = visibility.map(leaves, |number, leaf| light(number, *leaf, 0..FEW_SAMPLES));
+        let needed = self.needed_samples(leaves, &few);
+        let unsure = needed.iter().filter(|needed| **needed > FEW_SAMPLES).count() as u32;
+        let sources = visibility.world.appearance.sources.len() as u32;
+        let most = (SAMPLES / (unsure * sources).max(1)).clamp(FEW_SAMPLES, MOST_SAMPLES);
+        visibility.map(leaves, |number, leaf| match needed[number].min(most) {
+            samples if samples > FEW_SAMPLES => light(number, *leaf, 0..samples),
+            _ => few[number],
+        })
+    }
+
+    /// How many light samples each leaf needs, as few of its neighbours tell: if its own told, those by chance too dark
+    /// would stay so.
+    fn needed_samples(&self, leaves: &[u32], few: &[RandomLight]) -> Vec<u32> {
+        let nodes = &self.hierarchy.nodes;
+        // Of each node: irradiances, variances of one sample, and how many leaves.
+        let mut sums = vec![[0.0; 3]; nodes.len()];
+        let own = |light: &RandomLight| [total(light.irradiance), light.variance * f64::from(light.samples), 1.0];
+        leaves.iter().zip(few).for_each(|(leaf, light)| sums[*leaf as usize] = own(light));
+        for place in (0..nodes.len()).rev() {
+            for child in nodes[place].children() {
+                let of_child = sums[child];
+                sums[place].iter_mut().zip(of_child).for_each(|(sum, value)| *sum += value);
+            }
+        }
+        let mut around: Vec<usize> = (0..nodes.len()).collect();
+        for place in 0..nodes.len() {
+            for child in nodes[place].children() {
+                around[child] = if sums[child][2] >= NEIGHBOURS { child } else { around[place] };
+            }
+        }
+        let of = |(leaf, light): (&u32, &RandomLight)| {
+            let (all, own) = (sums[around[*leaf as usize]], own(light));
+            let [irradiance, variance, count] = std::array::from_fn(|i| all[i] - own[i]);
+            let needed = variance * count / (irradiance * irradiance * SAMPLED_ERROR * SAMPLED_ERROR);
+            if needed.is_finite() { needed.ceil() as u32 } else { 0 }
+        };
+        leaves.iter().zip(few).map(of).collect()
+    }
+
+    /// The standard error of the mean over all leaves of what each receives as rays tell it, as a part of that: so dim
+    /// leaves count as much as bright ones.
+    pub(super) fn error_by_chance(&self, leaves: &[u32], visibility: &LeafVisibility) -> f64 {
+        let of = |values: &[Channels]| -> Vec<Channels> { leaves.iter().map(|leaf| values[*leaf as usize]).collect() };
+        let [reflectance, direct, extra, irradiance] =
+            [&self.reflectance, &self.direct, &self.extra, &self.indirect].map(|values| of(values));
+        let first: Vec<Channels> = (0..leaves.len()).map(|i| extra[i] + reflectance[i] * direct[i]).collect();
+        let areas: Vec<f64> = leaves.iter().map(|leaf| self.hierarchy.nodes[*leaf as usize].area).collect();
+        let light = LeafLight { first: &first, reflectance: &reflectance, irradiance: &irradiance };
+        let all = |i: usize| areas[i] * total(direct[i] + irradiance[i]);
+        let estimates = flux_estimates(&areas, visibility, &light);
+        let of = |(i, estimate): (usize, &FluxEstimate)| match all(i) {
+            all if all > 0.0 => estimate.variance / (all * all),
+            _ => 0.0,
+        };
+        let sum: f64 = estimates.iter().enumerate().map(of).sum();
+        sum.sqrt() / leaves.len().max(1) as f64
     }
 
     /// Brings what is known of leaves up to the root.

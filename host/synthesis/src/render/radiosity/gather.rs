@@ -214,7 +214,8 @@ impl<'g> Gatherer<'g, '_> {
 /// For each node its partners, and whether it is sure that nothing is between.
 fn by_node(nodes: usize, links: &[AssessedLink]) -> (Vec<usize>, Vec<(u32, bool)>) {
     let mut rows = vec![0usize; nodes + 1];
-    for AssessedLink { link, .. } in links {
+    let links = || links.iter().filter(|assessed| assessed.link.a != assessed.link.b);
+    for AssessedLink { link, .. } in links() {
         rows[link.a as usize] += 1;
         rows[link.b as usize] += 1;
     }
@@ -224,7 +225,7 @@ fn by_node(nodes: usize, links: &[AssessedLink]) -> (Vec<usize>, Vec<(u32, bool)
     }
     let mut next = rows.clone();
     let mut entries = vec![(NONE, false); below];
-    for AssessedLink { link, is_clear, .. } in links {
+    for AssessedLink { link, is_clear, .. } in links() {
         for (at, other) in [(link.a, link.b), (link.b, link.a)] {
             entries[next[at as usize]] = (other, *is_clear);
             next[at as usize] += 1;

@@ -14,6 +14,11 @@ use glam::DVec3;
 /// Directions that are traced from a patch for each of its parts, and at the most.
 const DIRECTIONS: u32 = 16;
 const MOST_DIRECTIONS: u32 = 1024;
+/// The standard error of the irradiance of all elements by each other, as a part of all their irradiance, that rays are
+/// enough for.
+const MOST_ERROR: f64 = 0.0004;
+/// Rays of all leaves at the most, unless the scene asks for more.
+const MOST_RAYS: usize = 1 << 22;
 
 /// The hierarchy of the patches to which light comes, straight or from others; elements of them to which none comes are
 /// dark.
@@ -125,17 +130,33 @@ fn is_any_lit(corners: [DVec3; 3], coarsest: f64, at: &impl Fn(DVec3) -> bool) -
         && [[a, ab, ca], [ab, b, bc], [ca, bc, c], [bc, ca, ab]].iter().any(|part| is_any_lit(*part, coarsest, at))
 }
 
-/// Leaf visibility, by rays.
+/// Leaf visibility, by rays: so many that chance is a small part of what leaves receive.
 ///
 /// - `row`: for each leaf, the part of all that it sees that exchanges light.
+/// - `directions`: rays of each leaf, at the least.
 pub(super) fn leaf_visibility(
     visibility: &VisibilityTester<'_>,
     elements: &Elements<'_>,
     leaves: &[u32],
-    row: Vec<f64>,
+    row: &[f64],
     directions: u32,
 ) -> LeafVisibility {
-    let directions = directions.max(1);
+    let pilot = traced(visibility, elements, leaves, row, directions.max(1));
+    let error = elements.error_by_chance(leaves, &pilot);
+    let most = (MOST_RAYS / leaves.len().max(1)).clamp(1, MOST_DIRECTIONS as usize) as f64;
+    let needed = f64::from(pilot.directions) * (error / MOST_ERROR).powi(2);
+    let more = needed.min(most).ceil() as u32;
+    if more <= pilot.directions { pilot } else { traced(visibility, elements, leaves, row, more) }
+}
+
+/// What so many rays of each leaf hit.
+fn traced(
+    visibility: &VisibilityTester<'_>,
+    elements: &Elements<'_>,
+    leaves: &[u32],
+    row: &[f64],
+    directions: u32,
+) -> LeafVisibility {
     let hierarchy: &Hierarchy = &elements.hierarchy;
     let elements_of_sides = SideElements::new(visibility, hierarchy);
     let mut place = vec![NONE; hierarchy.nodes.len()];
@@ -176,5 +197,5 @@ pub(super) fn leaf_visibility(
     };
     let through_openings = through.into_iter().filter_map(link).collect();
     let (part, is_dark) = (seen.iter().map(part).collect(), alight.iter().map(|alight| !alight).collect());
-    LeafVisibility { directions, hits: seen.concat(), seen_part: part, row, is_dark, through_openings }
+    LeafVisibility { directions, hits: seen.concat(), seen_part: part, row: row.to_vec(), is_dark, through_openings }
 }

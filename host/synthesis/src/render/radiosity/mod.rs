@@ -148,7 +148,7 @@ impl Radiosity {
             let corners = is_last.then(|| ElementCorners::new(prepared, &elements.hierarchy, &leaves));
             let views = corners.as_ref().map(|corners| gatherer.views(&links, corners, &elements.sent));
             let leaf_visibility = views.as_ref().map(|views| {
-                lit_patches::leaf_visibility(&visibility, &elements, &leaves, views.rows(), settings.directions)
+                lit_patches::leaf_visibility(&visibility, &elements, &leaves, &views.rows(), settings.directions)
             });
             let tolerance = if is_last { settings.tolerance } else { 1e-2 };
             let last = leaf_visibility.as_ref().zip(views.as_ref());

@@ -15,6 +15,13 @@ pub(super) struct Opening {
     pub(super) area: f64,
 }
 
+/// Patches of the reveal of an opening are no wider than it and no farther from it than so many times as much.
+const REVEAL: f64 = 8.0;
+/// The finest elements of a reveal, as a part of the shorter side of the opening.
+const FINEST: f64 = 1.0 / 8.0;
+/// How much wider than the opening a patch may be by rounding.
+const ROUNDING: f64 = 1e-6;
+
 impl Opening {
     fn of(shape: &LightShape) -> Option<Opening> {
         let LightShape::Rectangle { corner, across, up } = *shape else { return None };
@@ -27,6 +34,21 @@ impl Opening {
     /// - `uniform`: a point of the unit square.
     pub(super) fn point(&self, [u, v]: [f64; 2]) -> DVec3 {
         self.corner + self.across * u + self.up * v
+    }
+
+    /// Whether a triangle is part of its reveal: the sides of the hole in the wall.
+    fn has_in_reveal(&self, corners: [DVec3; 3]) -> bool {
+        let side = self.shorter_side();
+        let middle = self.corner + 0.5 * (self.across + self.up);
+        let [a, b, c] = corners;
+        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        let width = (b - a).cross(c - a).length() / longest;
+        let reach = REVEAL * side + 0.5 * self.across.length().max(self.up.length());
+        width <= side * (1.0 + ROUNDING) && corners.iter().any(|corner| corner.distance(middle) <= reach)
+    }
+
+    fn shorter_side(&self) -> f64 {
+        self.across.length().min(self.up.length())
     }
 
     /// Whether a ray crosses it before a parameter.
@@ -52,6 +74,13 @@ pub(super) struct Openings(pub(super) Vec<Opening>);
 impl Openings {
     pub(super) fn new(rectangles: &[LightShape]) -> Openings {
         Openings(rectangles.iter().filter_map(Opening::of).collect())
+    }
+
+    /// The length of the finest elements that a triangle needs: short in a reveal, where light changes within the width
+    /// of the opening; elsewhere infinite.
+    pub(super) fn finest_of(&self, corners: [DVec3; 3]) -> f64 {
+        let of_reveals = self.0.iter().filter(|opening| opening.has_in_reveal(corners));
+        of_reveals.map(|opening| FINEST * opening.shorter_side()).fold(f64::INFINITY, f64::min)
     }
 
     /// Whether a ray crosses one before a parameter.

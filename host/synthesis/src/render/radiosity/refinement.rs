@@ -175,11 +175,10 @@ impl RefinementOracle<'_, '_> {
             false => rough,
         };
         if unoccluded <= 0.0 {
-            let is_sure = are_elements || self.is_fine(a, b, 0.25 * most);
-            return if is_sure {
-                RefinementStep::Drop
-            } else {
-                self.divide(a, b, is_clear).unwrap_or(RefinementStep::Drop)
+            return match (are_elements, 0.25 * most) {
+                (true, _) => RefinementStep::Drop,
+                (_, error_bound) if self.is_fine(a, b, error_bound) => none_yet([a, b], error_bound, is_clear),
+                _ => self.divide(a, b, is_clear).unwrap_or(RefinementStep::Drop),
             };
         }
         let seen = self.visibility(a, b, is_clear, self.is_fine(a, b, NOT_VISIBLE * unoccluded));
@@ -199,20 +198,24 @@ impl RefinementOracle<'_, '_> {
         })
     }
 
-    /// The refinement step of a node with itself: an element exchanges nothing, a cluster little if it is nearly flat.
+    /// The refinement step of a node with itself: an element exchanges nothing, a cluster little if it is nearly flat or
+    /// dim.
     fn within(&self, at: u32, node: &HierarchyNode) -> RefinementStep {
         if !node.is_cluster() {
             return RefinementStep::Drop;
         }
-        match self.is_fine(at, at, within_turn(2.0 * node.spread) * node.area) {
-            true => RefinementStep::Drop,
+        let error_bound = within_turn(2.0 * node.spread) * node.area;
+        match self.is_fine(at, at, error_bound) {
+            true => none_yet([at, at], error_bound, false),
             false => RefinementStep::Within(at),
         }
     }
 
     /// The larger of both that can be divided.
     fn divide(&self, a: u32, b: u32, is_clear: bool) -> Option<RefinementStep> {
-        let can = |node: &HierarchyNode| !node.is_leaf() || node.longest_edge() >= 2.0 * self.bound.finest;
+        let is_long =
+            |node: &HierarchyNode| node.longest_edge() >= 2.0 * self.elements.finest_of(node, self.bound.finest);
+        let can = |node: &HierarchyNode| !node.is_leaf() || is_long(node);
         let (first, second) = (self.node(a), self.node(b));
         let takes_first = can(first) && (first.radius >= second.radius || !can(second));
         if takes_first {
@@ -265,6 +268,11 @@ impl RefinementOracle<'_, '_> {
         }
         if all > 0.0 { if agree(seen, all) { f64::from(seen > 0.0) } else { seen / all } } else { 0.0 }
     }
+}
+
+/// Keeps two nodes that exchange nothing that counts with the light that is known, but may when more is.
+fn none_yet([a, b]: [u32; 2], error_bound: f64, is_clear: bool) -> RefinementStep {
+    RefinementStep::Keep(AssessedLink { link: ExchangeLink { a, b, exchange: 0.0 }, error_bound, is_clear })
 }
 
 /// The greatest form factor between elements whose normals differ by an angle: that of all between their planes.

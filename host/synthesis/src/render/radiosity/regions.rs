@@ -8,8 +8,8 @@ const MOST_ERROR: f64 = 0.03;
 /// less than this.
 const SIGNIFICANT: f64 = 3.0;
 const LEAST_DIFFERENCE: f64 = 0.002;
-/// So many times what chance explains of a difference is taken from it.
-const CAUTION: f64 = 2.0;
+/// The variance of a larger part counts as much as so many rays of a smaller one.
+const RAYS_OF_LARGER: f64 = 64.0;
 
 /// The flux that a leaf receives, in all lanes together: W.
 #[derive(Clone, Copy, Debug, Default)]
@@ -19,6 +19,8 @@ pub(super) struct FluxEstimate {
     /// What random rays tell, and the variance of that.
     pub(super) by_rays: f64,
     pub(super) variance: f64,
+    /// How many rays.
+    pub(super) rays: u32,
 }
 
 impl FluxEstimate {
@@ -32,13 +34,17 @@ impl FluxEstimate {
         if self.by_rays > 0.0 { self.variance.sqrt() / self.by_rays } else { 0.0 }
     }
 
-    /// The standard error of the factor.
-    ///
-    /// Where few rays bring light, their variance is too small just where the light is: it is no less than that of as
-    /// much light of a larger part.
-    fn error(&self, larger: &FluxEstimate) -> f64 {
+    /// Takes the variance as the mean of its own and of that of as much light of a larger part, each as certain as so many
+    /// rays: where few rays bring light, their variance is too small just where the light is.
+    fn pool_variance(&mut self, larger: &FluxEstimate) {
         let each = if larger.by_rays > 0.0 { larger.variance / larger.by_rays } else { 0.0 };
-        self.variance.max(each * self.by_elements).sqrt() / self.by_elements
+        let own = f64::from(self.rays) / (f64::from(self.rays) + RAYS_OF_LARGER);
+        self.variance = own * self.variance + (1.0 - own) * each * self.by_elements;
+    }
+
+    /// The standard error of the factor.
+    fn error(&self) -> f64 {
+        self.variance.sqrt() / self.by_elements
     }
 }
 
@@ -51,7 +57,7 @@ pub(super) struct Regions {
     pub(super) all: FluxEstimate,
 }
 
-/// Sums of estimates over all nodes.
+/// Sums of estimates over all nodes, with pooled variances.
 fn sums(hierarchy: &Hierarchy, leaves: &[u32], estimates: &[FluxEstimate]) -> Vec<FluxEstimate> {
     let nodes = &hierarchy.nodes;
     let mut of = vec![FluxEstimate::default(); nodes.len()];
@@ -64,36 +70,43 @@ fn sums(hierarchy: &Hierarchy, leaves: &[u32], estimates: &[FluxEstimate]) -> Ve
             sum.by_elements += child.by_elements;
             sum.by_rays += child.by_rays;
             sum.variance += child.variance;
+            sum.rays += child.rays;
         }
+    }
+    for place in 0..nodes.len() {
+        let larger = of[place];
+        nodes[place].children().for_each(|child| of[child].pool_variance(&larger));
     }
     of
 }
 
 /// For each leaf, by what its light is multiplied so that all nodes receive what rays tell, as far as that is certain.
 ///
-/// From the root down, the factors of the children of a node differ as rays tell, times a part that is the nearer to 1
-/// the less chance explains the difference, and together the children receive what the node does.
+/// From the root down, the factors of the children of a node differ from its own as rays tell, times a part that is the
+/// nearer to 1 the less chance explains the difference.
 ///
 /// - `leaves`: their nodes. `estimates`: what each receives.
+/// - `caution`: so many times what chance explains of a difference is taken from it; the more, the better elements know.
 ///
 /// # Source
 /// The part: James and Stein 1961.
-pub(super) fn factors(hierarchy: &Hierarchy, leaves: &[u32], estimates: &[FluxEstimate]) -> Vec<f64> {
+pub(super) fn factors(hierarchy: &Hierarchy, leaves: &[u32], estimates: &[FluxEstimate], caution: f64) -> Vec<f64> {
     let nodes = &hierarchy.nodes;
     let of = sums(hierarchy, leaves, estimates);
     let mut factor = vec![1.0; nodes.len()];
-    let certain = |parts: f64, surprise: f64| (1.0 - CAUTION * parts / surprise).max(0.0);
+    let certain = |parts: f64, surprise: f64| (1.0 - caution * parts / surprise).max(0.0);
     if let Some(root) = of.first().filter(|root| root.by_elements > 0.0) {
         let off = root.factor() - 1.0;
-        factor[0] = 1.0 + off * certain(1.0, (off / root.error(root)).powi(2));
+        factor[0] = 1.0 + off * certain(1.0, (off / root.error()).powi(2));
     }
     for place in 0..nodes.len() {
-        let known = of[place];
         let lit = || nodes[place].children().filter(|child| of[*child].by_elements > 0.0);
-        let off = |child: usize| of[child].factor() - known.factor();
-        let surprise: f64 = lit().map(|child| (off(child) / of[child].error(&known)).powi(2)).sum();
-        let part = certain(lit().count() as f64 - 1.0, surprise);
-        lit().for_each(|child| factor[child] = (factor[place] + off(child) * part).max(0.0));
+        // Off what is multiplied by already: where rays tell nothing certain of a node, they may of parts of it.
+        let off = |child: usize| of[child].factor() - factor[place];
+        let surprise: f64 = lit().map(|child| (off(child) / of[child].error()).powi(2)).sum();
+        let part = certain(lit().count() as f64, surprise);
+        let factors: Vec<(usize, f64)> = lit().map(|child| (child, factor[place] + off(child) * part)).collect();
+        factors.into_iter().for_each(|(child, of_child)| factor[child] = of_child.max(0.0));
     }
     leaves.iter().map(|leaf| factor[*leaf as usize]).collect()
 }
@@ -106,20 +119,20 @@ impl Regions {
         let nodes = &hierarchy.nodes;
         let of = sums(hierarchy, leaves, estimates);
         // The region of a node, or that of its parent, whose light is wrong by another factor; at the root, by none.
-        let region_of = |node: usize, parent: usize, within: Option<usize>| {
+        let region_of = |node: usize, within: Option<usize>| {
             let known = within.map_or(1.0, |region| of[region].factor());
-            let error = of[node].error(&of[parent]);
+            let error = of[node].error();
             let difference = (of[node].factor() - known).abs();
             let is_apart = error <= MOST_ERROR && difference > (SIGNIFICANT * error).max(LEAST_DIFFERENCE);
             if is_apart { Some(node) } else { within }
         };
         let mut region = vec![None; nodes.len()];
         if !nodes.is_empty() {
-            region[0] = region_of(0, 0, None);
+            region[0] = region_of(0, None);
         }
         for place in 0..nodes.len() {
             for child in nodes[place].children() {
-                region[child] = region_of(child, place, region[place]);
+                region[child] = region_of(child, region[place]);
             }
         }
         let (mut number, mut count) = (vec![usize::MAX; nodes.len()], 1);
@@ -155,13 +168,14 @@ mod tests {
     #[test]
     fn light_is_corrected_where_rays_are_certain_and_only_there() {
         let (hierarchy, leaves) = row(64);
-        let estimate = |by_rays: f64, error: f64| FluxEstimate { by_elements: 1.0, by_rays, variance: error * error };
+        let estimate =
+            |by_rays: f64, error: f64| FluxEstimate { by_elements: 1.0, by_rays, variance: error * error, rays: 100 };
         let near = |leaf: u32| hierarchy.nodes[leaf as usize].middle.x < 32.0;
         // Half of it has 20 % too little light.
         let half = |error: f64| -> Vec<FluxEstimate> {
             leaves.iter().map(|leaf| estimate(if near(*leaf) { 1.2 } else { 1.0 }, error)).collect()
         };
-        let certain = factors(&hierarchy, &leaves, &half(0.01));
+        let certain = factors(&hierarchy, &leaves, &half(0.01), 2.0);
         let off = |(leaf, factor): (&u32, &f64)| (factor - if near(*leaf) { 1.2 } else { 1.0 }).abs();
         assert!(leaves.iter().zip(&certain).map(off).fold(0.0, f64::max) < 0.01, "{certain:?}");
         let regions = Regions::new(&hierarchy, &leaves, &half(0.01));
@@ -176,7 +190,7 @@ mod tests {
             of[0]
         });
         assert!(one != other);
-        assert!(factors(&hierarchy, &leaves, &half(3.0)).iter().all(|factor| *factor == 1.0));
+        assert!(factors(&hierarchy, &leaves, &half(3.0), 2.0).iter().all(|factor| *factor == 1.0));
     }
 
     #[test]
@@ -184,13 +198,18 @@ mod tests {
         let (hierarchy, leaves) = row(100);
         let light = |i: usize| 1.0 + 0.9 * (i as f64 * 0.7).sin();
         let estimates: Vec<FluxEstimate> = (0..leaves.len())
-            .map(|i| FluxEstimate { by_elements: light(i), by_rays: 1.1 * light(3 * i), variance: 1e-4 * light(i) })
+            .map(|i| FluxEstimate {
+                by_elements: light(i),
+                by_rays: 1.1 * light(3 * i),
+                variance: 1e-4 * light(i),
+                rays: 100,
+            })
             .collect();
-        let factors = factors(&hierarchy, &leaves, &estimates);
+        let factors = factors(&hierarchy, &leaves, &estimates, 2.0);
         let sum: f64 = factors.iter().zip(&estimates).map(|(factor, estimate)| factor * estimate.by_elements).sum();
         let rays: f64 = estimates.iter().map(|estimate| estimate.by_rays).sum();
         assert!((sum / rays - 1.0).abs() < 1e-3, "{sum} {rays}");
         let none = vec![FluxEstimate::default(); leaves.len()];
-        assert!(super::factors(&hierarchy, &leaves, &none).iter().all(|factor| *factor == 1.0));
+        assert!(super::factors(&hierarchy, &leaves, &none, 2.0).iter().all(|factor| *factor == 1.0));
     }
 }

@@ -13,7 +13,7 @@ use crate::numeric::sequence::SobolSequence;
 use serde::{Deserialize, Serialize};
 
 /// Rays through all openings together, on either side, and through each at the least.
-const RAYS: u32 = 1 << 17;
+const RAYS: u32 = 1 << 19;
 const FEWEST_RAYS: u32 = 1 << 10;
 /// Rays that are traced as one piece of work.
 const AT_ONCE: u32 = 1 << 10;
