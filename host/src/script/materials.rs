@@ -8,9 +8,10 @@ use super::kinds::{
     NumberOrTextValue, Powers, Reflectance, TextKind, Vector,
 };
 use super::lighting::{SPECTRUM, color_of_light};
-use super::parameter::{Defaulted, optional, required, with_default};
+use super::parameter::{Defaulted, Optional, optional, required, with_default};
 use super::shared::OBJECT;
 use crate::color::{Color, shipped};
+use crate::illumination::distribution::FacetForm;
 use crate::illumination::material::{
     Classic, Coated, Distributed, DistributionForm, Finish, Material, MaterialKind, Metal, Principled, RefractiveIndex,
     Transparent,
@@ -26,6 +27,13 @@ const ROUGHNESS: Defaulted<AmountKind, f64> = with_default(
     "roughness m: root mean square slope of its facets, times the root of 2",
 )
 .note("polished");
+
+/// How the facets of a rough surface are distributed.
+const FACETS: Optional<DistributionKind> = optional(
+    DistributionKind,
+    "\"GGX, all\"",
+    "how its facets are distributed: \"GGX, all\", \"Beckmann, all\", these without \", all\" for a single reflection, or what user_distribution() returned",
+);
 
 /// A part of the whole.
 const PART: AmountKind = AmountKind(0.0, 1.0);
@@ -52,7 +60,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         material(
             object: OBJECT,
             diffuse: with_default(Reflectance, 0.7, "diffusely reflected fraction"),
-            specular: with_default(Reflectance, 0.0, "fraction in the highlight"),
+            specular: with_default(Reflectance, 0.0, "fraction in the highlight, the same at every incidence"),
             exponent: with_default(AmountKind(1.0, Classic::MOST_EXPONENT), 50.0, "sharpness of the highlight"),
             mirror: with_default(Reflectance, 0.0, "mirrored fraction"),
             transparency: with_default(Reflectance, 0.0, "fraction that goes straight through"),
@@ -73,9 +81,9 @@ pub(super) const FUNCTIONS: &[Function] = &[
             ),
             roughness: ROUGHNESS,
             distribution: optional(
-                TextKind,
-                "\"Beckmann, all\"",
-                "how its facets are distributed: a member of the family that peris study illumination lists",
+                DistributionKind,
+                "\"GGX, all\"",
+                "how its facets are distributed: a member of the family that peris study illumination lists, or what user_distribution() returned",
             ),
             along: optional(Vector, "not brushed", "the direction in which it is brushed"),
             across: optional(AmountKind(0.0, 1000.0), "roughness", "roughness across that direction"),
@@ -88,18 +96,23 @@ pub(super) const FUNCTIONS: &[Function] = &[
                 (Some(along), _) if along.try_normalize().is_none() => {
                     return Err("along must not have the length 0".into());
                 }
-                (Some(_), _) if distribution.is_some() => {
-                    return Err("a brushed metal has Beckmann's facets; leave the distribution out".into());
-                }
                 (Some(along), across) => {
                     let across = across.unwrap_or_else(|| roughness.clone());
-                    Finish::Brushed { roughness: [roughness, across], along }
+                    let name = match distribution {
+                        Some(DistributionValue::Table(_)) => {
+                            return Err("a brushed metal has the facets of \"GGX\" or \"Beckmann\"".into());
+                        }
+                        Some(DistributionValue::Name(name)) => name,
+                        None => "GGX".into(),
+                    };
+                    Finish::Brushed { name, roughness: [roughness, across], along }
                 }
                 (None, Some(_)) => return Err("across needs along".into()),
-                (None, None) if roughness == PaintedNumber::Constant(0.0) => Finish::Polished,
-                (None, None) => {
-                    Finish::Rough { name: distribution.unwrap_or_else(|| "Beckmann, all".into()), roughness }
-                }
+                (None, None) => match facet_form(distribution, &roughness)? {
+                    FacetForm::Table(table) => Finish::Facets(table),
+                    FacetForm::Model(_) if roughness == PaintedNumber::Constant(0.0) => Finish::Polished,
+                    FacetForm::Model(name) => Finish::Rough { name, roughness },
+                },
             };
             give(builder, object, MaterialKind::Metal(Metal { n, k, finish }))
         }
@@ -116,6 +129,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             roughness: ROUGHNESS,
             absorption: ABSORPTION,
             priority: priority(0),
+            distribution: FACETS,
         )
         "Makes an object of glass, plastic or a gem: it reflects, refracts and absorbs. It must be closed. Where bodies overlap, that of the greatest priority is there: let water reach a little into the glass in which it stands."
         "pot.glass(\"BK7\");"
@@ -127,16 +141,24 @@ pub(super) const FUNCTIONS: &[Function] = &[
                 (None, Some(name)) | (Some(NumberOrTextValue::Text(name)), None) => named(&name)?,
                 _ => return Err("give either an index or the name of a glass".into()),
             };
-            transparent(builder, object, Transparent { roughness, priority, ..absorbing(index, absorption) })
+            let facets = facet_form(distribution, &roughness)?;
+            transparent(builder, object, Transparent { roughness, facets, priority, ..absorbing(index, absorption) })
         }
     },
     function! {
-        water(object: OBJECT, absorption: ABSORPTION, roughness: ROUGHNESS, priority: priority(Transparent::LIQUID))
+        water(
+            object: OBJECT,
+            absorption: ABSORPTION,
+            roughness: ROUGHNESS,
+            priority: priority(Transparent::LIQUID),
+            distribution: FACETS,
+        )
         "Makes an object of water. It must be closed; in a vessel of glass, let it reach a little into the glass, which keeps its place."
         "pot.water([0.35, 0.06, 0.02]);"
         |builder| {
             let index = liquid("water")?;
-            transparent(builder, object, Transparent { roughness, priority, ..absorbing(index, absorption) })
+            let facets = facet_form(distribution, &roughness)?;
+            transparent(builder, object, Transparent { roughness, facets, priority, ..absorbing(index, absorption) })
         }
     },
     function! {
@@ -146,12 +168,14 @@ pub(super) const FUNCTIONS: &[Function] = &[
             absorption: ABSORPTION,
             roughness: ROUGHNESS,
             priority: priority(Transparent::LIQUID),
+            distribution: FACETS,
         )
         "Makes an object of a liquid. It must be closed; in a vessel of glass, let it reach a little into the glass, which keeps its place."
         "pot.liquid(\"ethanol\", [0.1, 0.8, 2]);"
         |builder| {
             let index = liquid(&name)?;
-            transparent(builder, object, Transparent { roughness, priority, ..absorbing(index, absorption) })
+            let facets = facet_form(distribution, &roughness)?;
+            transparent(builder, object, Transparent { roughness, facets, priority, ..absorbing(index, absorption) })
         }
     },
     function! {
@@ -231,7 +255,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         user_distribution(
             area: required(FunctionOfAngle, "of the angle in radians, 0 to pi/2; finite, not negative, of any unit"),
         )
-        "Makes a distribution for shaped() of the area of facets per solid angle of their normals, a function of the angle between facet and surface. It is scaled to a whole surface, masked after Smith, and sampled to a table; peris plan tells how well the table stands for it."
+        "Makes a distribution for shaped(), metal() and glass() of the area of facets per solid angle of their normals, a function of the angle between facet and surface. It is scaled to a whole surface, masked after Smith, and sampled to a table; peris plan tells how well the table stands for it."
         "pot.shaped(0.8, user_distribution(|angle| exp(-angle * angle / 0.09)));"
         |_| Ok(Dynamic::from(area))
     },
@@ -255,6 +279,18 @@ fn give(builder: &mut Builder, handle: Handle, body: MaterialKind) -> CallResult
     material.check().map_err(|error| error.to_string())?;
     object.material = Some(material);
     Ok(Dynamic::from(handle))
+}
+
+/// The facets that a distribution tells; the table of a user's has its roughness in it.
+fn facet_form(distribution: Option<DistributionValue>, roughness: &PaintedNumber) -> Result<FacetForm, String> {
+    match distribution {
+        None => Ok(FacetForm::default()),
+        Some(DistributionValue::Name(name)) => Ok(FacetForm::Model(name)),
+        Some(DistributionValue::Table(_)) if *roughness != PaintedNumber::Constant(0.0) => {
+            Err("a distribution of the user's has no roughness".into())
+        }
+        Some(DistributionValue::Table(table)) => Ok(FacetForm::Table(table)),
+    }
 }
 
 fn transparent(builder: &mut Builder, handle: Handle, body: Transparent) -> CallResult {

@@ -2,9 +2,10 @@
 
 use super::*;
 use crate::color::Color;
+use crate::illumination::distribution::FacetForm;
 use crate::illumination::light::{LightShape, SkyDisc, SkyMap};
 use crate::illumination::material::{
-    Classic, Distributed, DistributionForm, MaterialKind, RefractiveIndex, Transparent,
+    Classic, Distributed, DistributionForm, Finish, MaterialKind, Metal, RefractiveIndex, Transparent,
 };
 use crate::illumination::{Light, Material};
 use crate::scene::Shape;
@@ -145,6 +146,41 @@ fn a_function_of_a_script_becomes_a_distribution_or_an_error_with_its_place() {
             .to_string()
             .contains("has no roughness")
     );
+}
+
+#[test]
+fn metal_and_glass_take_the_same_distributions() {
+    let made = run("
+        let own = user_distribution(|angle| exp(-9 * angle * angle));
+        sphere(1).metal(#{ name: \"copper\", distribution: own });
+        sphere(1).glass(#{ distribution: own });
+        sphere(1).metal(\"copper\", 0.3);
+        sphere(1).glass(#{ roughness: 0.3 });
+        sphere(1).water(#{ roughness: 0.3, distribution: \"Beckmann, all\" });
+        sphere(1).metal(#{ name: \"copper\", roughness: 0.1, along: [1, 0, 0], across: 0.3 });
+    ");
+    let bodies: Vec<MaterialKind> =
+        made.scene.objects.iter().filter_map(|object| Some(object.material.clone()?.body)).collect();
+    let [MaterialKind::Metal(metal), MaterialKind::Transparent(glass), rest @ ..] = &bodies[..] else {
+        panic!("{bodies:?}")
+    };
+    assert!(matches!((&metal.finish, &glass.facets), (Finish::Facets(a), FacetForm::Table(b)) if a == b));
+    let [MaterialKind::Metal(metal), MaterialKind::Transparent(glass), MaterialKind::Transparent(water), last] = rest
+    else {
+        panic!("{rest:?}")
+    };
+    assert!(matches!(&metal.finish, Finish::Rough { name, .. } if FacetForm::Model(name.clone()) == glass.facets));
+    assert_eq!(water.facets, FacetForm::Model("Beckmann, all".into()));
+    assert!(matches!(last, MaterialKind::Metal(Metal { finish: Finish::Brushed { name, .. }, .. }) if name == "GGX"));
+    for (call, problem) in [
+        ("glass(#{ roughness: 0.2, distribution: user_distribution(|angle| 1) })", "has no roughness"),
+        ("metal(#{ name: \"gold\", roughness: 0.2, distribution: user_distribution(|angle| 1) })", "has no roughness"),
+        ("glass(#{ roughness: 0.2, distribution: \"Blinn\" })", "GGX, all"),
+        ("metal(#{ name: \"gold\", along: [1, 0, 0], roughness: 0.1, distribution: \"Phong\" })", "GGX"),
+    ] {
+        let error = evaluate(&format!("cube(1).{call};"), "a", Path::new(""), &Inputs::default()).expect_err(call);
+        assert!(error.to_string().contains(problem), "{call}: {error}");
+    }
 }
 
 #[test]

@@ -55,8 +55,9 @@ impl RecordKind {
     /// fails when that is forgotten.
     pub(super) fn version(self) -> u32 {
         match self {
-            // Numbers that change from place to place, priorities of transparent bodies.
-            RecordKind::Material => 2,
+            // 2: numbers that change from place to place, priorities of transparent bodies. 3: the facets of glass and
+            // of brushed metals.
+            RecordKind::Material => 3,
             _ => 1,
         }
     }

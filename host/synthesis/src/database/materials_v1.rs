@@ -70,9 +70,11 @@ impl From<BodyV1> for material::MaterialKind {
                     FinishV1::Rough { name, roughness } => {
                         material::Finish::Rough { name, roughness: roughness.into() }
                     }
-                    FinishV1::Brushed { roughness, along } => {
-                        material::Finish::Brushed { roughness: roughness.to_array().map(Into::into), along }
-                    }
+                    FinishV1::Brushed { roughness, along } => material::Finish::Brushed {
+                        name: "Beckmann".into(),
+                        roughness: roughness.to_array().map(Into::into),
+                        along,
+                    },
                 };
                 material::MaterialKind::Metal(material::Metal { n, k, finish })
             }

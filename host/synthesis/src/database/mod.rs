@@ -12,6 +12,7 @@ mod check;
 mod error;
 mod exchange;
 mod materials_v1;
+mod materials_v2;
 mod kind;
 mod library;
 mod record;

@@ -4,7 +4,7 @@
 //! it is in a few words, source, terms) and the content. The checksum covers kind, name and all behind it.
 
 use super::kind::{LONGEST_NAME, MAX_RECORD};
-use super::{DatabaseError, RecordKind, StoredPhotons, materials_v1};
+use super::{DatabaseError, RecordKind, StoredPhotons, materials_v1, materials_v2};
 use crate::color::shipped::ComplexIndex;
 use crate::color::{Origin, Spectrum};
 use crate::encoding::{Integers, decode, encode};
@@ -181,6 +181,9 @@ impl RecordContent {
             RecordKind::Material if version == 1 => {
                 RecordContent::Material(Box::new(decoded::<materials_v1::MaterialV1>(bytes)?.into()))
             }
+            RecordKind::Material if version == 2 => {
+                RecordContent::Material(Box::new(decoded::<materials_v2::MaterialV2>(bytes)?.into()))
+            }
             RecordKind::Material => RecordContent::Material(Box::new(decoded(bytes)?)),
             RecordKind::Light => RecordContent::Light(Box::new(decoded(bytes)?)),
             RecordKind::Spectrum => RecordContent::Spectrum(decoded(bytes)?),
@@ -348,12 +351,12 @@ fn checksum(kind: RecordKind, name: &str, bytes: &[u8]) -> u32 {
     sum.finalize()
 }
 
-/// The bytes of a material with a content of the form of version 1.
+/// The bytes of a material with a content of the form of an earlier version.
 #[cfg(test)]
-pub(super) fn first_for_tests(record: &Record, content: &impl Serialize) -> Vec<u8> {
+pub(super) fn earlier_for_tests(record: &Record, version: u8, content: &impl Serialize) -> Vec<u8> {
     let Origin { what, source, terms } = record.origin.clone();
     let head = Head { summary: record.content.summary(), what, source, terms };
-    let mut bytes = vec![1, 0, 0, 0, 0, 0, 0, 0];
+    let mut bytes = vec![version, 0, 0, 0, 0, 0, 0, 0];
     bytes.extend(encoded(&head).expect("a head"));
     bytes.extend(encoded(content).expect("a content"));
     let sum = checksum(RecordKind::Material, &record.name, &bytes);

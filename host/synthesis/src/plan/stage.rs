@@ -2,9 +2,11 @@
 
 use super::decision::Decision;
 use crate::illumination::Material;
-use crate::illumination::distribution::TableError;
+use crate::illumination::distribution::{FacetForm, TableError};
 use crate::illumination::light::LightOrigin;
-use crate::illumination::material::{Classic, Coated, Distributed, DistributionForm, MaterialKind};
+use crate::illumination::material::{
+    Classic, Coated, Distributed, DistributionForm, Finish, MaterialKind, Metal, Transparent,
+};
 use crate::illumination::optics::Interreflection;
 use crate::scene::{Caustics, Prepared, PreparedObject};
 
@@ -361,8 +363,11 @@ fn highlights(facts: &Facts<'_>) -> Decision {
     let mut decision = direct(facts, "highlight", has_highlight);
     let mut told = Vec::new();
     for material in facts.included().flat_map(|object| &object.materials) {
-        let MaterialKind::Shaped(Distributed { form: DistributionForm::Facets(table), .. }) = &material.body else {
-            continue;
+        let table = match &material.body {
+            MaterialKind::Shaped(Distributed { form: DistributionForm::Facets(table), .. })
+            | MaterialKind::Metal(Metal { finish: Finish::Facets(table), .. })
+            | MaterialKind::Transparent(Transparent { facets: FacetForm::Table(table), .. }) => table,
+            _ => continue,
         };
         let TableError { greatest, mean, values } = table.error();
         let words = format!(

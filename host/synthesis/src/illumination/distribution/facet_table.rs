@@ -1,7 +1,7 @@
 //! Any distribution of facets: a function of the angle between facet and surface, sampled to a table with a stated
 //! error.
 
-use super::{Distribution, DistributionError};
+use super::{Distribution, DistributionError, LEAST_ROUGHNESS, MOST_ROUGHNESS};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -231,8 +231,39 @@ impl FacetTable {
     }
 
     /// The area that the facets show to a direction of a cosine: at least that.
-    fn projected(&self, cosine: f64) -> f64 {
+    pub(super) fn projected(&self, cosine: f64) -> f64 {
         self.shown.at(cosine).max(cosine)
+    }
+
+    /// Area of the facets with a normal along a direction of any length, 1/sr; 0 below the horizon.
+    pub(super) fn area(&self, half: DVec3) -> f64 {
+        if half.z > 0.0 { self.area.at(angle(half)) } else { 0.0 }
+    }
+
+    /// The normal of a facet; about as many of each angle as their area times cosine tells.
+    pub(super) fn normal(&self, point: [f64; 2]) -> DVec3 {
+        let k = self.below.partition_point(|below| *below <= point[0]).saturating_sub(1).min(self.below.len() - 2);
+        let inside = ((point[0] - self.below[k]) / (self.below[k + 1] - self.below[k])).clamp(0.0, 1.0);
+        // Even in the square of the sine is a pdf with the cosine.
+        let [from, to] = [k, k + 1].map(|k| self.area.places[k].sin().powi(2));
+        let square = (from + (to - from) * inside).clamp(0.0, 1.0);
+        let (sin, cos) = (TAU * point[1]).sin_cos();
+        let sine = square.sqrt();
+        DVec3::new(sine * cos, sine * sin, (1.0 - square).sqrt())
+    }
+
+    /// The pdf of [`FacetTable::normal`], 1/sr.
+    ///
+    /// - `normal`: unit length.
+    pub(super) fn normal_pdf(&self, normal: DVec3) -> f64 {
+        let (k, _) = self.area.find(angle(normal));
+        let [from, to] = [k, k + 1].map(|k| self.area.places[k].sin().powi(2));
+        (self.below[k + 1] - self.below[k]) / (PI * (to - from)) * normal.z.max(0.0)
+    }
+
+    /// The roughness m of GGX's facets that show as much to the horizon: half of m.
+    pub(in crate::illumination) fn roughness(&self) -> f64 {
+        (2.0 * self.projected(0.0)).clamp(LEAST_ROUGHNESS, MOST_ROUGHNESS)
     }
 }
 
@@ -271,24 +302,15 @@ impl Distribution for FacetTable {
     }
 
     fn sample(&self, light: DVec3, point: [f64; 2]) -> Option<DVec3> {
-        let k = self.below.partition_point(|below| *below <= point[0]).saturating_sub(1).min(self.below.len() - 2);
-        let inside = ((point[0] - self.below[k]) / (self.below[k + 1] - self.below[k])).clamp(0.0, 1.0);
-        // Even in the square of the sine is a pdf with the cosine.
-        let [from, to] = [k, k + 1].map(|k| self.area.places[k].sin().powi(2));
-        let square = (from + (to - from) * inside).clamp(0.0, 1.0);
-        let (sin, cos) = (TAU * point[1]).sin_cos();
-        let sine = square.sqrt();
-        let normal = DVec3::new(sine * cos, sine * sin, (1.0 - square).sqrt());
+        let normal = self.normal(point);
         (normal * (2.0 * normal.dot(light)) - light).try_normalize().filter(|view| view.z > 0.0)
     }
 
     fn pdf(&self, light: DVec3, view: DVec3) -> f64 {
         let half = light + view;
-        let (k, _) = self.area.find(angle(half));
-        let [from, to] = [k, k + 1].map(|k| self.area.places[k].sin().powi(2));
         // The solid angle of the viewer is 4 (L·H) times that of the normal, and L·H half the length of L + V.
         let length = half.length();
-        (self.below[k + 1] - self.below[k]) / (PI * (to - from)) * (half.z / length) / (2.0 * length)
+        self.normal_pdf(half / length) / (2.0 * length)
     }
 }
 

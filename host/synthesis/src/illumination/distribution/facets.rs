@@ -1,8 +1,7 @@
 //! A surface of many small mirrors: how their normals are distributed, and which of them a direction sees.
 
-use super::special::inverse_of_visible;
+use super::special::{gaussian, inverse_of_gaussian, inverse_of_visible};
 use glam::{DVec2, DVec3};
-use libm::erf;
 use std::f64::consts::{PI, TAU};
 
 /// How the slopes of microfacets are distributed.
@@ -13,9 +12,6 @@ pub enum SlopeDistribution {
     /// Slopes of an ellipsoid: longer tails (Trowbridge and Reitz).
     Ggx,
 }
-
-/// Half of 2 over the root of pi: the mean slope that a horizontal direction sees of a Gaussian surface.
-const GAUSSIAN: f64 = 0.282_094_791_773_878_14;
 
 impl SlopeDistribution {
     /// Area of the facets with a normal per unit surface area and solid angle, 1/sr.
@@ -59,8 +55,8 @@ impl SlopeDistribution {
         match self {
             SlopeDistribution::Beckmann if spread == 0.0 => towards.z,
             SlopeDistribution::Beckmann => {
-                let a = towards.z / spread;
-                towards.z * 0.5 * (1.0 + erf(a)) + spread * GAUSSIAN * (-a * a).exp()
+                let [below, bell] = gaussian(towards.z / spread);
+                towards.z * below + 0.5 * spread * bell
             }
             SlopeDistribution::Ggx => 0.5 * (towards.z + towards.z.hypot(spread)),
         }
@@ -73,19 +69,21 @@ impl SlopeDistribution {
     ///
     /// # Source
     /// Heitz and d'Eon 2014 for Beckmann, Dupuy and Benyoub 2023 for GGX; the inversion is ours.
-    pub(in crate::illumination) fn visible(self, towards: DVec3, roughness: DVec2, point: [f64; 2]) -> Option<DVec3> {
+    pub fn visible(self, towards: DVec3, roughness: DVec2, point: [f64; 2]) -> Option<DVec3> {
         // In stretched space the roughness is 1.
-        let stretched = (towards.truncate() * roughness).extend(towards.z).try_normalize()?;
-        let sine = stretched.truncate().length();
-        let around = if sine > 0.0 { stretched.truncate() / sine } else { DVec2::X };
+        let across = towards.truncate() * roughness;
         let slope = match self {
             SlopeDistribution::Beckmann => {
-                let along = inverse_of_visible(stretched.z, sine, point[0]);
-                let across = inverse_of_visible(1.0, 0.0, point[1]);
+                let sine = across.length();
+                let around = if sine > 0.0 { across * sine.recip() } else { DVec2::X };
+                let along = inverse_of_visible(towards.z, sine, point[0]);
                 // A facet that rises towards x turns its normal away from x.
-                -(around * along + around.perp() * across)
+                -(around * along + around.perp() * inverse_of_gaussian(point[1]))
             }
             SlopeDistribution::Ggx => {
+                let stretched = across.extend(towards.z).try_normalize()?;
+                let sine = stretched.truncate().length();
+                let around = if sine > 0.0 { stretched.truncate() / sine } else { DVec2::X };
                 let z = (1.0 - point[0]) * (1.0 + stretched.z) - stretched.z;
                 let radius = ((1.0 - z) * (1.0 + z)).max(0.0).sqrt();
                 let (sin, cos) = (TAU * point[1]).sin_cos();

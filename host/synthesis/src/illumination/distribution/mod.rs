@@ -8,14 +8,18 @@ mod blinn;
 mod compensated;
 mod cook_torrance;
 mod error;
+mod facet_models;
 mod facet_table;
 mod facets;
 mod frame;
 mod improved;
 mod lambert;
+mod losses;
 pub mod measure;
 mod microfacet;
+mod normalised_phong;
 mod phong;
+mod rough_facets;
 mod special;
 mod tabulated;
 #[cfg(test)]
@@ -25,17 +29,20 @@ pub use blinn::Blinn;
 pub use compensated::Compensated;
 pub use cook_torrance::CookTorrance;
 pub use error::{DistributionError, LEAST_ROUGHNESS, MOST_ROUGHNESS};
+pub use facet_models::{FACET_MODELS, FacetForm, FacetModel};
 pub use facet_table::{FacetError, FacetTable, TableError};
 pub use facets::SlopeDistribution;
 pub use frame::ShadingFrame;
 pub use improved::ImprovedCookTorrance;
 pub use lambert::Lambert;
 pub use microfacet::Microfacet;
+pub use normalised_phong::NormalisedPhong;
 pub use phong::{MOST_EXPONENT, Phong, exponent_of_roughness};
 pub use tabulated::{TableAccuracy, Tabulated};
 
 pub(super) use error::checked_roughness;
 use glam::{DVec2, DVec3};
+pub(super) use rough_facets::RoughFacets;
 
 /// A distribution D of emitted flux over the outgoing hemisphere; the luminance is D K E / (N·V).
 ///
@@ -119,6 +126,11 @@ pub const FAMILY: &[DistributionRow] = &[
         name: "Phong",
         summary: "a lobe around the mirrored light",
         make: |m| Ok(Box::new(Phong::new(exponent_of_roughness(m)?)?)),
+    },
+    DistributionRow {
+        name: "Phong, normalised",
+        summary: "a lobe around the mirrored light, that emits all that it gets",
+        make: |m| Ok(Box::new(NormalisedPhong::new(exponent_of_roughness(m)?)?)),
     },
     DistributionRow {
         name: "Blinn",

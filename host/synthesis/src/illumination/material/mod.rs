@@ -4,7 +4,9 @@ mod principled;
 
 pub use principled::Principled;
 
-use super::distribution::{DistributionError, FAMILY, FacetTable, Tabulated, checked_roughness};
+use super::distribution::{
+    DistributionError, FACET_MODELS, FAMILY, FacetForm, FacetModel, FacetTable, Tabulated, checked_roughness,
+};
 use super::fresnel::{Conductor, Dielectric, IndexError};
 use super::texture::{NumberTexture, Paint, Relief, TextureError};
 use crate::color::{Color, ColorError, Glass, Spectrum};
@@ -107,13 +109,23 @@ pub enum Finish {
         /// Its roughness m, 1e-8..=1000.
         roughness: NumberTexture,
     },
-    /// Facets of a Gaussian surface, not as rough along one direction as across it.
+    /// Facets that are not as rough along one direction as across it, and reflect once.
     Brushed {
+        /// The name, "GGX" or "Beckmann".
+        #[serde(default = "beckmann")]
+        name: String,
         /// Roughness along and across, 1e-8..=1000.
         roughness: [NumberTexture; 2],
         /// The direction, in the coordinates of the scene; any length but 0.
         along: DVec3,
     },
+    /// Facets that the user defined, by their angle.
+    Facets(FacetTable),
+}
+
+/// The distribution of brushed metals that do not name one.
+fn beckmann() -> String {
+    "Beckmann".into()
 }
 
 /// Glass, water, a gem.
@@ -121,8 +133,11 @@ pub enum Finish {
 pub struct Transparent {
     /// The refractive index.
     pub index: RefractiveIndex,
-    /// Roughness m of both sides of its surface, 1e-8..=1000; 0 is polished.
+    /// Roughness m of both sides of its surface, 1e-8..=1000; 0 is polished, unless its facets are a table.
     pub roughness: NumberTexture,
+    /// The facets of its surface, where it is not polished.
+    #[serde(default)]
+    pub facets: FacetForm,
     /// Absorption inside, in one unit of length of the scene: light falls by exp(−absorption).
     pub absorption: Color,
     /// Of bodies that are in one place, that of the greatest priority is there; of several with the same, the smallest.
@@ -136,7 +151,8 @@ impl Transparent {
 
     /// A polished, clear one of a refractive index, with the priority of solids.
     pub fn clear(index: RefractiveIndex) -> Transparent {
-        Transparent { index, roughness: 0.0.into(), absorption: Color::BLACK, priority: 0 }
+        let facets = FacetForm::default();
+        Transparent { index, roughness: 0.0.into(), facets, absorption: Color::BLACK, priority: 0 }
     }
 }
 
@@ -375,13 +391,19 @@ impl Material {
                     Conductor::new(1.0, n, metal.k.at(wavelength))?;
                 }
                 match &metal.finish {
-                    Finish::Polished => Ok(()),
+                    Finish::Polished | Finish::Facets(_) => Ok(()),
                     Finish::Rough { name, roughness } => member(name, roughness),
-                    Finish::Brushed { roughness, .. } => roughness.iter().try_for_each(rough),
+                    Finish::Brushed { name, roughness, .. } => {
+                        facet_model(name, |model| model.is_correlated && !model.is_multiple)?;
+                        roughness.iter().try_for_each(rough)
+                    }
                 }
             }
-            MaterialKind::Transparent(Transparent { index, roughness, absorption, priority }) => {
+            MaterialKind::Transparent(Transparent { index, roughness, facets, absorption, priority }) => {
                 self::priority(*priority)?;
+                if let FacetForm::Model(name) = facets {
+                    facet_model(name, |_| true)?;
+                }
                 power("absorption", absorption)?;
                 if let RefractiveIndex::Dispersive(glass) = index {
                     glass.check()?;
@@ -418,6 +440,9 @@ impl Material {
                     Finish::Polished => MaterialPreview { mirror: color, ..black },
                     Finish::Rough { roughness, .. } => {
                         MaterialPreview { specular: color, exponent: shine(roughness.mean()), ..black }
+                    }
+                    Finish::Facets(table) => {
+                        MaterialPreview { specular: color, exponent: shine(table.roughness()), ..black }
                     }
                     Finish::Brushed { roughness: [along, across], .. } => MaterialPreview {
                         specular: color,
@@ -493,6 +518,18 @@ fn rough(roughness: &NumberTexture) -> Result<(), MaterialError> {
         checked_roughness(m)?;
     }
     Ok(())
+}
+
+/// Checks the name of a model of facets.
+///
+/// - `is_possible`: whether a model may be used.
+fn facet_model(name: &str, is_possible: impl Fn(&FacetModel) -> bool) -> Result<(), MaterialError> {
+    let models = || FACET_MODELS.iter().filter(|model| is_possible(model));
+    if models().any(|model| model.name == name) {
+        return Ok(());
+    }
+    let names: Vec<&str> = models().map(|model| model.name).collect();
+    Err(MaterialError::Unknown { name: name.into(), advice: spelling::advice(name, &names) })
 }
 
 /// Checks a member of the family: its name, and its roughness.

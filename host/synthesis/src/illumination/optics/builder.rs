@@ -2,7 +2,7 @@
 
 use super::bsdf::{Bsdf, InteriorMedium, Interreflection, StraightTransmission};
 use super::coat::{CoatReflection, CoatedDiffuse};
-use super::dielectric::{RoughDielectric, SmoothDielectric};
+use super::dielectric::SmoothDielectric;
 use super::diffuse::DiffuseLobe;
 use super::distributed::DistributedLobe as ShapedLobe;
 use super::lobes::AnyLobe;
@@ -10,11 +10,15 @@ use super::mirror::MirrorLobe;
 use super::prepared_textures::{PreparedNumber, PreparedPaint, PreparedPattern, PreparedTexture};
 use super::principled::{PrincipledLobe, PrincipledParameters, PrincipledPart, PrincipledSurface};
 use super::rough_conductor::{FacetDistribution, RoughConductor};
+use super::rough_dielectric::RoughDielectric;
 use super::smooth_conductor::SmoothConductor;
 use super::straight::StraightLobe;
 use super::varied::nodes;
 use crate::color::{LANES, WavelengthSets};
-use crate::illumination::distribution::{Compensated, Distribution, FAMILY, Microfacet, Phong, SlopeDistribution};
+use crate::illumination::distribution::{
+    Compensated, Distribution, FAMILY, FacetForm, FacetModel, Microfacet, NormalisedPhong, RoughFacets,
+    SlopeDistribution,
+};
 use crate::illumination::fresnel::{Conductor, Dielectric, IndexError};
 use crate::illumination::material::{
     Classic, Coated, Distributed, DistributionForm, Finish, LEAST_VARYING_ROUGHNESS, Material, MaterialError,
@@ -97,7 +101,7 @@ impl<'a> BsdfBuilder<'a> {
         }
         if let Some(shade) = self.needed_paint(&classic.specular, bsdf) {
             let made = |_: &mut BsdfBuilder<'a>, n| {
-                Ok(AnyLobe::Phong(ShapedLobe { fraction: shade.clone(), distribution: Phong::new(n)? }))
+                Ok(AnyLobe::Phong(ShapedLobe { fraction: shade.clone(), distribution: NormalisedPhong::new(n)? }))
             };
             let lobe = self.varied(&classic.exponent, 1.0, bsdf, made)?;
             bsdf.add(lobe, interreflection);
@@ -130,14 +134,19 @@ impl<'a> BsdfBuilder<'a> {
             Finish::Rough { name, roughness } => self.rough(roughness, bsdf, |library, m| {
                 Ok(AnyLobe::Metallic(RoughConductor::new(library.facet_distribution(name, m)?, conductors.clone())))
             })?,
-            Finish::Brushed { roughness: [along, across], along: direction } => {
+            Finish::Facets(table) => {
+                let facets = FacetDistribution::MultipleScattering(Arc::new(Compensated::of_table(table.clone())));
+                AnyLobe::Metallic(RoughConductor::new(facets, conductors))
+            }
+            Finish::Brushed { name, roughness: [along, across], along: direction } => {
                 bsdf.brushed_along = Some(*direction);
+                let slopes = FacetModel::named(name).map_or(SlopeDistribution::Ggx, |model| model.slopes);
                 // Where both vary, each node of the one is a lobe that varies by the other.
                 let across_at = across.is_varying().then(|| bsdf.varying(across));
                 let across_nodes = nodes(across, LEAST_VARYING_ROUGHNESS);
                 self.rough(along, bsdf, |_, along| {
                     let brushed = |across: f64| -> Result<AnyLobe, MaterialError> {
-                        let form = Arc::new(Microfacet::new(SlopeDistribution::Beckmann, DVec2::new(along, across))?);
+                        let form = Arc::new(Microfacet::new(slopes, DVec2::new(along, across))?);
                         Ok(AnyLobe::Metallic(RoughConductor::new(
                             FacetDistribution::SingleScattering(form),
                             conductors.clone(),
@@ -158,17 +167,29 @@ impl<'a> BsdfBuilder<'a> {
     }
 
     fn transparent(&mut self, transparent: &Transparent, bsdf: &mut Bsdf) -> Result<(), MaterialError> {
-        let Transparent { index, roughness, absorption, priority } = transparent;
+        let Transparent { index, roughness, facets, absorption, priority } = transparent;
         bsdf.interior = Some(InteriorMedium {
             index: self.wavelengths.quantity(|wavelength| index.at(wavelength)),
             absorption: self.wavelengths.filter(absorption),
             disperses: matches!(index, RefractiveIndex::Dispersive(_)),
             priority: *priority,
         });
-        let lobe = self.rough(roughness, bsdf, |_, m| match m {
-            0.0 => Ok(AnyLobe::Smooth(SmoothDielectric)),
-            m => Ok(AnyLobe::Rough(RoughDielectric { facets: SlopeDistribution::Ggx, roughness: DVec2::splat(m) })),
-        })?;
+        let wavelengths = self.wavelengths;
+        let indices =
+            (0..wavelengths.count()).flat_map(|set| wavelengths.at(set)).map(|wavelength| index.at(wavelength));
+        let lobe = match facets {
+            FacetForm::Table(table) => {
+                let facets = RoughFacets::Table(Arc::new(table.clone()));
+                AnyLobe::Rough(RoughDielectric::new(facets, true, true).prepared(indices))
+            }
+            FacetForm::Model(name) => self.rough(roughness, bsdf, |_, m| {
+                let model = FacetModel::named(name).filter(|_| m > 0.0);
+                let Some(model) = model else { return Ok(AnyLobe::Smooth(SmoothDielectric)) };
+                let facets = RoughFacets::Slopes(model.slopes, DVec2::splat(m));
+                let lobe = RoughDielectric::new(facets, model.is_correlated, model.is_multiple);
+                Ok(AnyLobe::Rough(if roughness.is_varying() { lobe } else { lobe.prepared(indices.clone()) }))
+            })?,
+        };
         bsdf.add(lobe, Interreflection::Followed);
         Ok(())
     }
@@ -325,14 +346,10 @@ impl<'a> BsdfBuilder<'a> {
         if let Some((.., shape)) = self.forms.iter().find(|(n, m, _)| n == name && *m == roughness) {
             return Ok(shape.clone());
         }
-        let all = |facets: SlopeDistribution| {
-            Ok::<_, MaterialError>(FacetDistribution::MultipleScattering(Arc::new(Compensated::new(
-                facets, roughness,
-            )?)))
-        };
         let shape = match FAMILY.iter().find(|row| row.name == name) {
-            Some(row) if row.name == "Beckmann, all" => all(SlopeDistribution::Beckmann)?,
-            Some(row) if row.name == "GGX, all" => all(SlopeDistribution::Ggx)?,
+            Some(_) if let Some(model) = FacetModel::named(name).filter(|model| model.is_multiple) => {
+                FacetDistribution::MultipleScattering(Arc::new(Compensated::new(model.slopes, roughness)?))
+            }
             Some(row) => FacetDistribution::SingleScattering(Arc::from((row.make)(roughness)?)),
             None => return Err(MaterialError::Unknown { name: name.into(), advice: String::new() }),
         };

@@ -4,7 +4,7 @@ use super::context::{BsdfSample, ShadingContext};
 use super::lobe::{Flags, Lobe};
 use super::prepared_textures::PreparedPaint;
 use crate::color::Channels;
-use crate::illumination::distribution::{Distribution, Phong};
+use crate::illumination::distribution::{Distribution, NormalisedPhong};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ pub(super) trait HasDistribution {
     fn distribution(&self) -> &dyn Distribution;
 }
 
-impl HasDistribution for Phong {
+impl HasDistribution for NormalisedPhong {
     #[inline]
     fn distribution(&self) -> &dyn Distribution {
         self

@@ -2,7 +2,7 @@
 
 use super::coat::{CoatReflection, CoatedDiffuse};
 use super::context::{BsdfSample, ShadingContext};
-use super::dielectric::{RoughDielectric, SmoothDielectric};
+use super::dielectric::SmoothDielectric;
 use super::diffuse::DiffuseLobe;
 use super::distributed::DistributedLobe;
 use super::lobe::{Flags, Lobe};
@@ -10,11 +10,12 @@ use super::mirror::MirrorLobe;
 use super::prepared_textures::PreparedNumber;
 use super::principled::PrincipledLobe;
 use super::rough_conductor::RoughConductor;
+use super::rough_dielectric::RoughDielectric;
 use super::smooth_conductor::SmoothConductor;
 use super::straight::StraightLobe;
 use super::varied::VaryingLobe;
 use crate::color::Channels;
-use crate::illumination::distribution::{Distribution, Phong};
+use crate::illumination::distribution::{Distribution, NormalisedPhong};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -102,7 +103,7 @@ lobes! {
     /// Equal radiance everywhere.
     Diffuse(DiffuseLobe),
     /// Phong's highlight.
-    Phong(DistributedLobe<Phong>),
+    Phong(DistributedLobe<NormalisedPhong>),
     /// A mirror.
     Mirror(MirrorLobe) tried super::mirror::tried,
     /// Transmission straight through.

@@ -17,6 +17,8 @@ mod smooth_conductor;
 mod rough_conductor;
 mod coat;
 mod dielectric;
+mod interface_losses;
+mod rough_dielectric;
 mod principled;
 mod varied;
 mod lobes;
@@ -25,6 +27,8 @@ mod builder;
 
 #[cfg(test)]
 mod contract_tests;
+#[cfg(test)]
+mod glass_tests;
 #[cfg(test)]
 mod tests;
 

@@ -173,7 +173,7 @@ fn a_lobe_that_varies_is_that_of_the_value_at_the_place() {
 #[test]
 fn a_metal_may_be_brushed_as_patterns_tell() {
     let wavelengths = WavelengthSets::bands();
-    let brushed = |roughness| copper(Finish::Brushed { roughness, along: DVec3::X });
+    let brushed = |roughness| copper(Finish::Brushed { name: "Beckmann".into(), roughness, along: DVec3::X });
     let varied = ready(&brushed([varying(0.05, 0.2), varying(0.2, 0.6)]), &wavelengths);
     let same = ready(&brushed([0.1.into(), 0.4.into()]), &wavelengths);
     let of = context(30.0, 1.0, 1.0);

@@ -1,0 +1,212 @@
+//! Rough interfaces between transparent media: ground glass, and what facets send on to each other.
+
+use super::context::{BsdfSample, ShadingContext};
+use super::dielectric::{by_lane, chance_of, interface, radiance_scale, reflected};
+use super::interface_losses::{InterfaceLosses, masking};
+use super::lobe::{Flags, Lobe};
+use crate::color::Channels;
+use crate::illumination::distribution::RoughFacets;
+use crate::numeric::sampling::cosine_hemisphere;
+use glam::DVec3;
+use std::f64::consts::FRAC_1_PI;
+use std::sync::Arc;
+
+/// The largest chance to sample what facets send on to each other: one reflection or refraction keeps some.
+const MOST_CHANCE: f64 = 0.95;
+/// Less than this is not sampled.
+const LEAST_LOSS: f64 = 1e-9;
+
+/// A rough interface, of facets that each reflect and refract.
+///
+/// What one reflection or refraction loses of light from everywhere, a(V) on the side of the viewer and b on the other,
+/// leaves after further ones: a(V) a(L) (1 − t) / (π ā) above and a(V) b(L) t / (π b̄) below, with the means ā and b̄ and
+/// the part t that goes through. Seen from both sides it is the same but for the square of the index, and reflected and
+/// refracted light add up to all that comes.
+///
+/// # Source
+/// Walter and others 2007; the compensation after Kelemen and Szirmay-Kalos 2001 and Kulla and Conty 2017, its division
+/// between the two sides is ours.
+#[derive(Clone, Debug)]
+pub(super) struct RoughDielectric {
+    facets: RoughFacets,
+    is_correlated: bool,
+    /// None where light is reflected or refracted once.
+    losses: Option<Arc<InterfaceLosses>>,
+}
+
+/// What is missing at a direction of the viewer, in one lane.
+struct Missing {
+    /// a(V)
+    own: f64,
+    /// The parts that leave above and below.
+    parts: [f64; 2],
+}
+
+impl RoughDielectric {
+    /// - `is_correlated`: whether heights of light and viewer are. `multiple`: whether facets send light on to others.
+    pub(super) fn new(facets: RoughFacets, is_correlated: bool, multiple: bool) -> RoughDielectric {
+        let losses = multiple.then(|| Arc::new(InterfaceLosses::new(facets.clone(), is_correlated)));
+        RoughDielectric { facets, is_correlated, losses }
+    }
+
+    /// This interface, with tables that are ready where it meets air.
+    ///
+    /// - `indices`: those of the medium behind.
+    pub(super) fn prepared(self, indices: impl IntoIterator<Item = f64>) -> RoughDielectric {
+        if let Some(losses) = &self.losses {
+            losses.prepare(indices);
+        }
+        self
+    }
+
+    /// The chance that a facet is taken to reflect.
+    fn chance(&self, context: &ShadingContext, cosine: f64) -> f64 {
+        let fraction = interface(context, context.lane).map_or(1.0, |surface| surface.reflectance(cosine).mean());
+        chance_of(fraction, 1.0 - fraction)
+    }
+
+    /// The facet that would send light to the viewer, through or not, on the side of the viewer.
+    fn facet(&self, context: &ShadingContext, light: DVec3, lane: usize) -> Option<DVec3> {
+        let view = context.view;
+        let facet = if light.z > 0.0 {
+            light + view
+        } else {
+            // Along −(n_before V + n_behind L); towards the viewer, whichever index is greater.
+            let (before, behind) = (context.indices.before.0[lane], context.indices.behind.0[lane]);
+            let facet = -(view * before + light * behind);
+            if facet.z < 0.0 { -facet } else { facet }
+        };
+        let facet = facet.try_normalize()?;
+        let sees = facet.dot(view) > 0.0 && (light.z > 0.0 || facet.dot(light) < 0.0);
+        (sees && facet.z > 0.0).then_some(facet)
+    }
+
+    /// How much of the directions around a facet goes to one solid angle of light.
+    fn jacobian(&self, context: &ShadingContext, light: DVec3, facet: DVec3, lane: usize) -> f64 {
+        let (to_view, to_light) = (facet.dot(context.view), facet.dot(light));
+        if light.z > 0.0 {
+            return 0.25 / to_light;
+        }
+        let ratio = context.indices.before.0[lane] / context.indices.behind.0[lane];
+        let sum = to_light + ratio * to_view;
+        to_light.abs() / (sum * sum)
+    }
+
+    /// The value by one reflection or refraction.
+    ///
+    /// # Source
+    /// Walter et al. 2007, equations 20 and 21; heights of light and viewer correlated.
+    fn once(&self, context: &ShadingContext, light: DVec3) -> Channels {
+        let view = context.view;
+        let is_through = light.z < 0.0;
+        let above = DVec3::new(light.x, light.y, light.z.abs());
+        let shown = [view, above].map(|towards| self.facets.projected(towards));
+        let masked = masking([view.z, above.z], shown, is_through, self.is_correlated);
+        by_lane(context, |lane| {
+            let Some((facet, surface)) = self.facet(context, light, lane).zip(interface(context, lane)) else {
+                return 0.0;
+            };
+            let cosine = facet.dot(view);
+            let shared = self.facets.area(facet) * cosine * self.jacobian(context, light, facet, lane) * masked;
+            let value = if is_through {
+                let ratio = context.indices.before.0[lane] / context.indices.behind.0[lane];
+                surface.transmittance(cosine).mean() * shared * ratio * ratio
+            } else {
+                surface.reflectance(cosine).mean() * shared
+            };
+            if value.is_finite() { value } else { 0.0 }
+        })
+    }
+
+    /// The value of what facets sent on to each other.
+    fn further(&self, losses: &InterfaceLosses, context: &ShadingContext, light: DVec3) -> Channels {
+        let value = by_lane(context, |lane| {
+            let [before, behind] = [context.indices.before.0[lane], context.indices.behind.0[lane]];
+            let [own, other] = [losses.between(before, behind), losses.between(behind, before)];
+            let through = own.part_through(&other, behind / before);
+            let (part, side) = if light.z > 0.0 { (1.0 - through, own) } else { (through, other) };
+            let mean = side.mean();
+            if mean > 0.0 { part * own.lost(context.view.z) * side.lost(light.z.abs()) * FRAC_1_PI / mean } else { 0.0 }
+        });
+        if light.z > 0.0 { value } else { value * radiance_scale(context) }
+    }
+
+    /// What is missing for the lane of the context.
+    fn missing(&self, context: &ShadingContext) -> Missing {
+        let nothing = Missing { own: 0.0, parts: [1.0, 0.0] };
+        let Some(losses) = &self.losses else { return nothing };
+        let [before, behind] = [context.indices.before, context.indices.behind].map(|index| index.0[context.lane]);
+        let [own, other] = [losses.between(before, behind), losses.between(behind, before)];
+        let lost = own.lost(context.view.z);
+        if lost < LEAST_LOSS {
+            return nothing;
+        }
+        let through = if other.mean() > 0.0 { own.part_through(&other, behind / before) } else { 0.0 };
+        Missing { own: lost.min(MOST_CHANCE), parts: [1.0 - through, through] }
+    }
+}
+
+impl Lobe for RoughDielectric {
+    fn flags(&self) -> Flags {
+        // If all facets are seen, the pdf is a quarter of the density of their normals.
+        Flags::of_pdf(0.25 * self.facets.area(DVec3::Z))
+    }
+
+    fn pdf(&self, context: &ShadingContext, light: DVec3) -> f64 {
+        let view = context.view;
+        if view.z <= 0.0 || light.z == 0.0 {
+            return 0.0;
+        }
+        let Missing { own, parts: [stays, goes] } = self.missing(context);
+        let further = own * if light.z > 0.0 { stays } else { goes } * light.z.abs() * FRAC_1_PI;
+        let Some(facet) = self.facet(context, light, context.lane) else { return further };
+        let cosine = facet.dot(view);
+        let chance = self.chance(context, cosine);
+        let chance = if light.z > 0.0 { chance } else { 1.0 - chance };
+        let once = chance * self.facets.normal_pdf(view, facet) * self.jacobian(context, light, facet, context.lane);
+        further + if once.is_finite() { (1.0 - own) * once } else { 0.0 }
+    }
+
+    /// Radiance towards the viewer for a unit of flux density, 1/sr.
+    fn value(&self, context: &ShadingContext, light: DVec3) -> Channels {
+        if context.view.z <= 0.0 || light.z == 0.0 {
+            return Channels::ZERO;
+        }
+        let once = self.once(context, light);
+        match &self.losses {
+            Some(losses) => once + self.further(losses, context, light),
+            None => once,
+        }
+    }
+
+    /// Samples a facet as the viewer sees it, and reflects or refracts there; or a direction of what facets sent on.
+    fn sample(&self, context: &ShadingContext, choice: f64, point: [f64; 2]) -> Option<BsdfSample> {
+        let view = context.view;
+        let Missing { own, parts: [stays, _] } = self.missing(context);
+        if choice < own {
+            let light = cosine_hemisphere(point, DVec3::Z);
+            let light = if choice < own * stays { light } else { -light };
+            return (light.z != 0.0).then(|| BsdfSample::unweighted(light));
+        }
+        let choice = (choice - own) / (1.0 - own);
+        let facet = self.facets.normal(view, point)?;
+        let cosine = facet.dot(view);
+        if cosine <= 0.0 {
+            return None;
+        }
+        let light = if choice < self.chance(context, cosine) {
+            (facet * (2.0 * cosine) - view).try_normalize().filter(|light| light.z > 0.0)
+        } else {
+            interface(context, context.lane)?.refracted(view, facet).filter(|light| light.z < 0.0)
+        };
+        light.map(BsdfSample::unweighted)
+    }
+
+    fn strength(&self, _: &ShadingContext) -> f64 {
+        1.0
+    }
+
+    fn glossy_albedo(&self, context: &ShadingContext) -> Channels {
+        reflected(context, context.view.z)
+    }
+}
