@@ -71,6 +71,8 @@ fn a_white_furnace_hides_what_loses_nothing() {
         (coated(0.0).into(), 1e-2),
         (coated(0.2).into(), 1e-2),
         (glass(1.5, 0.0, 0.0), 1e-2),
+        (glass(1.5, 0.3, 0.0), 1e-2),
+        (glass(1.5, 1.0, 0.0), 1e-2),
     ];
     for (material, tolerance) in materials {
         let mut scene = scene(ball(material.clone()), vec![sky(1.0)], 8);
