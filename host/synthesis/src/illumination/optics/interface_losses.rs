@@ -11,6 +11,7 @@ use crate::numeric::cubature::{GAUSS, unit_square};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
+use std::f64::consts::{FRAC_1_PI, TAU};
 use std::sync::OnceLock;
 
 /// Intervals of a row, over the cosine.
@@ -36,6 +37,10 @@ struct Row {
     mean: f64,
     /// The mean of what Fresnel's equations let through.
     through: f64,
+    /// The pdf, over the place of the cosine, of what is sent on, and its integral up to the end of each interval; empty
+    /// if nothing is.
+    emitted: Vec<f64>,
+    below: Vec<f64>,
 }
 
 /// What a rough interface loses by one reflection or refraction.
@@ -114,13 +119,34 @@ impl InterfaceLosses {
         let ratio = InterfaceLosses::ratio(index);
         let surface = Dielectric::new(1.0, ratio.max(ratio.recip()));
         let through = surface.map_or(0.0, |surface| mean(|cosine| surface.transmittance(cosine).mean()));
-        Row { lost, mean: mean_lost, through }
+        let place = |step: usize| step as f64 / STEPS as f64;
+        let emission = |step: usize| {
+            let cosine = self.cosine(place(step));
+            lost[step] * cosine / self.slope(cosine)
+        };
+        let mut emitted: Vec<f64> = (0..=STEPS).map(emission).collect();
+        let all: f64 = emitted.windows(2).map(|pair| pair[0] + pair[1]).sum();
+        let mut below = Vec::new();
+        if all > 0.0 {
+            let mut sum = 0.0;
+            below.extend(emitted.windows(2).map(|pair| {
+                sum += (pair[0] + pair[1]) / all;
+                sum
+            }));
+            emitted.iter_mut().for_each(|value| *value *= 2.0 * STEPS as f64 / all);
+        }
+        Row { lost, mean: mean_lost, through, emitted, below }
     }
 
     /// The place of a cosine, 0..=1: half of the places are spread evenly, half of them gather at the horizon.
     fn place(&self, cosine: f64) -> f64 {
         let cosine = cosine.clamp(0.0, 1.0);
         0.5 * cosine * (1.0 + (1.0 + self.scale) / (cosine + self.scale))
+    }
+
+    /// The change of the place over that of the cosine.
+    fn slope(&self, cosine: f64) -> f64 {
+        0.5 * (1.0 + (1.0 + self.scale) * self.scale / (cosine + self.scale).powi(2))
     }
 
     /// The cosine at a place.
@@ -155,7 +181,52 @@ impl InterfaceLosses {
     }
 }
 
+impl Row {
+    /// A cosine of what is sent on, from a uniform number.
+    fn sample(&self, losses: &InterfaceLosses, uniform: f64) -> f64 {
+        if self.below.is_empty() {
+            return uniform.sqrt();
+        }
+        let step = self.below.partition_point(|below| *below <= uniform).min(STEPS - 1);
+        let before = if step == 0 { 0.0 } else { self.below[step - 1] };
+        let (from, to) = (self.emitted[step], self.emitted[step + 1]);
+        // The pdf is linear in the interval: from x + (to − from) x² / 2 is what is left.
+        let left = ((uniform - before) * STEPS as f64).max(0.0);
+        let root = (from * from + 2.0 * (to - from) * left).max(0.0).sqrt();
+        let part = if from + root > 0.0 { (2.0 * left / (from + root)).min(1.0) } else { 0.0 };
+        losses.cosine((step as f64 + part) / STEPS as f64)
+    }
+
+    /// The pdf of [`Row::sample`], 1/sr.
+    fn pdf(&self, losses: &InterfaceLosses, cosine: f64) -> f64 {
+        if self.below.is_empty() {
+            return cosine * FRAC_1_PI;
+        }
+        let place = losses.place(cosine) * STEPS as f64;
+        let step = (place as usize).min(STEPS - 1);
+        let part = place - step as f64;
+        (self.emitted[step] * (1.0 - part) + self.emitted[step + 1] * part) * losses.slope(cosine) / TAU
+    }
+}
+
 impl LossesOfRatio<'_> {
+    /// A cosine of what is sent on to this side, from a uniform number.
+    pub(super) fn sample(&self, uniform: f64) -> f64 {
+        let ([a, b], part) = (self.rows, self.part);
+        match uniform < part {
+            true => b.sample(self.losses, uniform / part),
+            false => a.sample(self.losses, (uniform - part) / (1.0 - part)),
+        }
+    }
+
+    /// The pdf of [`LossesOfRatio::sample`], 1/sr.
+    ///
+    /// - `cosine`: 0..=1.
+    pub(super) fn pdf(&self, cosine: f64) -> f64 {
+        let [a, b] = self.rows.map(|row| row.pdf(self.losses, cosine));
+        a + (b - a) * self.part
+    }
+
     /// The part of light that is lost, 0..=1.
     ///
     /// - `cosine`: between light and normal, 0..=1.

@@ -2,11 +2,11 @@
 
 use super::context::{BsdfSample, ShadingContext};
 use super::dielectric::{by_lane, chance_of, interface, radiance_scale, reflected};
-use super::interface_losses::{InterfaceLosses, masking};
+use super::interface_losses::{InterfaceLosses, LossesOfRatio, masking};
 use super::lobe::{Flags, Lobe};
 use crate::color::Channels;
 use crate::illumination::distribution::RoughFacets;
-use crate::numeric::sampling::cosine_hemisphere;
+use crate::numeric::sampling::around_z;
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
 use std::sync::Arc;
@@ -35,11 +35,13 @@ pub(super) struct RoughDielectric {
 }
 
 /// What is missing at a direction of the viewer, in one lane.
-struct Missing {
+struct Missing<'a> {
     /// a(V)
     own: f64,
     /// The parts that leave above and below.
     parts: [f64; 2],
+    /// The losses on both sides; none where nothing is missing.
+    sides: Option<[LossesOfRatio<'a>; 2]>,
 }
 
 impl RoughDielectric {
@@ -132,8 +134,8 @@ impl RoughDielectric {
     }
 
     /// What is missing for the lane of the context.
-    fn missing(&self, context: &ShadingContext) -> Missing {
-        let nothing = Missing { own: 0.0, parts: [1.0, 0.0] };
+    fn missing(&self, context: &ShadingContext) -> Missing<'_> {
+        let nothing = Missing { own: 0.0, parts: [1.0, 0.0], sides: None };
         let Some(losses) = &self.losses else { return nothing };
         let [before, behind] = [context.indices.before, context.indices.behind].map(|index| index.0[context.lane]);
         let [own, other] = [losses.between(before, behind), losses.between(behind, before)];
@@ -142,7 +144,7 @@ impl RoughDielectric {
             return nothing;
         }
         let through = if other.mean() > 0.0 { own.part_through(&other, behind / before) } else { 0.0 };
-        Missing { own: lost.min(MOST_CHANCE), parts: [1.0 - through, through] }
+        Missing { own: lost.min(MOST_CHANCE), parts: [1.0 - through, through], sides: Some([own, other]) }
     }
 }
 
@@ -157,8 +159,11 @@ impl Lobe for RoughDielectric {
         if view.z <= 0.0 || light.z == 0.0 {
             return 0.0;
         }
-        let Missing { own, parts: [stays, goes] } = self.missing(context);
-        let further = own * if light.z > 0.0 { stays } else { goes } * light.z.abs() * FRAC_1_PI;
+        let Missing { own, parts: [stays, goes], sides } = self.missing(context);
+        let further = sides.map_or(0.0, |[above, below]| {
+            let (part, side) = if light.z > 0.0 { (stays, above) } else { (goes, below) };
+            own * part * side.pdf(light.z.abs())
+        });
         let Some(facet) = self.facet(context, light, context.lane) else { return further };
         let cosine = facet.dot(view);
         let chance = self.chance(context, cosine);
@@ -182,11 +187,11 @@ impl Lobe for RoughDielectric {
     /// Samples a facet as the viewer sees it, and reflects or refracts there; or a direction of what facets sent on.
     fn sample(&self, context: &ShadingContext, choice: f64, point: [f64; 2]) -> Option<BsdfSample> {
         let view = context.view;
-        let Missing { own, parts: [stays, _] } = self.missing(context);
-        if choice < own {
-            let light = cosine_hemisphere(point, DVec3::Z);
-            let light = if choice < own * stays { light } else { -light };
-            return (light.z != 0.0).then(|| BsdfSample::unweighted(light));
+        let Missing { own, parts: [stays, _], sides } = self.missing(context);
+        if let Some([above, below]) = sides.filter(|_| choice < own) {
+            let is_above = choice < own * stays;
+            let light = around_z(if is_above { above } else { below }.sample(point[0]), point[1]);
+            return (light.z != 0.0).then(|| BsdfSample::unweighted(if is_above { light } else { -light }));
         }
         let choice = (choice - own) / (1.0 - own);
         let facet = self.facets.normal(view, point)?;
