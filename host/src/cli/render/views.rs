@@ -181,6 +181,7 @@ impl ViewBatch<'_> {
             "rays": rendering.rays,
             "caught_light": rendering.flux_balance,
             "spans": rendering.spans,
+            "finished_by_rays": rendering.finished,
             "radiosity": self.radiosity,
             "denoised": self.arguments.denoise,
             "complete": rendering.complete,
@@ -229,9 +230,21 @@ impl ViewBatch<'_> {
             say!("{balance}");
         }
         self.radiosity.iter().flat_map(RadiosityReport::lines).for_each(|line| say!("{line}"));
-        let Rendering { rays, spans, .. } = rendering;
+        let Rendering { rays, spans, finished, .. } = rendering;
         if !self.arguments.renderer.row().adds_samples {
-            return say!("{} spans of surfaces, {} of shadow polygons", spans.surfaces, spans.shadows);
+            say!("{} spans of surfaces, {} of shadow polygons", spans.surfaces, spans.shadows);
+            if finished.pixels > 0 {
+                say!(
+                    "{} pixels finished by rays, {:.1} % of all: {} samples, {:.3} s of all threads together",
+                    finished.pixels,
+                    100.0 * finished.pixels as f64 / rendering.film.tallies().len() as f64,
+                    finished.samples,
+                    finished.seconds
+                );
+            }
+            if rays.total() == 0 {
+                return;
+            }
         }
         let spared = if rays.spared > 0 { format!(", {} more spared", rays.spared) } else { String::new() };
         say!(

@@ -33,7 +33,7 @@ pub use renderer::Renderer;
 pub use renderers::{
     AnyRenderer, PreparedRenderer, RENDERERS, RendererRow, Task, Technique, ray_tracer, ray_tracer_watched,
 };
-pub use rendering::{RayCounts, Rendering, SpanCounts};
+pub use rendering::{FinishedCounts, RayCounts, Rendering, SpanCounts};
 pub use state::{Fingerprint, RenderState, StateError};
 pub use tally::{PathClass, PixelSample, RadianceByClass, Tally};
 pub use watch::Watch;

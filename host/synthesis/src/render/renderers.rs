@@ -87,7 +87,7 @@ pub const RENDERERS: [RendererRow; 4] = [
         technique: Technique::ScanLine,
         option: "scan-line",
         word: "scan line",
-        help: "Light that comes straight from lights, with sharp shadows and straight transparency; many times faster. Mirrors show lights and ambient light only, and glass bends nothing",
+        help: "Light that comes straight from lights, with sharp shadows and straight transparency; many times faster. Pixels of mirrors, metals, coats and glass are finished by rays, and diffuse interreflection is interpolated between rays",
         adds_samples: false,
         can_map_photons: false,
         always_maps_photons: false,

@@ -15,10 +15,12 @@ pub struct Rendering {
     pub film: Film,
     /// Whether nothing was left out because the rendering was stopped.
     pub complete: bool,
-    /// How many rays were traced; none by scan line.
+    /// How many rays were traced; by scan line, those that finished samples.
     pub rays: RayCounts,
     /// How many spans were drawn; none by ray tracing.
     pub spans: SpanCounts,
+    /// The samples that rays finished; none by ray tracing, of which all samples are.
+    pub finished: FinishedCounts,
     /// The balance of the flux of the photons that were traced first, if any were.
     pub flux_balance: Option<FluxBalance>,
     /// Wall-clock time, seconds.
@@ -92,6 +94,29 @@ impl std::ops::Add for RayCounts {
             shadow: self.shadow + other.shadow,
             reflected: self.reflected + other.reflected,
             spared: self.spared + other.spared,
+        }
+    }
+}
+
+/// Samples that scan line leaves to rays: those of mirrors, metals, coats and glass.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct FinishedCounts {
+    /// Pixels with such samples.
+    pub pixels: u64,
+    /// The samples.
+    pub samples: u64,
+    /// The time that they took, all threads together, seconds.
+    pub seconds: f64,
+}
+
+impl std::ops::Add for FinishedCounts {
+    type Output = FinishedCounts;
+
+    fn add(self, other: FinishedCounts) -> FinishedCounts {
+        FinishedCounts {
+            pixels: self.pixels + other.pixels,
+            samples: self.samples + other.samples,
+            seconds: self.seconds + other.seconds,
         }
     }
 }

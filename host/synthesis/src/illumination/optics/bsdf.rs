@@ -408,6 +408,18 @@ impl Bsdf {
         self.lobes.iter().any(|member| LobeClass::CONTINUING.contains(&member.class))
     }
 
+    /// Whether it shows what is around: sharply, by a narrow lobe that is not straight, or in place of all else, where no
+    /// lobe is diffuse.
+    pub fn shows_surroundings(&self) -> bool {
+        let is_diffuse = |member: &Member| member.flags.has(Flags::DIFFUSE) && !member.flags.has(Flags::BLACK);
+        let shows_else = self.lobes.iter().any(is_diffuse);
+        self.lobes.iter().any(|Member { class, flags, .. }| {
+            let hides = [Flags::BLACK, Flags::STRAIGHT, Flags::DIFFUSE].iter().any(|flag| flags.has(*flag));
+            let is_meant = *class == LobeClass::Narrow || *class == LobeClass::Broad && !shows_else;
+            is_meant && !hides
+        })
+    }
+
     /// Whether some narrow lobe casts caustics: other than straight through.
     pub fn casts_caustics(&self) -> bool {
         self.casts_caustics

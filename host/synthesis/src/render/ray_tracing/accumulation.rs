@@ -10,7 +10,9 @@ use crate::render::film::{AdaptiveSampling, Film, FilmRow};
 use crate::render::state::after;
 use crate::render::tally::SHARING;
 use crate::render::two_way::{FluxBalance, PhotonEstimator};
-use crate::render::{RayCounts, RenderError, RenderOrder, Rendering, SpanCounts, StateError, Watch, denoising};
+use crate::render::{
+    FinishedCounts, RayCounts, RenderError, RenderOrder, Rendering, SpanCounts, StateError, Watch, denoising,
+};
 use crate::scene::View;
 use crate::stages::{StageSpan, Workers, part, stage};
 use rayon::prelude::*;
@@ -158,7 +160,8 @@ impl RayTracer<'_> {
             false => film.picture()?,
         };
         let spans = SpanCounts::default();
-        Ok(Rendering { picture, film, complete, rays, spans, flux_balance, seconds, threads })
+        let finished = FinishedCounts::default();
+        Ok(Rendering { picture, film, complete, rays, spans, finished, flux_balance, seconds, threads })
     }
 
     /// How many samples pixels have after each pass: one first, so that there is a whole picture soon, and then twice

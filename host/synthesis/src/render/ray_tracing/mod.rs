@@ -11,7 +11,9 @@ mod segment;
 mod vertex;
 mod explain;
 mod tracer;
+mod irradiance;
 mod pixel;
+mod finisher;
 mod accumulation;
 
 #[cfg(test)]
@@ -45,6 +47,8 @@ mod tests;
 
 pub use accumulation::{Accumulated, Checkpoints};
 pub use explain::PathNote;
+pub(in crate::render) use finisher::RayFinisher;
+pub(in crate::render) use tracer::PathScratch;
 
 use super::film::Film;
 use super::indirect::IndirectLight;
@@ -53,11 +57,11 @@ use super::two_way::{PhotonEstimator, PhotonMapper, PhotonStore};
 use super::world::{CameraRays, Media, World};
 use super::{RenderError, RenderOrder, Renderer, Rendering, Watch};
 use crate::plan::{Plan, Stage};
-use crate::scene::{Prepared, View};
+use crate::scene::{Caustics, Prepared, View};
 use crate::stages::stage;
 use explain::PathLog;
 use pixel::PixelSampler;
-use tracer::{PathRules, PathScratch, PathTracer};
+use tracer::{PathRules, PathTracer};
 
 /// A ray tracer that holds a scene and its octree.
 pub struct RayTracer<'a> {
@@ -136,13 +140,19 @@ impl<'a> RayTracer<'a> {
         order: &'b RenderOrder,
         records_features: bool,
     ) -> PixelSampler<'b> {
-        let depth = self.world.appearance.prepared.settings.light.reflection_depth;
+        let light = &self.world.appearance.prepared.settings.light;
+        let depth = light.reflection_depth;
         let tracer = PathTracer::new(
             &self.world,
             PathRules {
                 depth: if self.plan.needs(Stage::Reflection) { depth } else { 0 },
                 shadows: self.plan.needs(Stage::Shadows),
-                maps_photons: self.photon_mapper.is_some(),
+                caustics: match light.caustics {
+                    // Camera paths must not count again what is in the photon map.
+                    _ if self.photon_mapper.is_some() => Caustics::PhotonMapped,
+                    Caustics::PathTraced => Caustics::PathTraced,
+                    _ => Caustics::LeftOut,
+                },
                 records_features,
             },
             photons,

@@ -5,7 +5,7 @@ use super::sampler::{PathSampler, SampleDimension};
 use super::tracer::{FirstHit, PathScratch, PathTracer};
 use crate::render::RenderOrder;
 use crate::render::tally::{PixelSample, RadianceByClass};
-use crate::render::world::{AHEAD, CameraRays, World};
+use crate::render::world::{AHEAD, BoundedRay, CameraRays, World};
 use glam::DVec3;
 
 /// What samples the pixels of a picture.
@@ -33,10 +33,26 @@ impl PixelSampler<'_> {
             false => sampler,
         };
         let ([dx, dy], weight) = sampler.position(order.filter);
+        let at = [f64::from(x) + dx, f64::from(y) + dy];
+        let bounded = eye.ray(at, sampler.point(SampleDimension::Lens));
+        self.sample_along(bounded, weight, &sampler, scratch, log)
+    }
+
+    /// The sample of a camera ray, its light by classes, and its wavelength set.
+    ///
+    /// - `bounded`: none where nothing is seen. `weight`: of the sample in its pixel.
+    pub(super) fn sample_along(
+        &self,
+        bounded: Option<BoundedRay>,
+        weight: f64,
+        sampler: &PathSampler,
+        scratch: &mut PathScratch,
+        log: PathLog<'_>,
+    ) -> (PixelSample, RadianceByClass, usize) {
+        let PixelSampler { world, order, .. } = self;
         let wavelengths = &world.appearance.wavelengths;
         let wavelength_set = wavelengths.set_at(sampler.point(SampleDimension::Wavelengths)[0]);
-        let at = [f64::from(x) + dx, f64::from(y) + dy];
-        let Some(bounded) = eye.ray(at, sampler.point(SampleDimension::Lens)) else {
+        let Some(bounded) = bounded else {
             let background = world.appearance.escaped_radiance(&AHEAD, None, wavelength_set, |_, _| 1.0);
             let radiance =
                 if order.matte { DVec3::ZERO } else { weight * wavelengths.to_srgb(wavelength_set, background) };
@@ -44,7 +60,7 @@ impl PixelSampler<'_> {
             let sample = PixelSample { radiance, weight, albedo: DVec3::splat(weight), ..PixelSample::default() };
             return (sample, classes, wavelength_set);
         };
-        let result = self.tracer.radiance(&bounded, wavelength_set, &sampler, scratch, log);
+        let result = self.tracer.radiance(&bounded, wavelength_set, sampler, scratch, log);
         let first =
             result.first.map(|FirstHit { distance, normal, object, material }| (distance, normal, [object, material]));
         let left_out = order.matte && !result.covered;

@@ -5,8 +5,8 @@ use super::explain::{PathLog, PathNote};
 use super::sampler::{PathSampler, SampleDimension};
 use super::segment::{LastScattering, PathHistory, PathSegment};
 use super::vertex::{PathVertex, power_heuristic};
-use crate::color::Channels;
 use crate::color::srgb::LUMINANCE;
+use crate::color::{Channels, WavelengthSets};
 use crate::illumination::light::LightSource;
 use crate::illumination::optics::{BsdfSample, LobeSelection, ShadingContext};
 use crate::numeric::ray::Ray;
@@ -67,8 +67,8 @@ pub(super) struct FirstHit {
 
 /// Scratch of a thread, for one sample after the other.
 #[derive(Default)]
-pub(super) struct PathScratch {
-    pub(super) counts: RayCounts,
+pub(in crate::render) struct PathScratch {
+    pub(in crate::render) counts: RayCounts,
     /// Path segments that wait to be traced; none between samples.
     waiting: Vec<PathSegment>,
 }
@@ -104,8 +104,8 @@ pub(super) struct PathRules {
     pub(super) depth: u32,
     /// Whether anything can stand before a light.
     pub(super) shadows: bool,
-    /// Whether lamps emit photons.
-    pub(super) maps_photons: bool,
+    /// What becomes of light that mirrors and glass throw from lamps: mapped where lamps emit photons.
+    pub(super) caustics: Caustics,
     /// Whether a denoiser needs features.
     pub(super) records_features: bool,
 }
@@ -120,14 +120,8 @@ impl<'a> PathTracer<'a> {
         indirect: Option<&'a dyn IndirectLight>,
         camera_media: Media,
     ) -> PathTracer<'a> {
-        let PathRules { depth, shadows, maps_photons, records_features } = rules;
+        let PathRules { depth, shadows, caustics, records_features } = rules;
         let settings = &world.appearance.prepared.settings;
-        let caustics = match settings.light.caustics {
-            // Camera paths must not count again what is in the photon map.
-            _ if maps_photons => Caustics::PhotonMapped,
-            Caustics::PathTraced => Caustics::PathTraced,
-            _ => Caustics::LeftOut,
-        };
         let appearance = &world.appearance;
         let has_unmapped_lights =
             appearance.ambient.is_some() || appearance.sources.iter().any(|(_, source)| !source.emits_photons());
@@ -152,11 +146,24 @@ impl<'a> PathTracer<'a> {
         wavelength_set: usize,
         sampler: &PathSampler,
         scratch: &mut PathScratch,
+        log: PathLog<'_>,
+    ) -> PathResult {
+        self.radiance_along(self.camera_segment(bounded), wavelength_set, sampler, scratch, log)
+    }
+
+    /// The radiance that arrives along a path segment, times its throughput; the first hit is that of the segment.
+    pub(super) fn radiance_along(
+        &self,
+        first: PathSegment,
+        wavelength_set: usize,
+        sampler: &PathSampler,
+        scratch: &mut PathScratch,
         mut log: PathLog<'_>,
     ) -> PathResult {
         let mut result = PathResult::default();
+        let begin = first.depth;
         let PathScratch { counts, waiting } = scratch;
-        waiting.push(self.camera_segment(bounded));
+        waiting.push(first);
         while let Some(segment) = waiting.pop() {
             match segment.depth {
                 0 => counts.primary += 1,
@@ -181,7 +188,7 @@ impl<'a> PathTracer<'a> {
                     log.note(|| PathNote::light(segment.depth, *number, segment.throughput * radiance));
                 }
                 RayHit::Surface(interaction) => {
-                    if segment.depth == 0 {
+                    if segment.depth == begin {
                         let SurfaceInteraction { depth, object, material, .. } = interaction;
                         result.first =
                             Some(FirstHit { distance: depth, normal: interaction.element.normal, object, material });
@@ -195,8 +202,13 @@ impl<'a> PathTracer<'a> {
         result
     }
 
+    /// The wavelengths of paths.
+    pub(super) fn wavelengths(&self) -> &WavelengthSets {
+        &self.world.appearance.wavelengths
+    }
+
     /// The first segment of a path.
-    fn camera_segment(&self, bounded: &BoundedRay) -> PathSegment {
+    pub(super) fn camera_segment(&self, bounded: &BoundedRay) -> PathSegment {
         PathSegment {
             bounded: *bounded,
             throughput: Channels::ONE,

@@ -17,13 +17,16 @@ const BEYOND: f64 = -1.0;
 impl<'a> Shader<'a> {
     /// Finds the surfaces of a pixel, and which samples see them.
     pub(super) fn gather(&self, pixel: &StripPixel, strip: &Strip, scratch: &mut PixelScratch<'a>) {
-        let PixelScratch { surfaces, parts, samples, .. } = scratch;
+        let PixelScratch { surfaces, parts, samples, finishing, .. } = scratch;
         surfaces.clear();
         parts.clear();
         samples.clear();
         let opaque = strip.near.len();
         for (i, sample) in pixel.samples().enumerate() {
             samples.push(SampleSight { begin: parts.len(), like: i, before_light: None, light: DVec3::ZERO });
+            if finishing.has(i) {
+                continue;
+            }
             let mut add = |triangle: u32, near: f64, fragment: usize| {
                 let before = parts.iter().rfind(|part| part.triangle == triangle).map(|part| part.surface);
                 let surface = before.unwrap_or_else(|| self.surface(surfaces, triangle, near));
@@ -64,6 +67,7 @@ impl<'a> Shader<'a> {
             alone: true,
             nearness: [0.0; 2],
             interaction: None,
+            irradiance: Channels::ZERO,
             unlit_radiance: Channels::ZERO,
             transmittance: Channels::ZERO,
             contributions: 0..0,

@@ -4,11 +4,13 @@
 //! triangle covers spans of the lines; the nearest is seen, sample by sample, and passable ones before it are kept in
 //! their order. Light is found once for each pixel and surface, shadows for each sample.
 //!
-//! *Not modelled*: only light that comes straight from lights is seen. Mirrors, metals and glass show lights, and for
-//! all else around them the ambient light, the same radiance from everywhere, and a blurred sky. Light goes straight
-//! through glass, which throws the shadow of an opaque body, and through what is transparent without bending it; the
-//! shadow of that is as weak as it lets light through (where a pattern says how much, as in the middle of its first
-//! triangle). A light with a size is represented by points of it, in number the `light_samples` of the scene, and is
+//! What shows what is around it, as mirrors, metals, coats and glass do, is finished by rays, sample by sample, where the
+//! plan has reflected and refracted rays. Without them it shows lights, and for all else the ambient light, the same
+//! radiance from everywhere, and a blurred sky; and glass bends nothing.
+//!
+//! *Not modelled*: on all else, only light that comes straight from lights is seen. Light goes straight through polished
+//! glass, and through what is transparent without bending it; the shadow of these is as weak and as colored as what they
+//! let through. Rough glass throws the shadow of an opaque body. A light with a size is represented by points of it, in number the `light_samples` of the scene, and is
 //! itself no obstacle to others; a sky lights surfaces by the direction of their normals, without shadows; a lens is a
 //! pinhole.
 //!
@@ -22,6 +24,8 @@ mod lamp;
 mod reach;
 mod screen;
 mod gathering;
+mod finishing;
+mod irradiance_cache;
 mod shader;
 mod shade;
 mod shadow;
@@ -34,23 +38,27 @@ mod visibility;
 
 use super::film::Film;
 use super::indirect::IndirectLight;
+use super::ray_tracing::RayFinisher;
 use super::tally::Tally;
 use super::world::{AHEAD, Appearance, CameraRays, World};
-use super::{RayCounts, RenderError, RenderOrder, Renderer, Rendering, SpanCounts, Watch};
+use super::{FinishedCounts, RayCounts, RenderError, RenderOrder, Renderer, Rendering, SpanCounts, Watch};
 use crate::color::Channels;
 use crate::illumination::light::LightSource;
+use crate::illumination::optics::Interreflection;
 use crate::picture::{Filter, Picture};
 use crate::plan::{Plan, Stage};
-use crate::scene::{Prepared, View};
+use crate::scene::{Caustics, Prepared, View};
 use crate::stages::{StageSpan, Workers, part, stage};
 use casters::Casters;
 use enclosed::ShadowVolumes;
+use finishing::{Finishing, triangles_for_rays, triangles_lit_by_others};
 use glam::DVec3;
+use irradiance_cache::{IrradianceCache, RecordPlaces, directions};
 use lamp::{LampPoint, LightPosition};
 use rayon::prelude::*;
 use reach::Reach;
 use screen::{Screen, Viewpoint};
-use shader::{PixelScratch, Shader};
+use shader::{OtherSurfaces, PixelScratch, Shader};
 use shadow::Shadow;
 use sky_light::SkyLight;
 use spans::{MOST_LINES, SampleLines, rooks};
@@ -65,7 +73,12 @@ const MOST_GROUPS: usize = 200;
 /// A scan-line renderer that holds a scene and which triangles are neighbours.
 pub struct ScanLine<'a> {
     plan: &'a Plan,
-    appearance: Appearance<'a>,
+    /// Materials and lights; with octrees, if samples are finished by rays.
+    world: World<'a>,
+    /// For each triangle of the scene, whether what sees it is finished by rays; empty if nothing is.
+    for_rays: Vec<bool>,
+    /// For each triangle of the scene, whether it needs the light of other diffuse surfaces; empty if none does.
+    lit_by_others: Vec<bool>,
     casters: Casters<'a>,
     /// All triangles of the objects that the plan keeps.
     triangles: Vec<u32>,
@@ -83,6 +96,7 @@ pub struct ScanLine<'a> {
 /// The work that the threads share while a picture is made.
 struct PictureWork<'a> {
     shader: Shader<'a>,
+    finishing: Option<Finishing<'a>>,
     facets: &'a ScreenTriangles<'a>,
     shadows: &'a [Shadow],
     offsets: &'a [f64],
@@ -99,34 +113,59 @@ struct PictureWork<'a> {
 struct BandScratch<'a> {
     strip: Strip,
     counts: Vec<Vec<i32>>,
+    /// For each pixel of the band, whether samples of it were finished by rays.
+    finished: Vec<bool>,
     pixel: PixelScratch<'a>,
+}
+
+/// What bands took.
+#[derive(Clone, Copy, Default)]
+struct BandCounts {
+    spans: SpanCounts,
+    rays: RayCounts,
+    finished: FinishedCounts,
+}
+
+impl std::ops::Add for BandCounts {
+    type Output = BandCounts;
+
+    fn add(self, other: BandCounts) -> BandCounts {
+        BandCounts {
+            spans: self.spans + other.spans,
+            rays: self.rays + other.rays,
+            finished: self.finished + other.finished,
+        }
+    }
 }
 
 impl<'a> ScanLine<'a> {
     /// Prepares materials and lights, and finds the neighbours of triangles that throw shadows.
     ///
     /// # Errors
-    /// [`RenderError::Material`].
+    /// [`RenderError::Material`]; [`RenderError::Octree`], where samples are finished by rays.
     pub fn new(prepared: &'a Prepared, plan: &'a Plan) -> Result<ScanLine<'a>, RenderError> {
-        Ok(ScanLine::with_light(Appearance::new(prepared, plan)?, plan, None))
+        let appearance = Appearance::new(prepared, plan)?.without_caustics();
+        let for_rays = triangles_for_rays(&appearance, plan);
+        let lit_by_others = triangles_lit_by_others(&appearance, plan);
+        let world = match for_rays.is_empty() && lit_by_others.is_empty() {
+            true => World::without_rays(appearance),
+            false => World::standing_still(appearance, plan)?,
+        };
+        Ok(ScanLine { for_rays, lit_by_others, ..ScanLine::with_light(world, plan, None) })
     }
 
     /// A renderer of the light of a solution by radiosity: no highlights and no ambient light, and no shadows but those
     /// that are in it. It takes materials and lights over from the world that was solved.
     pub fn showing(solution: Arc<dyn IndirectLight>, world: World<'a>, plan: &'a Plan) -> ScanLine<'a> {
-        ScanLine::with_light(world.appearance, plan, Some(solution))
+        ScanLine::with_light(World::without_rays(world.appearance), plan, Some(solution))
     }
 
-    fn with_light(
-        appearance: Appearance<'a>,
-        plan: &'a Plan,
-        solution: Option<Arc<dyn IndirectLight>>,
-    ) -> ScanLine<'a> {
-        let prepared = appearance.prepared;
+    fn with_light(world: World<'a>, plan: &'a Plan, solution: Option<Arc<dyn IndirectLight>>) -> ScanLine<'a> {
+        let (prepared, appearance) = (world.prepared(), &world.appearance);
         let keeps = |triangle: &u32| plan.includes_object(prepared.object_of[*triangle as usize] as usize);
         let triangles: Vec<u32> = (0..prepared.triangles.len() as u32).filter(keeps).collect();
-        let (groups, passing) = groups(&appearance);
-        let passable = passable_triangles(&appearance, &groups);
+        let (groups, passing) = groups(appearance);
+        let passable = passable_triangles(appearance, &groups);
         let shadows = plan.needs(Stage::Shadows) && solution.is_none();
         let casters = Casters::new(prepared, if shadows { triangles.clone() } else { Vec::new() }, groups);
         let samples = prepared.settings.light.samples.max(1);
@@ -137,10 +176,12 @@ impl<'a> ScanLine<'a> {
                 lamps.push(LampPoint { source, point, position });
             }
         }
-        let sky_light = if solution.is_none() { SkyLight::new(&appearance) } else { None };
+        let sky_light = if solution.is_none() { SkyLight::new(appearance) } else { None };
         ScanLine {
             plan,
-            appearance,
+            world,
+            for_rays: Vec::new(),
+            lit_by_others: Vec::new(),
             casters,
             triangles,
             passable,
@@ -174,7 +215,7 @@ impl<'a> ScanLine<'a> {
         let groups = self.group_transmittance.len();
         let of = |Shadow { light, facing, silhouettes, .. }: &'s Shadow| {
             let new = || ShadowVolumes::new(&self.casters, *light, facing, silhouettes, groups).sorted();
-            self.appearance.curved.then(new)
+            self.world.appearance.curved.then(new)
         };
         shadows.par_iter().map(of).collect()
     }
@@ -183,25 +224,29 @@ impl<'a> ScanLine<'a> {
         &'s self,
         eye: &'s CameraRays,
         enclosed: &'s [Option<ShadowVolumes<'s>>],
-        is_parallel: bool,
-        matte: bool,
+        others: Option<OtherSurfaces<'s>>,
+        [is_parallel, matte]: [bool; 2],
     ) -> Shader<'s> {
-        let sources = || self.appearance.sources.iter().map(|(_, source)| source);
+        let sources = || self.world.appearance.sources.iter().map(|(_, source)| source);
         let (has_surfaces, has_sky) = (sources().any(LightSource::is_surface), sources().any(LightSource::is_infinite));
-        let wavelengths = &self.appearance.wavelengths;
+        let wavelengths = &self.world.appearance.wavelengths;
         let background = || {
             let seen = |wavelength_set| {
-                wavelengths
-                    .to_srgb(wavelength_set, self.appearance.escaped_radiance(&AHEAD, None, wavelength_set, |_, _| 1.0))
+                wavelengths.to_srgb(
+                    wavelength_set,
+                    self.world.appearance.escaped_radiance(&AHEAD, None, wavelength_set, |_, _| 1.0),
+                )
             };
             (0..wavelengths.count()).map(seen).sum::<DVec3>() / wavelengths.count() as f64
         };
         Shader {
-            appearance: &self.appearance,
+            appearance: &self.world.appearance,
+            world: Some(&self.world).filter(|_| self.has_rays()),
             casters: &self.casters,
             lamps: &self.lamps,
             sky_light: self.sky_light.as_ref(),
             solution: self.solution.as_deref(),
+            others,
             enclosed,
             group_transmittance: &self.group_transmittance,
             eye,
@@ -214,6 +259,29 @@ impl<'a> ScanLine<'a> {
         }
     }
 
+    /// Whether rays are traced at all.
+    fn has_rays(&self) -> bool {
+        !(self.for_rays.is_empty() && self.lit_by_others.is_empty())
+    }
+
+    /// Gathers the light that surfaces send each other; none if it was stopped.
+    fn others<'s>(
+        &'s self,
+        finisher: &'s RayFinisher<'s>,
+        eye: &CameraRays,
+        order: &RenderOrder,
+        stopped: &(dyn Fn() -> bool + Sync),
+    ) -> Option<(OtherSurfaces<'s>, RayCounts)> {
+        let _stage = stage!("gathering light of other surfaces");
+        let triangles = self.lit_by_others.as_slice();
+        let size = [order.width, order.height].map(|side| side as usize);
+        let needs = |triangle: u32| triangles[triangle as usize];
+        let [of_record, directions] = directions(order.samples);
+        let places = RecordPlaces { world: &self.world, finisher, eye, size, needs: &needs, directions: of_record };
+        let (cache, rays) = IrradianceCache::new(&places, stopped)?;
+        Some((OtherSurfaces { cache, finisher, directions, triangles, width: size[0] }, rays))
+    }
+
     fn draw(
         &self,
         film: &mut Film,
@@ -222,15 +290,34 @@ impl<'a> ScanLine<'a> {
         order: &RenderOrder,
         stopped: &(dyn Fn() -> bool + Sync),
         stage: &StageSpan,
-    ) -> Result<(SpanCounts, bool), RenderError> {
-        let prepared = self.appearance.prepared;
+    ) -> Result<(BandCounts, bool), RenderError> {
+        let prepared = self.world.prepared();
         let samples = order.samples.max(1);
         let size = [order.width, order.height];
-        let eye = CameraRays::new(view, order.width, order.height, &prepared.bounds).ok_or(RenderError::View)?;
+        let new_eye = || CameraRays::new(view, order.width, order.height, &prepared.bounds).ok_or(RenderError::View);
         let filter = prepared.settings.light.texture_filter.max(1e-3);
         // Where the samples of a pixel are too many to be drawn together, the groups of them share it.
         let groups = (samples as usize).div_ceil(MOST_LINES) as f64;
-        let eye = if self.plan.needs(Stage::Textures) { eye.with_cones(filter / groups.sqrt()) } else { eye };
+        let with_cones = |eye: CameraRays, parts: f64| match self.plan.needs(Stage::Textures) {
+            true => eye.with_cones(filter / parts.sqrt()),
+            false => eye,
+        };
+        let (eye, eye_of_samples) = (with_cones(new_eye()?, groups), with_cones(new_eye()?, f64::from(samples)));
+        let finisher = self.has_rays().then(|| RayFinisher::new(&self.world, self.plan, &eye_of_samples, order));
+        let of_samples = finisher.as_ref().filter(|_| !self.for_rays.is_empty());
+        let finishing = of_samples.map(|finisher| Finishing { finisher, triangles: &self.for_rays, stopped });
+        let mut cost = BandCounts::default();
+        let others = match finisher.as_ref().filter(|_| !self.lit_by_others.is_empty()) {
+            Some(finisher) => {
+                let eye = new_eye()?.with_cones(1.0);
+                let Some((others, rays)) = self.others(finisher, &eye, order, stopped) else {
+                    return Ok((cost, false));
+                };
+                cost.rays = rays;
+                Some(others)
+            }
+            None => None,
+        };
         let screen = Screen::new(view, size, samples, &prepared.bounds).ok_or(RenderError::View)?;
         let offsets = rooks(samples);
         let rows = (MOST_LINES / samples as usize).max(1);
@@ -242,7 +329,8 @@ impl<'a> ScanLine<'a> {
         let enclosed = self.enclosed(&shadows);
         let is_parallel = matches!(screen.viewpoint, Viewpoint::Towards(_));
         let work = PictureWork {
-            shader: self.shader(&eye, &enclosed, is_parallel, order.matte),
+            shader: self.shader(&eye, &enclosed, others, [is_parallel, order.matte]),
+            finishing,
             facets: &facets,
             shadows: &shadows,
             offsets: &offsets,
@@ -256,7 +344,7 @@ impl<'a> ScanLine<'a> {
             rows,
         };
         let done = AtomicU64::new(0);
-        let drawn: Vec<Option<SpanCounts>> = film
+        let drawn: Vec<Option<BandCounts>> = film
             .tallies_mut()
             .par_chunks_mut(order.width as usize * rows)
             .zip(picture.pixels_mut().par_chunks_mut(order.width as usize * rows))
@@ -266,7 +354,7 @@ impl<'a> ScanLine<'a> {
                     return None;
                 }
                 let _band = part!(stage, "band", band);
-                let counts = work.band(self, band, tallies, tools);
+                let counts = work.band(self, band, tallies, tools)?;
                 pixels.iter_mut().zip(&*tallies).for_each(|(pixel, tally)| *pixel = tally.pixel());
                 let rows = (tallies.len() / work.width) as u64;
                 let done = done.fetch_add(rows, Ordering::Relaxed) + rows;
@@ -275,20 +363,28 @@ impl<'a> ScanLine<'a> {
             })
             .collect();
         let complete = drawn.iter().all(Option::is_some);
-        Ok((drawn.into_iter().flatten().fold(SpanCounts::default(), |a, b| a + b), complete))
+        Ok((drawn.into_iter().flatten().fold(cost, |a, b| a + b), complete))
     }
 }
 
 impl<'a> PictureWork<'a> {
-    /// Draws a band of the picture.
-    fn band(&self, scan: &ScanLine<'_>, band: usize, tallies: &mut [Tally], tools: &mut BandScratch<'a>) -> SpanCounts {
+    /// Draws a band of the picture; none, and no sample, if it was stopped before its end.
+    fn band(
+        &self,
+        scan: &ScanLine<'_>,
+        band: usize,
+        tallies: &mut [Tally],
+        tools: &mut BandScratch<'a>,
+    ) -> Option<BandCounts> {
         let samples = self.offsets.len();
         let first = band * self.rows * samples;
         let last = first + tallies.len() / self.width * samples;
         let mut drawn = SpanCounts::default();
-        let BandScratch { strip, counts, pixel: scratch } = tools;
+        let BandScratch { strip, counts, finished, pixel: scratch } = tools;
         scratch.clear();
         tallies.fill(Tally::default());
+        finished.clear();
+        finished.resize(if self.finishing.is_some() { tallies.len() } else { 0 }, false);
         counts.resize_with(self.shadows.len(), Vec::new);
         for begin in (first..last).step_by(MOST_LINES) {
             let range = begin..(begin + MOST_LINES).min(last);
@@ -305,15 +401,31 @@ impl<'a> PictureWork<'a> {
                 let places = &self.places[from - row * samples..to - row * samples];
                 let part = (places.len() as f64).recip();
                 let mean = [0, 1].map(|i| places.iter().map(|place| place[i]).sum::<f64>() * part);
-                let tallies = &mut tallies[(row - band * self.rows) * self.width..][..self.width];
-                for (column, tally) in tallies.iter_mut().enumerate() {
+                let begin = from - row * samples;
+                for column in 0..self.width {
                     let first = (from - range.start) * self.width + column;
-                    let pixel = StripPixel { at: [column, row], first, stride: self.width, places, mean, part };
-                    self.shader.shade(&pixel, strip, counts, scratch, tally);
+                    let at = [column, row];
+                    let pixel = StripPixel { at, first, stride: self.width, begin, places, mean, part };
+                    let number = (row - band * self.rows) * self.width + column;
+                    if let Some(finishing) = &self.finishing {
+                        let Some(count) = finishing.finish(&pixel, strip, &mut scratch.finishing) else {
+                            tallies.fill(Tally::default());
+                            return None;
+                        };
+                        finished[number] |= count > 0;
+                        if count == pixel.count() {
+                            let samples = scratch.finishing.samples.iter().flatten();
+                            samples.for_each(|sample| tallies[number].add_alike(sample, 1));
+                            continue;
+                        }
+                    }
+                    self.shader.shade(&pixel, strip, counts, scratch, &mut tallies[number]);
                 }
             }
         }
-        drawn
+        let (rays, by_rays) = scratch.finishing.take_counts();
+        let pixels = finished.iter().filter(|finished| **finished).count() as u64;
+        Some(BandCounts { spans: drawn, rays, finished: FinishedCounts { pixels, ..by_rays } })
     }
 }
 
@@ -334,7 +446,8 @@ fn passable_triangles(appearance: &Appearance<'_>, groups: &[u8]) -> Vec<bool> {
 /// For each triangle, the group of casters that it is of, and the transmittance of each group; no groups where all are
 /// opaque.
 ///
-/// A polished body lets through what its two surfaces do at right angles, less what is absorbed on its mean chord.
+/// A surface of a polished body lets through what it does at right angles, less what is absorbed on half of the mean
+/// chord: light goes through two of them.
 fn groups(appearance: &Appearance<'_>) -> (Vec<u8>, Vec<Vec<Channels>>) {
     let prepared = appearance.prepared;
     let sets = 0..appearance.wavelengths.count();
@@ -355,9 +468,7 @@ fn groups(appearance: &Appearance<'_>) -> (Vec<u8>, Vec<Vec<Channels>>) {
             let passes = |wavelength_set: usize| match body.zip(chord) {
                 Some((interior, chord)) => {
                     let surface = bsdf.clear_transmittance(wavelength_set, 1.0, place);
-                    surface
-                        * surface
-                        * interior.absorption.of(wavelength_set).map(|absorption| (-absorption * chord).exp())
+                    surface * interior.absorption.of(wavelength_set).map(|absorption| (-absorption * 0.5 * chord).exp())
                 }
                 None => bsdf.straight_transmittance(wavelength_set, 1.0, place),
             };
@@ -403,15 +514,19 @@ impl Renderer for ScanLine<'_> {
         let mut left_out = Vec::new();
         if self.solution.is_some() {
             left_out.push("only what surfaces reflect diffusely is seen: no mirrors, no glass, no highlights");
-        } else if self.plan.needs(Stage::Reflection) {
-            left_out.push(
-                "mirrors, metals and coats show lights, ambient light and a blurred sky only, and glass bends nothing",
-            );
+        } else {
+            let light = &self.world.prepared().settings.light;
+            if self.plan.needs(Stage::Reflection) && light.interreflection == Interreflection::Solved {
+                left_out.push("the light of radiosity is not seen");
+            }
+            if light.caustics != Caustics::LeftOut {
+                left_out.push("mirrors and glass throw no light: there are no caustics");
+            }
         }
-        if self.solution.is_none() && self.appearance.sources.iter().any(|(_, source)| source.is_sky()) {
+        if self.solution.is_none() && self.world.appearance.sources.iter().any(|(_, source)| source.is_sky()) {
             left_out.push("the light of the sky throws no shadows");
         }
-        if self.appearance.prepared.settings.image.filter != Filter::Box {
+        if self.world.prepared().settings.image.filter != Filter::Box {
             left_out.push("pixels are means over their areas: the filter is a box");
         }
         if self.plan.needs(Stage::Motion) {
@@ -432,18 +547,9 @@ impl Renderer for ScanLine<'_> {
         let stopped = || watch.is_cancelled() || late();
         let mut film = Film::untouched(order.width, order.height)?;
         let mut picture = Picture::new(order.width, order.height)?;
-        let (spans, complete) =
+        let (BandCounts { spans, rays, finished }, complete) =
             workers.install(|| self.draw(&mut film, &mut picture, view, order, &stopped, &stage))?;
         let (seconds, threads) = (stage.seconds(), workers.count());
-        Ok(Rendering {
-            picture,
-            film,
-            complete,
-            rays: RayCounts::default(),
-            spans,
-            flux_balance: None,
-            seconds,
-            threads,
-        })
+        Ok(Rendering { picture, film, complete, rays, spans, finished, flux_balance: None, seconds, threads })
     }
 }

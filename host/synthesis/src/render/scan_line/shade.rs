@@ -1,6 +1,6 @@
 //! Radiance of what samples see, once for each pixel and surface.
 
-use super::lamp::LampPoint;
+use super::lamp::{LampPoint, LightPosition};
 use super::shader::{LampContribution, PixelScratch, SampleSight, Shader};
 use super::surfaces::{PixelInteraction, SampleFragment, StripPixel};
 use super::visibility::{NONE, Strip};
@@ -10,6 +10,7 @@ use crate::illumination::texture::TextureFootprint;
 use crate::numeric::ray::Ray;
 use crate::numeric::triangle::weights;
 use crate::render::indirect::IrradiancePart as Light;
+use crate::render::ray_tracing::PathScratch;
 use crate::render::tally::{PixelSample, Tally};
 use crate::render::world::{AHEAD, BoundedRay, SurfaceElement, diffuse_albedo};
 use glam::DVec3;
@@ -27,7 +28,9 @@ impl<'a> Shader<'a> {
         scratch: &mut PixelScratch<'a>,
         tally: &mut Tally,
     ) {
-        if let Some(sample) = self.single(pixel, strip, counts, &mut scratch.last) {
+        if scratch.finishing.samples.is_empty()
+            && let Some(sample) = self.single(pixel, strip, counts, &mut scratch.last, &mut scratch.finishing.path)
+        {
             return tally.add_alike(&sample, pixel.count() as u32);
         }
         self.gather(pixel, strip, scratch);
@@ -43,14 +46,14 @@ impl<'a> Shader<'a> {
                     wavelength_set,
                     texture_values.as_ref().map_or(&[], |painting| &painting[..]),
                 );
-                surface.unlit_radiance = self.unlit_radiance(interaction, &context);
+                surface.unlit_radiance = self.unlit_radiance(interaction, surface.irradiance, &context);
                 surface.transmittance = straight_transmittance(interaction, &context);
                 for lit in &mut lit[surface.contributions.clone()] {
                     lit.radiance = self.lamp_radiance(lit, interaction, &context);
                 }
             }
             for i in 0..scratch.samples.len() {
-                if scratch.samples[i].like == i {
+                if scratch.samples[i].like == i && !scratch.finishing.has(i) {
                     let light = self.sample(scratch, strip, counts, pixel, i, wavelength_set);
                     scratch.samples[i].light += self.appearance.wavelengths.to_srgb(wavelength_set, light);
                 }
@@ -61,13 +64,27 @@ impl<'a> Shader<'a> {
 
     /// Finds what the samples of a pixel see, by the light of which lamps, and which of them get the same light.
     fn find_visible(&self, pixel: &StripPixel<'_>, strip: &Strip, counts: &[Vec<i32>], scratch: &mut PixelScratch<'a>) {
-        let PixelScratch { surfaces, parts, interactions, mixtures, contributions: lit, samples, last } = scratch;
+        let PixelScratch {
+            surfaces,
+            parts,
+            interactions,
+            mixtures,
+            contributions: lit,
+            samples,
+            finishing,
+            passed,
+            last,
+        } = scratch;
         interactions.clear();
         mixtures.clear();
         lit.clear();
+        passed.clear();
         for (index, surface) in surfaces.iter_mut().enumerate() {
             let own = || parts.iter().filter(|part| part.surface == index);
             surface.interaction = self.find_interaction(surface, own(), pixel, interactions, last);
+            if let Some(interaction) = surface.interaction.map(|interaction| &interactions[interaction]) {
+                surface.irradiance = self.irradiance_by_others(interaction, pixel, &mut finishing.path);
+            }
             let begin = lit.len();
             if let Some(interaction) = surface.interaction.map(|interaction| &interactions[interaction]) {
                 mixtures.push(
@@ -80,10 +97,20 @@ impl<'a> Shader<'a> {
                     own().all(|part| self.is_shaded(lit, counts, part.fragment, strip, interaction.triangle))
                 };
                 lit.extend(self.lights(interaction).filter(|lit| !is_dark(lit)));
+                for lit in &mut lit[begin..] {
+                    let dims =
+                        |part: &SampleFragment| self.is_dimmed(lit, counts, part.fragment, strip, interaction.triangle);
+                    if own().any(dims)
+                        && let Some(transmittances) = self.straight_transmittances(lit, interaction)
+                    {
+                        lit.passed = Some(passed.len());
+                        passed.extend(transmittances);
+                    }
+                }
             }
             surface.contributions = begin..lit.len();
         }
-        for i in 0..samples.len() {
+        for i in (0..samples.len()).filter(|i| !finishing.has(*i)) {
             let own = fragments_of(samples, parts, i);
             samples[i].before_light = if self.has_surfaces {
                 let before = own.iter().map(|part| {
@@ -95,6 +122,7 @@ impl<'a> Shader<'a> {
             };
             let is_like = |j: &usize| {
                 samples[*j].like == *j
+                    && !finishing.has(*j)
                     && samples[*j].before_light.is_none()
                     && self.is_alike([fragments_of(samples, parts, *j), own], strip, counts)
             };
@@ -108,7 +136,7 @@ impl<'a> Shader<'a> {
 
     /// Adds up what was found sample by sample.
     fn add_samples(&self, pixel: &StripPixel<'_>, scratch: &PixelScratch<'a>, tally: &mut Tally) {
-        let PixelScratch { surfaces, parts, interactions, samples, .. } = scratch;
+        let PixelScratch { surfaces, parts, interactions, samples, finishing, .. } = scratch;
         let scale = (self.appearance.wavelengths.count() as f64).recip();
         let mut last: Option<(PixelSample, u32)> = None;
         for i in 0..pixel.count() {
@@ -127,7 +155,8 @@ impl<'a> Shader<'a> {
             let covered = first.is_some() || before_light.is_some();
             let light = samples[samples[i].like].light * scale;
             let radiance = if self.matte && !covered { DVec3::ZERO } else { light };
-            let sample = PixelSample { radiance, covered, first, ..PixelSample::default() };
+            let by_lamps = PixelSample { radiance, covered, first, ..PixelSample::default() };
+            let sample = finishing.samples.get(i).copied().flatten().unwrap_or(by_lamps);
             if let Some((before, count)) = last.replace((sample, 1)) {
                 tally.add_alike(&before, count);
             }
@@ -145,6 +174,7 @@ impl<'a> Shader<'a> {
         strip: &Strip,
         counts: &[Vec<i32>],
         last: &mut Option<PixelInteraction<'a>>,
+        path: &mut PathScratch,
     ) -> Option<PixelSample> {
         let triangle = strip.triangles[pixel.first];
         let alike = |sample: usize| {
@@ -165,7 +195,8 @@ impl<'a> Shader<'a> {
         let texture_values =
             interaction.bsdf.is_textured().then(|| interaction.bsdf.texture_values(&self.footprint(interaction), 0));
         let context = self.context(interaction, 0, texture_values.as_ref().map_or(&[], |painting| &painting[..]));
-        let mut sum = self.unlit_radiance(interaction, &context);
+        let irradiance = self.irradiance_by_others(interaction, pixel, path);
+        let mut sum = self.unlit_radiance(interaction, irradiance, &context);
         for lit in self.lights(interaction).filter(|lit| !self.is_shaded(lit, counts, pixel.first, strip, triangle)) {
             sum += self.lamp_radiance(&lit, interaction, &context);
         }
@@ -210,7 +241,7 @@ impl<'a> Shader<'a> {
         i: usize,
         wavelength_set: usize,
     ) -> Channels {
-        let PixelScratch { surfaces, interactions, contributions, samples, parts, .. } = scratch;
+        let PixelScratch { surfaces, interactions, contributions, samples, parts, passed, .. } = scratch;
         let mut sum = Channels::ZERO;
         let mut transmittance = Channels::ONE;
         // The medium of the line of sight, and where that begins.
@@ -232,8 +263,9 @@ impl<'a> Shader<'a> {
             }
             let mut radiance = surface.unlit_radiance;
             for lit in &contributions[surface.contributions.clone()] {
-                radiance += lit.radiance
-                    * self.lamp_transmittance(lit, counts, part.fragment, strip, interaction.triangle, wavelength_set);
+                let at = [part.fragment, wavelength_set];
+                radiance +=
+                    lit.radiance * self.lamp_transmittance(lit, counts, at, strip, interaction.triangle, passed);
             }
             sum += transmittance * radiance;
             if part.fragment < strip.near.len() {
@@ -282,20 +314,56 @@ impl<'a> Shader<'a> {
         lit.known.unwrap_or_else(|| self.volumes(lit, counts, fragment, strip, triangle, 0) > 0)
     }
 
-    /// Transmittance from a lamp to a sample.
-    fn lamp_transmittance(
+    /// Whether something passable stands between a lamp and a sample.
+    fn is_dimmed(
         &self,
         lit: &LampContribution,
         counts: &[Vec<i32>],
         fragment: usize,
         strip: &Strip,
         triangle: u32,
-        wavelength_set: usize,
+    ) -> bool {
+        let Some(counts) = counts.get(lit.lamp).filter(|_| self.world.is_some()) else { return false };
+        let mut groups = 1..self.group_transmittance.len();
+        groups.any(|group| self.volumes(lit, counts, fragment, strip, triangle, group) > 0)
+    }
+
+    /// Transmittance of what is passable between an element and a lamp, as a ray finds it, for each wavelength set; none
+    /// without rays, or if the ray goes past.
+    fn straight_transmittances(
+        &self,
+        lit: &LampContribution,
+        interaction: &PixelInteraction<'_>,
+    ) -> Option<Vec<Channels>> {
+        let element = interaction.with_origins();
+        let lamp = &self.lamps[lit.lamp];
+        let above = lamp.position.from(element.position).dot(element.normal) > 0.0;
+        let origin = if above { element.leave_curved } else { element.through };
+        let t_max = if matches!(lamp.position, LightPosition::Point(_)) { 1.0 } else { f64::INFINITY };
+        self.world?.straight_transmittances(&Ray { origin, direction: lamp.position.from(origin) }, t_max)
+    }
+
+    /// Transmittance from a lamp to a sample.
+    ///
+    /// - `passed`: transmittances by rays, of all lamps.
+    fn lamp_transmittance(
+        &self,
+        lit: &LampContribution,
+        counts: &[Vec<i32>],
+        [fragment, wavelength_set]: [usize; 2],
+        strip: &Strip,
+        triangle: u32,
+        passed: &[Channels],
     ) -> Channels {
         if self.is_shaded(lit, counts, fragment, strip, triangle) {
             return Channels::ZERO;
         }
         let mut part = Channels::ONE;
+        if let Some(begin) = lit.passed
+            && self.is_dimmed(lit, counts, fragment, strip, triangle)
+        {
+            return passed[begin + wavelength_set];
+        }
         let Some(counts) = counts.get(lit.lamp) else { return part };
         for (group, passing) in self.group_transmittance.iter().enumerate().skip(1) {
             for _ in 0..self.volumes(lit, counts, fragment, strip, triangle, group).clamp(0, 64) {
@@ -377,8 +445,32 @@ impl<'a> Shader<'a> {
         }
     }
 
+    /// Irradiance at an element by other surfaces, as far as it is gathered.
+    fn irradiance_by_others(
+        &self,
+        interaction: &PixelInteraction<'_>,
+        pixel: &StripPixel<'_>,
+        path: &mut PathScratch,
+    ) -> Channels {
+        let Some(others) = self.others.as_ref().filter(|others| others.triangles[interaction.triangle as usize]) else {
+            return Channels::ZERO;
+        };
+        let SurfaceElement { position, normal, .. } = interaction.element;
+        others.cache.irradiance(position, normal).unwrap_or_else(|| {
+            let number = (pixel.at[1] * others.width + pixel.at[0]) as u64;
+            others.finisher.irradiance(&interaction.with_origins(), number, others.directions, path).irradiance
+        })
+    }
+
     /// Radiance of an element towards the camera without lamps.
-    fn unlit_radiance(&self, interaction: &PixelInteraction<'_>, context: &ShadingContext<'_>) -> Channels {
+    ///
+    /// - `irradiance`: by other surfaces.
+    fn unlit_radiance(
+        &self,
+        interaction: &PixelInteraction<'_>,
+        irradiance: Channels,
+        context: &ShadingContext<'_>,
+    ) -> Channels {
         let PixelInteraction { element, bsdf, .. } = interaction;
         let mut own = bsdf.emission.as_ref().map_or(Channels::ZERO, |emission| emission.of(context.wavelength_set));
         if let Some(solution) = self.solution {
@@ -386,6 +478,10 @@ impl<'a> Shader<'a> {
             let weights = weights(self.appearance.prepared.corners(interaction.triangle), element.position);
             let irradiance = solution.irradiance(interaction.triangle, element.outside, weights, Light::All);
             return own + diffuse_albedo(bsdf, context.wavelength_set, context.texture_values) * irradiance * FRAC_1_PI;
+        }
+        if irradiance != Channels::ZERO {
+            let albedo = bsdf.diffuse_albedo(context) + bsdf.glossy_albedo(&from_outside(interaction, context));
+            own += albedo * irradiance * FRAC_1_PI;
         }
         if let Some(ambient) = &self.appearance.ambient {
             own += (bsdf.ambient(context) + bsdf.glossy_albedo(&from_outside(interaction, context)))
@@ -435,7 +531,7 @@ impl<'a> Shader<'a> {
     ) -> LampContribution {
         let towards = lamp.position.from(element.position);
         let is_before = towards.dot(element.face) > 0.0;
-        let mut lit = LampContribution { lamp: number, radiance: Channels::ZERO, turned: 0, known: None };
+        let mut lit = LampContribution { lamp: number, radiance: Channels::ZERO, turned: 0, known: None, passed: None };
         if towards.dot(element.normal) < 0.0 {
             // The light arrives behind the triangle, which is one more in between, or one less.
             lit.turned = if is_before { 1 } else { -1 };

@@ -22,6 +22,8 @@ pub(super) struct StripPixel<'p> {
     /// Its first sample in the strip, and how far the next are apart.
     pub(super) first: usize,
     pub(super) stride: usize,
+    /// How many samples of the pixel are in strips before.
+    pub(super) begin: usize,
     /// Places of its samples in it.
     pub(super) places: &'p [[f64; 2]],
     /// The mean of these places, and the part of all that each of them is.
@@ -78,6 +80,8 @@ pub(super) struct PixelSurface {
     pub(super) nearness: [f64; 2],
     /// Index of its own among the elements that were found.
     pub(super) interaction: Option<usize>,
+    /// Irradiance by other surfaces, W/m².
+    pub(super) irradiance: Channels,
     /// At the wavelengths of the shading context, its radiance towards the camera without lights, and the part of light
     /// that goes straight through.
     pub(super) unlit_radiance: Channels,
@@ -130,6 +134,17 @@ pub(super) struct PixelInteraction<'a> {
 }
 
 impl PixelInteraction<'_> {
+    /// The element with origins of rays in its place, which are not moved with it.
+    pub(super) fn with_origins(&self) -> SurfaceElement {
+        let element = &self.element;
+        let clearance = element.face * element.clearance;
+        let (leave, through) = (element.position + clearance, element.position - clearance);
+        match self.is_flat {
+            true => SurfaceElement { leave, leave_curved: leave, through, ..*element },
+            false => *element,
+        }
+    }
+
     /// Moves to where another line of sight hits a triangle, if it is the same, flat and without a texture.
     #[inline]
     pub(super) fn move_to(&mut self, triangle: u32, ray: &Ray) -> bool {

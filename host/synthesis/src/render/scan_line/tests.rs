@@ -353,7 +353,7 @@ fn mirrors_metals_and_glass_show_the_ambient_light() {
     let mirror = Classic { mirror: Paint::grey(0.8), ..diffuse(0.0) };
     let glass = Transparent { absorption: Color::grey(2.0), ..Transparent::clear(RefractiveIndex::Constant(1.5)) };
     let slab = Shape::from(Primitive::Box { size: DVec3::new(9.0, 9.0, 0.5) });
-    // Of each face of the glass 4 %, of the rest what a length of half a unit leaves.
+    // Where no ray is reflected: of each face of the glass 4 %, of the rest what a length of half a unit leaves.
     let (reflected, left) = (0.04, 0.96 * (-1.0_f64).exp());
     for (shape, material, ambient, background) in [
         (Shape::Ground { size: 9.0 }, Material::from(mirror), 0.8, 0.0),
@@ -364,6 +364,7 @@ fn mirrors_metals_and_glass_show_the_ambient_light() {
             scene(vec![object(shape, transform, material)], Vec::new(), camera(DVec3::Z * 600.0, DVec3::ZERO));
         scene.camera = scene.camera.map(|camera| Camera { field_of_view: 0.1, ..camera });
         scene.ambient = RgbPower::new(0.2, 0.4, 0.6);
+        scene.settings.light.reflection_depth = 0;
         let found = scan(&scene, None, 1).film.tallies()[32 * 72 + 36].mean();
         let expected = scene.ambient * ambient + scene.background * background;
         assert!((found - expected).abs().max_element() < 1e-6, "{found}, not {expected}");
@@ -409,8 +410,89 @@ fn any_number_of_threads_gives_the_same_bytes() {
     let mut objects = boxes();
     objects.push(pane(DVec3::new(0.0, 1.0, 1.5), 0.0));
     let scene = scene(objects, vec![lamp(DVec3::new(3.0, 5.0, 4.0)), sun()], usual());
-    let [one, four] = [1, 4].map(|threads| scan(&scene, None, threads));
-    assert!(one.film == four.film && one.spans == four.spans && one.threads != four.threads);
+    let mut with_rays = scene.clone();
+    with_rays.objects.extend(shiny());
+    with_rays.settings.light.interreflection = Interreflection::Followed;
+    (with_rays.settings.image.width, with_rays.settings.image.samples) = (36, 4);
+    for (scene, has_rays) in [(scene, false), (with_rays, true)] {
+        let [one, four] = [1, 4].map(|threads| scan(&scene, None, threads));
+        assert!(one.film == four.film && one.spans == four.spans && one.threads != four.threads);
+        // How many rays to lights are spared depends on who asks first.
+        let [rays, same] = [&one, &four].map(|drawn| [drawn.rays.primary, drawn.rays.reflected]);
+        assert!(rays == same && (rays[0] > 0) == has_rays, "{rays:?} {same:?}");
+    }
+}
+
+/// A ball that is a mirror, and one of green glass.
+fn shiny() -> Vec<Object> {
+    let mirror = Classic { mirror: Paint::grey(0.8), ..diffuse(0.05) };
+    let ball = |at: DVec3, material: Material| {
+        object(Shape::from(Primitive::Sphere { radius: 0.6 }), DMat4::from_translation(at), material)
+    };
+    vec![ball(DVec3::new(-1.5, 0.6, 2.0), mirror.into()), ball(DVec3::new(0.9, 0.6, 2.6), green_glass(1.5))]
+}
+
+fn green_glass(index: f64) -> Material {
+    let absorption = Color::Bands(RgbPower::new(1.5, 0.2, 1.0));
+    let glass = Transparent { absorption, ..Transparent::clear(RefractiveIndex::Constant(index)) };
+    MaterialKind::Transparent(glass).into()
+}
+
+#[test]
+fn mirrors_and_glass_show_what_ray_tracing_finds_in_them_and_the_rest_takes_no_rays() {
+    let lights = || vec![lamp(DVec3::new(3.0, 5.0, 4.0)), sun()];
+    let plain = scan(&scene(boxes(), lights(), usual()), None, 2);
+    assert!(plain.rays == RayCounts::default() && plain.finished == FinishedCounts::default());
+    let mut objects = boxes();
+    objects.extend(shiny());
+    objects.push(pane(DVec3::new(0.9, 1.0, 3.4), 0.2));
+    let scene = scene(objects, lights(), usual());
+    agrees("mirror, and glass behind a pane", &scene, None);
+    let drawn = scan(&scene, None, 2);
+    let FinishedCounts { pixels, samples, seconds } = drawn.finished;
+    assert!((200..1500).contains(&pixels) && samples > 8 * pixels && samples < 16 * pixels && seconds > 0.0);
+    assert_eq!(drawn.rays.primary, samples);
+}
+
+#[test]
+fn glass_throws_a_colored_shadow_whatever_the_scene_asks_of_caustics() {
+    let ball = object(
+        Shape::from(Primitive::Sphere { radius: 0.8 }),
+        DMat4::from_translation(DVec3::new(-1.5, 2.0, 1.0)),
+        green_glass(1.3),
+    );
+    let above = camera(DVec3::new(0.5, 6.0, 3.0), DVec3::new(0.6, 0.0, 0.2));
+    let mut scene = scene(vec![ground(20.0), ball], vec![sun()], above);
+    let [mean, many, _] = compared(&scene, None);
+    assert!(mean < 2e-3 && many < 4e-3, "{mean} {many}");
+    let shadow = |scene: &Scene| {
+        let film = scan(scene, None, 2).film;
+        let lights = film.tallies().iter().map(Tally::mean).filter(|light| light.y > 1.3 * light.x);
+        lights.fold((0, 0.0), |(count, most), light| (count + 1, f64::max(most, light.y)))
+    };
+    let (pixels, most) = shadow(&scene);
+    assert!(pixels > 100 && most > 0.1, "{pixels} {most}");
+    scene.settings.light.caustics = Caustics::PathTraced;
+    assert_eq!(shadow(&scene), (pixels, most));
+}
+
+#[test]
+fn light_of_other_surfaces_is_that_of_ray_tracing_without_its_noise() {
+    let wall = Classic { diffuse: Paint::Plain(Color::Bands(RgbPower::new(0.8, 0.2, 0.1))), ..Classic::default() };
+    let mut objects = boxes();
+    let size = DVec3::new(0.1, 4.0, 6.0);
+    objects.push(object(
+        Shape::from(Primitive::Box { size }),
+        DMat4::from_translation(DVec3::new(-2.0, 2.0, 0.0)),
+        wall,
+    ));
+    let mut scene = scene(objects, vec![lamp(DVec3::new(3.0, 5.0, 4.0))], usual());
+    scene.background = RgbPower::ZERO;
+    (scene.settings.image.width, scene.settings.image.height) = (36, 32);
+    let [without, ..] = compared(&scene, None);
+    scene.settings.light.interreflection = Interreflection::Followed;
+    let [mean, many, _] = compared(&scene, None);
+    assert!(mean < 0.012 && many < 0.01 && without < 2e-3, "{mean} {many} {without}");
 }
 
 #[test]

@@ -85,6 +85,12 @@ impl<'a> Appearance<'a> {
         Ok(appearance)
     }
 
+    /// The appearance where caustics are left out, whatever the scene asks for: light goes straight through polished
+    /// bodies.
+    pub(in crate::render) fn without_caustics(self) -> Appearance<'a> {
+        Appearance { has_clear_shadows: self.bsdfs.iter().any(Bsdf::is_clear), ..self }
+    }
+
     fn add_materials(&mut self, plan: &Plan) -> Result<(), RenderError> {
         let wavelengths = self.wavelengths.clone();
         let mut library = BsdfBuilder::new(&wavelengths, plan.forced);

@@ -45,6 +45,45 @@ impl<'a> World<'a> {
             let _stage = stage!("preparing lights and materials");
             Appearance::new(prepared, plan)?
         };
+        let world = World::over(acceleration, appearance, plan);
+        let points = world.surface_points(plan);
+        Ok(World { points, ..world })
+    }
+
+    /// Points that stand for what stands still, if the plan needs them.
+    fn surface_points(&self, plan: &Plan) -> Option<SurfacePoints> {
+        let still = self.still().filter(|_| plan.needs(Stage::SurfacePoints))?;
+        let (prepared, settings) = (self.prepared(), &self.prepared().settings);
+        let surface = |triangle: u32| {
+            let triangle = still.triangle(triangle);
+            let (object, material) = (prepared.object_of[triangle as usize], prepared.material_number(triangle));
+            // Rays continue straight through panes, and would hit them again.
+            (!self.appearance.bsdf(object, material).is_passable()).then_some((object, material))
+        };
+        let _stage = stage!("choosing points of surfaces");
+        let depth = settings.photons.point_depth.unwrap_or(0);
+        Some(SurfacePoints::new(&still.octree, depth, surface, settings.image.seed))
+    }
+
+    /// Builds the octree over the objects that the plan keeps, for materials and lights that are prepared; all stand
+    /// where they are in the middle of the time in which the shutter is open.
+    ///
+    /// # Errors
+    /// [`RenderError`].
+    pub(in crate::render) fn standing_still(appearance: Appearance<'a>, plan: &Plan) -> Result<World<'a>, RenderError> {
+        let objects = (0..appearance.prepared.objects.len()).map(|object| plan.includes_object(object)).collect();
+        let acceleration = appearance.prepared.acceleration(AccelerationKey { objects, motions: false })?;
+        Ok(World::over(acceleration, appearance, plan))
+    }
+
+    /// Materials and lights alone, for whom traces no rays.
+    pub(in crate::render) fn without_rays(appearance: Appearance<'a>) -> World<'a> {
+        let acceleration = Arc::new(Acceleration { still: None, moving: Vec::new(), build: Duration::ZERO });
+        World { appearance, acceleration, light_buffer: None, points: None }
+    }
+
+    fn over(acceleration: Arc<Acceleration>, appearance: Appearance<'a>, plan: &Plan) -> World<'a> {
+        let prepared = appearance.prepared;
         let light_buffer = acceleration.still.as_ref().filter(|_| plan.needs(Stage::LightBuffer)).map(|still| {
             let is_opaque = |t: u32| {
                 let bsdf = appearance.bsdf(prepared.object_of[t as usize], prepared.material_number(t));
@@ -55,18 +94,7 @@ impl<'a> World<'a> {
             let opaque = has_open.then(|| still.triangles().map(is_opaque).collect());
             LightBuffer::new(&prepared.bounds, &appearance.sources, opaque)
         });
-        let points = acceleration.still.as_ref().filter(|_| plan.needs(Stage::SurfacePoints)).map(|still| {
-            let settings = &prepared.settings;
-            let surface = |triangle: u32| {
-                let triangle = still.triangle(triangle);
-                let (object, material) = (prepared.object_of[triangle as usize], prepared.material_number(triangle));
-                // Rays continue straight through panes, and would hit them again.
-                (!appearance.bsdf(object, material).is_passable()).then_some((object, material))
-            };
-            let _stage = stage!("choosing points of surfaces");
-            SurfacePoints::new(&still.octree, settings.photons.point_depth.unwrap_or(0), surface, settings.image.seed)
-        });
-        Ok(World { appearance, acceleration, light_buffer, points })
+        World { appearance, acceleration, light_buffer, points: None }
     }
 
     /// The scene.
@@ -362,16 +390,33 @@ impl<'a> World<'a> {
             };
             return (if occluded { Channels::ZERO } else { Channels::ONE }, false);
         }
-        match self.passable_hits(over, shaft, ray, t_max) {
+        match self.passable_hits(over, shaft, ray, t_max, true) {
             Some(hits) => self.transmittance_of(&hits, ray, t_max, wavelength_set),
             None => (Channels::ZERO, false),
         }
     }
 
+    /// Transmittance of all that stands still and that light passes straight, by wavelength set, as if nothing opaque
+    /// stood between it; none if there is nothing of that kind on the way.
+    pub(in crate::render) fn straight_transmittances(&self, ray: &Ray, t_max: f64) -> Option<Vec<Channels>> {
+        let hits = self.passable_hits(self.still()?, None, ray, t_max, false).filter(|hits| !hits.is_empty())?;
+        let sets = 0..self.appearance.wavelengths.count();
+        Some(sets.map(|wavelength_set| self.transmittance_of(&hits, ray, t_max, wavelength_set).0).collect())
+    }
+
     /// Where a ray hits surfaces that light passes straight, the nearest first; none if it hits one that stops it.
     ///
     /// A hit has the number of its triangle in the scene.
-    fn passable_hits(&self, over: &SceneOctree, shaft: Option<&Shaft>, ray: &Ray, t_max: f64) -> Option<Vec<Hit>> {
+    ///
+    /// - `is_stopped`: whether what lets no light pass counts.
+    fn passable_hits(
+        &self,
+        over: &SceneOctree,
+        shaft: Option<&Shaft>,
+        ray: &Ray,
+        t_max: f64,
+        is_stopped: bool,
+    ) -> Option<Vec<Hit>> {
         let object_of = &self.appearance.prepared.object_of;
         let mut hits: Vec<Hit> = Vec::new();
         let clears = self.appearance.has_clear_shadows;
@@ -382,7 +427,7 @@ impl<'a> World<'a> {
             if passable {
                 hits.push(hit);
             }
-            !passable
+            is_stopped && !passable
         };
         let stopped = match shaft {
             Some(shaft) => over.octree.each_hit_in(shaft, ray, 0.0, t_max, enough),
