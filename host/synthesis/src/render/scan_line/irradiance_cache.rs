@@ -20,11 +20,10 @@ use rustc_hash::FxHashMap;
 const COARSEST: usize = 24;
 /// Pixels from one place of the finest grid to the next.
 const FINEST: usize = 2;
-/// Directions of a record for each sample of a pixel, and the least and the most of them; where no record reaches, a
-/// part of them does.
-const DIRECTIONS_OF_SAMPLE: u32 = 16;
-const DIRECTIONS: [u32; 2] = [32, 1024];
-const PART_OF_DIRECTIONS: u32 = 4;
+/// The least and the most directions of a record; the most for each sample of a pixel.
+const LEAST_DIRECTIONS: u32 = 16;
+const MOST_DIRECTIONS: u32 = 1024;
+const MOST_OF_SAMPLE: u32 = 16;
 /// How far a record reaches, as a part of the harmonic mean distance.
 const REACH: f64 = 0.3;
 /// How far a record reaches at the least, pixels; and at the most, as a part of the diagonal of the scene.
@@ -48,6 +47,8 @@ struct IrradianceRecord {
     /// How far it reaches, scene units.
     reach: f64,
     irradiance: Channels,
+    /// From how many directions it is known.
+    directions: f64,
 }
 
 /// Where records are placed: what is seen of what.
@@ -60,8 +61,8 @@ pub(super) struct RecordPlaces<'a> {
     pub(super) size: [usize; 2],
     /// Whether a triangle needs the light of other surfaces.
     pub(super) needs: &'a (dyn Fn(u32) -> bool + Sync),
-    /// In which records look around.
-    pub(super) directions: u32,
+    /// Samples of a pixel.
+    pub(super) samples: u32,
 }
 
 /// Records of irradiance, found by their places.
@@ -92,12 +93,13 @@ impl IrradianceCache {
                 .flat_map(|row| (0..width).step_by(stride).map(move |column| [column, row]))
                 .filter(is_new)
                 .collect();
+            let directions = directions(places.samples, stride);
             let at_pixel = |scratch: &mut PathScratch, pixel: &[usize; 2]| {
                 let mut records = Vec::new();
                 if !stopped() {
                     places.each(*pixel, |element, width| {
                         if cache.weights(element.position, element.normal) < ENOUGH {
-                            records.push(places.record(*pixel, element, width, scratch));
+                            records.push(places.record(*pixel, element, [width, f64::from(directions)], scratch));
                         }
                     });
                 }
@@ -123,8 +125,9 @@ impl IrradianceCache {
     pub(super) fn irradiance(&self, position: DVec3, normal: DVec3) -> Option<Channels> {
         let (mut sum, mut weights) = (Channels::ZERO, 0.0);
         self.each_near(position, normal, |record, weight| {
-            sum += record.irradiance * weight;
-            weights += weight;
+            // What more directions tell is as much more certain.
+            sum += record.irradiance * (weight * record.directions);
+            weights += weight * record.directions;
         });
         (weights > 0.0).then(|| sum * weights.recip())
     }
@@ -195,28 +198,31 @@ impl RecordPlaces<'_> {
 
     /// A record at an element.
     ///
-    /// - `width`: of a pixel there.
+    /// - `width`: of a pixel there. `directions`: in how many it looks around.
     fn record(
         &self,
         [column, row]: [usize; 2],
         element: &SurfaceElement,
-        width: f64,
+        [width, directions]: [f64; 2],
         scratch: &mut PathScratch,
     ) -> IrradianceRecord {
         let number = (row * self.size[0] + column) as u64;
-        let found = self.finisher.irradiance(element, number, self.directions, scratch);
+        let found = self.finisher.irradiance(element, number, directions as u32, scratch);
         let most = MOST_OF_SCENE * self.world.prepared().bounds.diagonal();
         let reach = (REACH * found.distance).min(most).max(LEAST_PIXELS * width).max(f64::MIN_POSITIVE);
-        IrradianceRecord { position: element.position, normal: element.normal, reach, irradiance: found.irradiance }
+        let SurfaceElement { position, normal, .. } = *element;
+        IrradianceRecord { position, normal, reach, irradiance: found.irradiance, directions }
     }
 }
 
-/// In how many directions records look around, of a picture with so many samples in each pixel, and places that no
-/// record reaches.
-pub(super) fn directions(samples: u32) -> [u32; 2] {
-    let [least, most] = DIRECTIONS;
-    let of_record = samples.saturating_mul(DIRECTIONS_OF_SAMPLE).clamp(least, most);
-    [of_record, of_record / PART_OF_DIRECTIONS]
+/// In how many directions a record looks around: in half as many as there are samples in the square of the grid for which
+/// it stands, so that gathering never costs more than a part of what tracing all samples does.
+///
+/// - `samples`: of a pixel. `stride`: pixels from one place of the grid to the next.
+pub(super) fn directions(samples: u32, stride: usize) -> u32 {
+    let of_square = u64::from(samples) * (stride * stride) as u64 / 2;
+    let most = samples.saturating_mul(MOST_OF_SAMPLE).clamp(LEAST_DIRECTIONS, MOST_DIRECTIONS);
+    of_square.clamp(u64::from(LEAST_DIRECTIONS), u64::from(most)) as u32
 }
 
 /// The side of cells of a level.
@@ -237,7 +243,13 @@ mod tests {
             let [[x, y], [z, reach]] = [1, 2].map(|purpose| sequence.point(index, purpose));
             let normal = sphere(sequence.point(index, 3));
             let position = DVec3::new(x, y, z) * 2.0 - DVec3::ONE;
-            IrradianceRecord { position, normal, reach: 0.5 * 0.01_f64.powf(reach), irradiance: Channels::splat(x) }
+            IrradianceRecord {
+                position,
+                normal,
+                reach: 0.5 * 0.01_f64.powf(reach),
+                irradiance: Channels::splat(x),
+                directions: 1.0,
+            }
         };
         (0..400).map(record).collect()
     }
@@ -263,7 +275,8 @@ mod tests {
     #[test]
     fn a_record_counts_most_at_its_place_and_nothing_beyond_its_reach_or_behind_it() {
         let irradiance = Channels::splat(2.0);
-        let record = IrradianceRecord { position: DVec3::ONE, normal: DVec3::Z, reach: 0.5, irradiance };
+        let record =
+            IrradianceRecord { position: DVec3::ONE, normal: DVec3::Z, reach: 0.5, irradiance, directions: 8.0 };
         let weight = |step: DVec3, normal: DVec3| record.weight(record.position + step, normal);
         assert_eq!(weight(DVec3::ZERO, DVec3::Z), 1.0);
         assert!((weight(DVec3::X * 0.25, DVec3::Z) - 0.5).abs() < 1e-12);

@@ -276,9 +276,9 @@ impl<'a> ScanLine<'a> {
         let triangles = self.lit_by_others.as_slice();
         let size = [order.width, order.height].map(|side| side as usize);
         let needs = |triangle: u32| triangles[triangle as usize];
-        let [of_record, directions] = directions(order.samples);
-        let places = RecordPlaces { world: &self.world, finisher, eye, size, needs: &needs, directions: of_record };
+        let places = RecordPlaces { world: &self.world, finisher, eye, size, needs: &needs, samples: order.samples };
         let (cache, rays) = IrradianceCache::new(&places, stopped)?;
+        let directions = directions(order.samples, 1);
         Some((OtherSurfaces { cache, finisher, directions, triangles, width: size[0] }, rays))
     }
 
