@@ -6,6 +6,7 @@ use super::irradiance::GatheredIrradiance;
 use super::pixel::PixelSampler;
 use super::sampler::PathSampler;
 use super::tracer::{PathRules, PathScratch, PathTracer};
+use crate::illumination::optics::Interreflection;
 use crate::plan::{Plan, Stage};
 use crate::render::RenderOrder;
 use crate::render::tally::PixelSample;
@@ -33,7 +34,7 @@ impl<'a> RayFinisher<'a> {
         RayFinisher(PixelSampler { world, tracer: PathTracer::new(world, rules, None, None, around), eye, order })
     }
 
-    /// The irradiance at an element by all that is around it but lights, on the side of the viewer.
+    /// The irradiance at an element by skies and surfaces around it, on the side of the viewer.
     ///
     /// - `number`: of its random numbers. `count`: of directions.
     pub(in crate::render) fn irradiance(
@@ -43,8 +44,9 @@ impl<'a> RayFinisher<'a> {
         count: u32,
         scratch: &mut PathScratch,
     ) -> GatheredIrradiance {
-        let PixelSampler { tracer, order, .. } = &self.0;
-        tracer.irradiance(element, [order.seed, number], count, scratch)
+        let PixelSampler { world, tracer, order, .. } = &self.0;
+        let is_followed = world.prepared().settings.light.interreflection == Interreflection::Followed;
+        tracer.irradiance(element, [order.seed, number], (count, is_followed), scratch)
     }
 
     /// A sample of a pixel.

@@ -10,9 +10,6 @@ use crate::numeric::sampling::cosine_hemisphere;
 use crate::render::world::{BoundedRay, RayCone, SurfaceElement};
 use std::f64::consts::PI;
 
-/// A pdf beside which every light counts nothing: lights are sampled where light arrives.
-const NO_LIGHTS: f64 = f64::MIN_POSITIVE;
-
 /// Irradiance at an element by other surfaces.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::render) struct GatheredIrradiance {
@@ -23,17 +20,19 @@ pub(in crate::render) struct GatheredIrradiance {
 }
 
 impl PathTracer<'_> {
-    /// The irradiance at an element by all that is around it but lights, on the side of the viewer.
+    /// The irradiance at an element by skies and surfaces around it, on the side of the viewer; not by lamps, which
+    /// count as caustics do on a segment without a pdf.
     ///
     /// - `seed`: and `number`: of the random numbers. `count`: of directions, evenly spread by their cosine.
+    /// - `is_followed`: whether surfaces send light, or only stop that of skies.
     pub(super) fn irradiance(
         &self,
         element: &SurfaceElement,
         [seed, number]: [u64; 2],
-        count: u32,
+        (count, is_followed): (u32, bool),
         scratch: &mut PathScratch,
     ) -> GatheredIrradiance {
-        let wavelengths = &self.wavelengths();
+        let wavelengths = self.wavelengths();
         let (mut sum, mut nearness) = (Channels::ZERO, 0.0);
         for index in 0..count {
             let sampler = PathSampler::new(seed, number, index, count);
@@ -50,7 +49,7 @@ impl PathTracer<'_> {
             };
             let segment = PathSegment {
                 depth: 1,
-                pdf: Some(NO_LIGHTS),
+                for_lights: !is_followed,
                 normal: Some(element.normal),
                 history: PathHistory::OneBroad,
                 last_scattering: LastScattering::NonDelta,

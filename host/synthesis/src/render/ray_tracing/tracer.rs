@@ -202,7 +202,7 @@ impl<'a> PathTracer<'a> {
         result
     }
 
-    /// The wavelengths of paths.
+    /// The wavelengths.
     pub(super) fn wavelengths(&self) -> &WavelengthSets {
         &self.world.appearance.wavelengths
     }

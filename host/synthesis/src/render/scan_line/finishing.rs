@@ -19,16 +19,17 @@ pub(super) fn triangles_for_rays(appearance: &Appearance<'_>, plan: &Plan) -> Ve
     triangles_with(appearance, plan, Bsdf::shows_surroundings)
 }
 
-/// For each triangle of the scene, whether it needs the light of other diffuse surfaces; nothing where that is so for
-/// none, or the plan leaves it out.
-pub(super) fn triangles_lit_by_others(appearance: &Appearance<'_>, plan: &Plan) -> Vec<bool> {
+/// For each triangle of the scene, whether rays gather the light of other diffuse surfaces and of skies for it; nothing
+/// where that is so for none, or the plan leaves it out.
+///
+/// - `has_rays`: whether rays finish samples: that of skies is then gathered, too, so that it is the same everywhere.
+pub(super) fn triangles_lit_by_others(appearance: &Appearance<'_>, plan: &Plan, has_rays: bool) -> Vec<bool> {
     let is_followed = appearance.prepared.settings.light.interreflection == Interreflection::Followed;
-    if !is_followed || plan.needs(Stage::Radiosity) {
+    let has_sky = appearance.sources.iter().any(|(_, source)| source.is_sky());
+    if plan.needs(Stage::Radiosity) || !(is_followed || has_rays && has_sky) {
         return Vec::new();
     }
-    triangles_with(appearance, plan, |bsdf| {
-        bsdf.is_diffuse() && bsdf.continues_non_delta() && !bsdf.shows_surroundings()
-    })
+    triangles_with(appearance, plan, |bsdf| bsdf.is_diffuse() && !bsdf.shows_surroundings())
 }
 
 /// For each triangle of the scene, whether it is included and of a material of some kind; nothing where that is so for

@@ -6,13 +6,14 @@
 //!
 //! What shows what is around it, as mirrors, metals, coats and glass do, is finished by rays, sample by sample, where the
 //! plan has reflected and refracted rays. Without them it shows lights, and for all else the ambient light, the same
-//! radiance from everywhere, and a blurred sky; and glass bends nothing.
+//! radiance from everywhere, and a blurred sky; and glass bends nothing. Where diffuse light goes from surface to
+//! surface, it is gathered by rays at few places and interpolated; and so is the light of skies in scenes with rays.
 //!
 //! *Not modelled*: on all else, only light that comes straight from lights is seen. Light goes straight through polished
 //! glass, and through what is transparent without bending it; the shadow of these is as weak and as colored as what they
-//! let through. Rough glass throws the shadow of an opaque body. A light with a size is represented by points of it, in number the `light_samples` of the scene, and is
-//! itself no obstacle to others; a sky lights surfaces by the direction of their normals, without shadows; a lens is a
-//! pinhole.
+//! let through. Rough glass throws the shadow of an opaque body. A light with a size is represented by points of it, in
+//! number the `light_samples` of the scene, and is itself no obstacle to others; without rays, a sky lights surfaces by
+//! the direction of their normals, without shadows; a lens is a pinhole.
 //!
 //! Memory: 25 bytes for each vertex, about 30 for each triangle and 24 for each side, 310 for each silhouette and
 //! light, and for each thread 16 bytes and 4 for each light in each sample of some rows of pixels.
@@ -146,7 +147,7 @@ impl<'a> ScanLine<'a> {
     pub fn new(prepared: &'a Prepared, plan: &'a Plan) -> Result<ScanLine<'a>, RenderError> {
         let appearance = Appearance::new(prepared, plan)?.without_caustics();
         let for_rays = triangles_for_rays(&appearance, plan);
-        let lit_by_others = triangles_lit_by_others(&appearance, plan);
+        let lit_by_others = triangles_lit_by_others(&appearance, plan, !for_rays.is_empty());
         let world = match for_rays.is_empty() && lit_by_others.is_empty() {
             true => World::without_rays(appearance),
             false => World::standing_still(appearance, plan)?,
@@ -523,7 +524,10 @@ impl Renderer for ScanLine<'_> {
                 left_out.push("mirrors and glass throw no light: there are no caustics");
             }
         }
-        if self.solution.is_none() && self.world.appearance.sources.iter().any(|(_, source)| source.is_sky()) {
+        if self.solution.is_none()
+            && self.lit_by_others.is_empty()
+            && self.world.appearance.sources.iter().any(|(_, source)| source.is_sky())
+        {
             left_out.push("the light of the sky throws no shadows");
         }
         if self.world.prepared().settings.image.filter != Filter::Box {

@@ -479,7 +479,8 @@ impl<'a> Shader<'a> {
             let irradiance = solution.irradiance(interaction.triangle, element.outside, weights, Light::All);
             return own + diffuse_albedo(bsdf, context.wavelength_set, context.texture_values) * irradiance * FRAC_1_PI;
         }
-        if irradiance != Channels::ZERO {
+        let is_gathered = self.others.as_ref().is_some_and(|others| others.triangles[interaction.triangle as usize]);
+        if is_gathered {
             let albedo = bsdf.diffuse_albedo(context) + bsdf.glossy_albedo(&from_outside(interaction, context));
             own += albedo * irradiance * FRAC_1_PI;
         }
@@ -487,7 +488,7 @@ impl<'a> Shader<'a> {
             own += (bsdf.ambient(context) + bsdf.glossy_albedo(&from_outside(interaction, context)))
                 * ambient.of(context.wavelength_set);
         }
-        if let Some(sky) = self.sky_light {
+        if let Some(sky) = self.sky_light.filter(|_| !is_gathered) {
             let normal = if element.normal.dot(interaction.towards) > 0.0 { -element.normal } else { element.normal };
             let mirrored = interaction.towards.reflect(normal);
             own += bsdf.diffuse_albedo(context) * sky.radiance(normal, context.wavelength_set);
