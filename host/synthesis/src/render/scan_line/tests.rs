@@ -477,6 +477,20 @@ fn glass_throws_a_colored_shadow_whatever_the_scene_asks_of_caustics() {
 }
 
 #[test]
+fn light_of_a_sky_has_its_shadows_where_rays_finish_samples() {
+    let sky = || crate::illumination::Light::Sky { map: None, radiance: Color::grey(0.5), turned: 0.0 };
+    let off = |objects: Vec<Object>| {
+        let mut scene = scene(objects, vec![sky()], usual());
+        (scene.settings.image.width, scene.settings.image.height) = (36, 32);
+        compared(&scene, None)[0]
+    };
+    let mut with_mirror = boxes();
+    with_mirror.extend(shiny().drain(..1));
+    let [with, without] = [with_mirror, boxes()].map(off);
+    assert!(with < 0.01 && with < 0.5 * without, "{with} {without}");
+}
+
+#[test]
 fn light_of_other_surfaces_is_that_of_ray_tracing_without_its_noise() {
     let wall = Classic { diffuse: Paint::Plain(Color::Bands(RgbPower::new(0.8, 0.2, 0.1))), ..Classic::default() };
     let mut objects = boxes();
