@@ -8,7 +8,7 @@ use crate::illumination::texture::{Motif, Pattern, TextureMapping};
 use crate::illumination::{Light, Paint};
 use crate::numeric::ray::Ray;
 use crate::render::RENDERERS;
-use crate::scene::{Camera, Interreflection, Object, Settings, Shape};
+use crate::scene::{Camera, Interreflection, Lens, Object, Settings, Shape};
 use crate::solid::Primitive;
 use crate::stages::{StageEvent, observed};
 use glam::{DMat4, DVec3};
@@ -273,7 +273,10 @@ fn scan_line_is_held_against_ray_tracing_where_it_leaves_nothing_out() {
     let whole = study(&ball(), &SMALL);
     assert!(whole.reference.contains("ray tracing") && whole.rows.iter().all(|row| row.measures.noise == 0.0));
     assert!(whole.rows[0].measures.rmse > 3.0 * whole.rows[4].measures.rmse, "{}", whole.table());
-    let part = study(&all_knobs(), &Options { width: 12, samples: 64, settings: 3, ..SMALL });
+    let mut through_a_lens = all_knobs();
+    through_a_lens.camera =
+        through_a_lens.camera.map(|camera| Camera { lens: Some(Lens { radius: 0.1, focus: 4.0 }), ..camera });
+    let part = study(&through_a_lens, &Options { width: 12, samples: 64, settings: 3, ..SMALL });
     assert!(part.reference.contains("scan line") && part.verdict.contains("from ray tracing, as"), "{}", part.table());
 }
 
