@@ -206,8 +206,11 @@ fn knobs_of_radiosity_are_idle_without_it_and_change_the_picture_with_it() {
 fn every_knob_changes_the_picture_or_says_why_not() {
     let options = Options { width: 12, samples: 64, settings: 3, ..SMALL };
     let names: Vec<&str> = RENDER_KNOBS.iter().map(|knob| knob.name).collect();
+    let mut knobs = all_knobs();
+    // Scan line leaves the lens out, and is held against itself: its points of a lamp would hide what other knobs do.
+    knobs.camera = knobs.camera.map(|camera| Camera { lens: Some(Lens { radius: 1e-6, focus: 4.0 }), ..camera });
     let mut found =
-        renderers(&all_knobs(), &studied().collect::<Vec<_>>(), &names, &options, &Watch::NOBODY).expect("a study");
+        renderers(&knobs, &studied().collect::<Vec<_>>(), &names, &options, &Watch::NOBODY).expect("a study");
     let expected =
         RENDER_KNOBS.iter().map(|knob| RENDERERS.iter().filter(|row| (knob.renderers)(row)).count()).sum::<usize>();
     assert_eq!(found.knobs.len(), expected);
