@@ -119,3 +119,69 @@ fn the_cornell_box_by_radiosity_is_that_of_mitsuba_within_a_percent_and_each_reg
     let off = sums[0] / sums[1] - 1.0;
     assert!(off.abs() < WHOLE, "the mean is {:.2} % off", 100.0 * off);
 }
+
+/// Rooms, and how far off the mean of the picture by ray tracing with radiosity may be beside three standard errors of the
+/// other renderer's, and the root of the mean square of its parts.
+///
+/// A tunnel that is four times as deep as it is wide passes on little, of which a few bounces are most; a pane reflects
+/// light back into the room, of which radiosity knows nothing.
+const ROOMS: [(&str, f64, f64); 18] = [
+    ("sky 0.6", 0.005, 0.015),
+    ("sky 0.05", 0.04, 0.08),
+    ("sky 0.2", 0.005, 0.02),
+    ("sky 2", 0.005, 0.01),
+    ("sun 0.05", 0.04, 0.08),
+    ("sun 0.2", 0.005, 0.035),
+    ("sun 0.6", 0.005, 0.02),
+    ("sun 2", 0.005, 0.01),
+    ("lamp 0.05", 0.04, 0.15),
+    ("lamp 0.2", 0.005, 0.035),
+    ("lamp 0.6", 0.005, 0.015),
+    ("lamp 2", 0.005, 0.01),
+    ("spot 0.05", 0.04, 0.2),
+    ("spot 0.2", 0.005, 0.035),
+    ("spot 0.6", 0.005, 0.015),
+    ("spot 2", 0.005, 0.01),
+    ("pane 0.6", 0.03, 0.035),
+    ("lantern 0", 0.01, 0.015),
+];
+
+#[test]
+fn rooms_with_openings_by_radiosity_are_as_bright_as_mitsuba_tells() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("peers");
+    let text = std::fs::read_to_string(folder.join("rooms.json")).expect("the values");
+    let kept: Value = serde_json::from_str(&text).expect("JSON");
+    let rooms = if std::env::var_os("PERIS_LONG").is_some() { ROOMS.len() } else { 1 };
+    for (name, most, most_of_parts) in &ROOMS[..rooms] {
+        let room = &kept["rooms"][name];
+        let (kind, width) = name.split_once(' ').expect("two words");
+        let definition = |name: &str, value: &str| ParameterAssignment { name: name.into(), value: value.into() };
+        let mut definitions = vec![definition("kind", kind)];
+        if width != "0" {
+            definitions.push(definition("width", width));
+        }
+        let inputs = Inputs { definitions, ..Inputs::default() };
+        let scene = load_file(&folder.join("rooms.rhai"), &inputs).unwrap_or_else(|error| panic!("{error}")).scene;
+        let prepared = Prepared::new(&scene).expect("a scene");
+        let view = prepared.view();
+        let plan = Plan::new(&prepared, &view);
+        let tracer = ray_tracer(&prepared, &plan).expect("a tracer");
+        let film = tracer.render(&view, &RenderOrder::of(&prepared.settings), &Watch::NOBODY).expect("a picture").film;
+        let left_out: Vec<usize> = serde_json::from_value(room["left_out"].clone()).expect("pixels");
+        let theirs: Vec<Vec<f64>> = serde_json::from_value(room["parts"].clone()).expect("parts");
+        let (rows, columns) = (film.height() as usize / theirs.len(), film.width() as usize / theirs[0].len());
+        let mut ours: Vec<Vec<f64>> = theirs.iter().map(|row| vec![0.0; row.len()]).collect();
+        for (pixel, tally) in film.tallies().iter().enumerate().filter(|(pixel, _)| !left_out.contains(pixel)) {
+            let (row, column) = (pixel / film.width() as usize, pixel % film.width() as usize);
+            ours[row / rows][column / columns] += tally.mean().y;
+        }
+        let number = |key: &str| room[key].as_f64().expect("a number");
+        let off = ours.iter().flatten().sum::<f64>() / number("whole") - 1.0;
+        let sure = most + 3.0 * number("error") / number("whole");
+        assert!(off.abs() < sure, "{name}: the mean is {:.2} % off", 100.0 * off);
+        let parts = ours.iter().flatten().zip(theirs.iter().flatten()).filter(|(_, theirs)| **theirs > 0.0);
+        let squares: Vec<f64> = parts.map(|(ours, theirs)| (ours / theirs - 1.0).powi(2)).collect();
+        let rms = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+        assert!(rms < *most_of_parts, "{name}: parts are off by {:.2} %", 100.0 * rms);
+    }
+}

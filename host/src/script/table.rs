@@ -279,7 +279,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             directions: setting(
                 Integer(1, 4096),
                 RadiositySettings::DEFAULT.directions,
-                "in which each patch looks around",
+                "in which each patch looks around, at the least; more where chance would be seen",
             ),
             tolerance: setting(
                 NumberKind(1e-12, 1.0),

@@ -303,7 +303,7 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
     },
     RenderKnob {
         name: "radiosity_directions",
-        sets: "directions in which each patch of radiosity looks around, by which form factors are balanced",
+        sets: "directions in which each patch of radiosity looks around at the least, by which form factors are balanced",
         renderers: RAYS,
         is_model: false,
         remodels: false,

@@ -1,6 +1,7 @@
 //! Errors of rendering.
 
 use crate::illumination::material::MaterialError;
+use crate::memory::MemoryExceeded;
 use crate::octree::OctreeError;
 use crate::picture::PictureError;
 
@@ -27,6 +28,9 @@ pub enum RenderError {
     /// Radiosity has no solution.
     #[error("radiosity: {0}")]
     Radiosity(#[from] RadiosityError),
+    /// There is too little memory.
+    #[error(transparent)]
+    Memory(#[from] MemoryExceeded),
     /// The threads cannot be started.
     #[error("threads: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),

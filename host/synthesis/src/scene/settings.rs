@@ -102,7 +102,7 @@ pub struct RadiositySettings {
     pub error: f64,
     /// Patches are not divided below this length, as a part of the diagonal of the scene, above 0.
     pub finest: f64,
-    /// Directions in which each patch looks around, 1 and more.
+    /// Directions in which each patch looks around at the least, 1 and more.
     pub directions: u32,
     /// Error of the solver, as a part of the greatest irradiance, above 0.
     pub tolerance: f64,

@@ -9,6 +9,7 @@ use super::hierarchy::{Hierarchy, HierarchyNode, NONE, RadiosityPatch};
 use super::side_elements::SideElements;
 use super::through_openings::{LightThroughOpening, SeenThroughOpening};
 use super::visibility::{RayTarget, VisibilityTester};
+use crate::memory::{self, MemoryExceeded};
 use glam::DVec3;
 
 /// Directions that are traced from a patch for each of its parts, and at the most.
@@ -134,19 +135,35 @@ fn is_any_lit(corners: [DVec3; 3], coarsest: f64, at: &impl Fn(DVec3) -> bool) -
 ///
 /// - `row`: for each leaf, the part of all that it sees that exchanges light.
 /// - `directions`: rays of each leaf, at the least.
+///
+/// # Errors
+/// [`MemoryExceeded`].
 pub(super) fn leaf_visibility(
     visibility: &VisibilityTester<'_>,
     elements: &Elements<'_>,
     leaves: &[u32],
     row: &[f64],
     directions: u32,
-) -> LeafVisibility {
+) -> Result<LeafVisibility, MemoryExceeded> {
+    // What rays hit is known leaf by leaf first, then all together.
+    let reserve = |directions: u32| {
+        let rays = leaves.len() as u64 * u64::from(directions);
+        memory::reserve(2 * rays * size_of::<LeafHit>() as u64, || {
+            format!("radiosity: {directions} rays of {} elements each", leaves.len())
+        })
+    };
+    reserve(directions)?;
     let pilot = traced(visibility, elements, leaves, row, directions.max(1));
     let error = elements.error_by_chance(leaves, &pilot);
     let most = (MOST_RAYS / leaves.len().max(1)).clamp(1, MOST_DIRECTIONS as usize) as f64;
     let needed = f64::from(pilot.directions) * (error / MOST_ERROR).powi(2);
     let more = needed.min(most).ceil() as u32;
-    if more <= pilot.directions { pilot } else { traced(visibility, elements, leaves, row, more) }
+    if more <= pilot.directions {
+        return Ok(pilot);
+    }
+    drop(pilot);
+    reserve(more)?;
+    Ok(traced(visibility, elements, leaves, row, more))
 }
 
 /// What so many rays of each leaf hit.

@@ -147,9 +147,10 @@ impl Radiosity {
                 Gatherer { visibility: &visibility, hierarchy: &elements.hierarchy, bound, least: &elements.least };
             let corners = is_last.then(|| ElementCorners::new(prepared, &elements.hierarchy, &leaves));
             let views = corners.as_ref().map(|corners| gatherer.views(&links, corners, &elements.sent));
-            let leaf_visibility = views.as_ref().map(|views| {
+            let of_views = |views: &CornerViews<'_>| {
                 lit_patches::leaf_visibility(&visibility, &elements, &leaves, &views.rows(), settings.directions)
-            });
+            };
+            let leaf_visibility = views.as_ref().map(of_views).transpose()?;
             let tolerance = if is_last { settings.tolerance } else { 1e-2 };
             let last = leaf_visibility.as_ref().zip(views.as_ref());
             let (irradiance, light) = light(&elements, &links, last, tolerance, &stopped, &mut report)?;
