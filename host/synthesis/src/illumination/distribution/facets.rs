@@ -62,8 +62,7 @@ impl SlopeDistribution {
         }
     }
 
-    /// The normal of a facet as `towards` sees it: its pdf is (L·H) times its area over
-    /// [`SlopeDistribution::projected`].
+    /// The normal of a facet as `towards` sees it: its pdf is (L·H) times its area over the area that is seen of all.
     ///
     /// - `towards`: unit length, z above 0. `point`: of the unit square.
     ///

@@ -6,8 +6,8 @@
 //! one factor: with it, regions receive what rays tell that they receive of each other.
 //!
 //! A ray from leaf i to leaf j tells of the exchange of both: with n rays from each, A F is estimated as the count of
-//! rays either way over n / A(i) + n / A(j), which is the balance heuristic. Rows of regions are then balanced to the
-//! part of their rays that hits something, so that where nothing escapes no light is lost.
+//! rays either way over n / A(i) + n / A(j), which is the balance heuristic. What then lacks in a row, or is too much,
+//! a leaf exchanges with itself, so that the exchange stays symmetric and no light is lost where nothing escapes.
 //!
 //! # Source
 //! Aggregation and disaggregation: Chatelin and Miranker 1982. The balance heuristic: Veach and Guibas 1995.
@@ -20,12 +20,11 @@ use rustc_hash::FxHashMap as HashMap;
 
 /// No factor is greater than this, or less than one over it.
 const MOST_FACTOR: f64 = 4.0;
-/// Rounds of balancing and sweeps of the solver at the most, and the greatest change that ends them.
-const MOST_ROUNDS: u32 = 200;
+/// Sweeps of the solver at the most, and the greatest change that ends them.
 const MOST_SWEEPS: u32 = 1000;
+const CONVERGED: f64 = 1e-7;
 /// So many times what chance explains of a difference within a region is taken from it.
 const CAUTION: f64 = 2.0;
-const CONVERGED: f64 = 1e-7;
 /// What a leaf sees counts as no smaller part of all, where a mean is taken over it.
 const LEAST_SEEN_PART: f64 = 0.1;
 
@@ -52,8 +51,6 @@ pub(super) struct RegionCorrection {
 /// What one region receives from another.
 #[derive(Clone, Copy, Default)]
 struct RegionExchange {
-    /// A F, square units.
-    exchange: f64,
     /// Flux of what is sent without the light of other elements, and of what is reflected of that: W.
     first: Channels,
     reflected: Channels,
@@ -72,11 +69,9 @@ impl RegionCorrection {
         let region = &regions.of_leaves;
         let mut system = RegionSystem {
             pairs: exchange(&areas, region, visibility, light),
-            goal: vec![0.0; regions.count],
             received: vec![Channels::ZERO; regions.count],
         };
         for (i, region) in region.iter().enumerate().filter(|(i, _)| !visibility.is_dark[*i]) {
-            system.goal[*region] += areas[i] * visibility.seen_part[i];
             system.received[*region] += light.irradiance[i] * areas[i];
         }
         let factors = system.solve();
@@ -159,34 +154,39 @@ fn exchange(
 ) -> Vec<([usize; 2], RegionExchange)> {
     let mut pairs: Vec<([usize; 2], RegionExchange)> = Vec::new();
     let mut place_of: HashMap<[usize; 2], usize> = HashMap::default();
-    for_each_exchange(areas, visibility, |to, from, exchange| {
+    let mut row: Vec<f64> = areas.iter().zip(&visibility.seen_part).map(|(area, part)| area * part).collect();
+    let mut add = |to: usize, from: usize, exchange: f64| {
         let key = [region[to], region[from]];
         let place = *place_of.entry(key).or_insert_with(|| {
             pairs.push((key, RegionExchange::default()));
             pairs.len() - 1
         });
         let pair = &mut pairs[place].1;
-        pair.exchange += exchange;
         pair.first += light.first[from] * exchange;
         pair.reflected += light.reflectance[from] * light.irradiance[from] * exchange;
+    };
+    for_each_exchange(areas, visibility, |to, from, exchange| {
+        row[to] -= exchange;
+        add(to, from, exchange);
     });
+    // What rays found too little or too much.
+    for (i, missing) in row.into_iter().enumerate().filter(|(i, _)| !visibility.is_dark[*i]) {
+        add(i, i, missing);
+    }
     pairs
 }
 
 /// The equations of regions: what each receives is a factor times what it received before.
 struct RegionSystem {
     pairs: Vec<([usize; 2], RegionExchange)>,
-    /// What each region exchanges with all others, square units.
-    goal: Vec<f64>,
     /// What each receives before the correction, W.
     received: Vec<Channels>,
 }
 
 impl RegionSystem {
     /// The factors of all regions.
-    fn solve(&mut self) -> Vec<Channels> {
-        self.balance();
-        let count = self.goal.len();
+    fn solve(&self) -> Vec<Channels> {
+        let count = self.received.len();
         let mut rows: Vec<Vec<(usize, Channels)>> = vec![Vec::new(); count];
         let mut first = vec![Channels::ZERO; count];
         for ([to, from], pair) in &self.pairs {
@@ -210,35 +210,5 @@ impl RegionSystem {
             }
         }
         factors
-    }
-
-    /// Makes what each region exchanges with all add up to its goal, and leaves the exchange symmetric.
-    ///
-    /// # Source
-    /// Sinkhorn and Knopp 1967, symmetric.
-    fn balance(&mut self) {
-        let mut factor = vec![1.0; self.goal.len()];
-        for _ in 0..MOST_ROUNDS {
-            let mut rows = vec![0.0; self.goal.len()];
-            for ([to, from], pair) in &self.pairs {
-                rows[*to] += factor[*to] * factor[*from] * pair.exchange;
-            }
-            let mut worst = 0.0f64;
-            for ((factor, row), goal) in factor.iter_mut().zip(rows).zip(&self.goal).filter(|((_, row), _)| *row > 0.0)
-            {
-                let ratio = goal / row;
-                worst = worst.max((ratio - 1.0).abs());
-                *factor = (*factor * ratio.sqrt()).clamp(MOST_FACTOR.recip(), MOST_FACTOR);
-            }
-            if worst < CONVERGED {
-                break;
-            }
-        }
-        for ([to, from], pair) in &mut self.pairs {
-            let factor = factor[*to] * factor[*from];
-            pair.exchange *= factor;
-            pair.first *= factor;
-            pair.reflected *= factor;
-        }
     }
 }
