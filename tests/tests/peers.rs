@@ -127,14 +127,14 @@ fn the_cornell_box_by_radiosity_is_that_of_mitsuba_within_a_percent_and_each_reg
 /// light back into the room, of which radiosity knows nothing.
 const ROOMS: [(&str, f64, f64); 18] = [
     ("sky 0.6", 0.005, 0.015),
-    ("sky 0.05", 0.04, 0.08),
+    ("sky 0.05", 0.01, 0.06),
     ("sky 0.2", 0.005, 0.02),
     ("sky 2", 0.005, 0.01),
     ("sun 0.05", 0.04, 0.08),
     ("sun 0.2", 0.005, 0.035),
     ("sun 0.6", 0.005, 0.02),
     ("sun 2", 0.005, 0.01),
-    ("lamp 0.05", 0.04, 0.15),
+    ("lamp 0.05", 0.01, 0.15),
     ("lamp 0.2", 0.005, 0.035),
     ("lamp 0.6", 0.005, 0.015),
     ("lamp 2", 0.005, 0.01),
@@ -143,7 +143,7 @@ const ROOMS: [(&str, f64, f64); 18] = [
     ("spot 0.6", 0.005, 0.015),
     ("spot 2", 0.005, 0.01),
     ("pane 0.6", 0.03, 0.035),
-    ("lantern 0", 0.01, 0.015),
+    ("lantern 0", 0.005, 0.01),
 ];
 
 #[test]

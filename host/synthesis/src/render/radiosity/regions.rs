@@ -82,8 +82,8 @@ fn sums(hierarchy: &Hierarchy, leaves: &[u32], estimates: &[FluxEstimate]) -> Ve
 
 /// For each leaf, by what its light is multiplied so that all nodes receive what rays tell, as far as that is certain.
 ///
-/// From the root down, the factors of the children of a node differ from its own as rays tell, times a part that is the
-/// nearer to 1 the less chance explains the difference.
+/// From the root down, the factors of the children of a node differ as rays tell, times a part that is the nearer to 1
+/// the less chance explains the difference, and together the children receive what the node does.
 ///
 /// - `leaves`: their nodes. `estimates`: what each receives.
 /// - `caution`: so many times what chance explains of a difference is taken from it; the more, the better elements know.
@@ -101,12 +101,11 @@ pub(super) fn factors(hierarchy: &Hierarchy, leaves: &[u32], estimates: &[FluxEs
     }
     for place in 0..nodes.len() {
         let lit = || nodes[place].children().filter(|child| of[*child].by_elements > 0.0);
-        // Off what is multiplied by already: where rays tell nothing certain of a node, they may of parts of it.
-        let off = |child: usize| of[child].factor() - factor[place];
+        // Off the node as rays tell it: what children receive together is then what the node does.
+        let off = |child: usize| of[child].factor() - of[place].factor();
         let surprise: f64 = lit().map(|child| (off(child) / of[child].error()).powi(2)).sum();
-        let part = certain(lit().count() as f64, surprise);
-        let factors: Vec<(usize, f64)> = lit().map(|child| (child, factor[place] + off(child) * part)).collect();
-        factors.into_iter().for_each(|(child, of_child)| factor[child] = of_child.max(0.0));
+        let part = certain(lit().count() as f64 - 1.0, surprise);
+        lit().for_each(|child| factor[child] = (factor[place] + off(child) * part).max(0.0));
     }
     leaves.iter().map(|leaf| factor[*leaf as usize]).collect()
 }
