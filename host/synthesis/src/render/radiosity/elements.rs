@@ -23,7 +23,7 @@ const SIGNIFICANT: f64 = 3.0;
 /// Light samples at random points of a leaf: at first, and at the most; and of all leaves that need more.
 const FEW_SAMPLES: u32 = 16;
 const MOST_SAMPLES: u32 = 512;
-const SAMPLES: u32 = 1 << 21;
+const SAMPLES: usize = 1 << 21;
 /// The standard error of the irradiance of a leaf by light samples, as a part of it, that needs no more.
 const SAMPLED_ERROR: f64 = 0.02;
 /// So many times what chance explains of a difference is taken from it.
@@ -279,7 +279,7 @@ impl<'a> Elements<'a> {
             by_elements: area(*leaf) * total(self.direct[*leaf as usize]),
             by_rays: total(*flux),
             variance: area(*leaf).powi(2) * light.variance + through[*leaf as usize].variance,
-            rays: light.samples + through[*leaf as usize].rays,
+            rays: u64::from(light.samples + through[*leaf as usize].rays),
         };
         let estimates: Vec<FluxEstimate> = leaves.iter().zip(&by_rays).zip(&random).map(estimate).collect();
         for (leaf, factor) in leaves.iter().zip(regions::factors(hierarchy, leaves, &estimates, CAUTION)) {
@@ -299,9 +299,9 @@ impl<'a> Elements<'a> {
         };
         let few = visibility.map(leaves, |number, leaf| light(number, *leaf, 0..FEW_SAMPLES));
         let needed = self.needed_samples(leaves, &few);
-        let unsure = needed.iter().filter(|needed| **needed > FEW_SAMPLES).count() as u32;
-        let sources = visibility.world.appearance.sources.len() as u32;
-        let most = (SAMPLES / (unsure * sources).max(1)).clamp(FEW_SAMPLES, MOST_SAMPLES);
+        let unsure = needed.iter().filter(|needed| **needed > FEW_SAMPLES).count();
+        let sources = visibility.world.appearance.sources.len();
+        let most = (SAMPLES / (unsure * sources).max(1)).clamp(FEW_SAMPLES as usize, MOST_SAMPLES as usize) as u32;
         visibility.map(leaves, |number, leaf| match needed[number].min(most) {
             samples if samples > FEW_SAMPLES => light(number, *leaf, 0..samples),
             _ => few[number],

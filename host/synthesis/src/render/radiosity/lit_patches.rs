@@ -134,7 +134,7 @@ fn is_any_lit(corners: [DVec3; 3], coarsest: f64, at: &impl Fn(DVec3) -> bool) -
 /// Leaf visibility, by rays: so many that chance is a small part of what leaves receive.
 ///
 /// - `row`: for each leaf, the part of all that it sees that exchanges light.
-/// - `directions`: rays of each leaf, at the least.
+/// - `directions`: rays of each leaf, at the least. `stopped`: whether these will do.
 ///
 /// # Errors
 /// [`MemoryExceeded`].
@@ -144,6 +144,7 @@ pub(super) fn leaf_visibility(
     leaves: &[u32],
     row: &[f64],
     directions: u32,
+    stopped: &dyn Fn() -> bool,
 ) -> Result<LeafVisibility, MemoryExceeded> {
     // What rays hit is known leaf by leaf first, then all together.
     let reserve = |directions: u32| {
@@ -158,7 +159,7 @@ pub(super) fn leaf_visibility(
     let most = (MOST_RAYS / leaves.len().max(1)).clamp(1, MOST_DIRECTIONS as usize) as f64;
     let needed = f64::from(pilot.directions) * (error / MOST_ERROR).powi(2);
     let more = needed.min(most).ceil() as u32;
-    if more <= pilot.directions {
+    if more <= pilot.directions || stopped() {
         return Ok(pilot);
     }
     drop(pilot);

@@ -148,7 +148,8 @@ impl Radiosity {
             let corners = is_last.then(|| ElementCorners::new(prepared, &elements.hierarchy, &leaves));
             let views = corners.as_ref().map(|corners| gatherer.views(&links, corners, &elements.sent));
             let of_views = |views: &CornerViews<'_>| {
-                lit_patches::leaf_visibility(&visibility, &elements, &leaves, &views.rows(), settings.directions)
+                let rows = views.rows();
+                lit_patches::leaf_visibility(&visibility, &elements, &leaves, &rows, settings.directions, &stopped)
             };
             let leaf_visibility = views.as_ref().map(of_views).transpose()?;
             let tolerance = if is_last { settings.tolerance } else { 1e-2 };

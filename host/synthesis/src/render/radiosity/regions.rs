@@ -20,7 +20,7 @@ pub(super) struct FluxEstimate {
     pub(super) by_rays: f64,
     pub(super) variance: f64,
     /// How many rays.
-    pub(super) rays: u32,
+    pub(super) rays: u64,
 }
 
 impl FluxEstimate {
@@ -38,7 +38,8 @@ impl FluxEstimate {
     /// rays: where few rays bring light, their variance is too small just where the light is.
     fn pool_variance(&mut self, larger: &FluxEstimate) {
         let each = if larger.by_rays > 0.0 { larger.variance / larger.by_rays } else { 0.0 };
-        let own = f64::from(self.rays) / (f64::from(self.rays) + RAYS_OF_LARGER);
+        let rays = self.rays as f64;
+        let own = rays / (rays + RAYS_OF_LARGER);
         self.variance = own * self.variance + (1.0 - own) * each * self.by_elements;
     }
 

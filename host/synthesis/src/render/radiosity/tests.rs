@@ -199,7 +199,8 @@ fn the_hierarchy_gives_what_a_full_matrix_gives() {
             Gatherer { visibility: &visibility, hierarchy: &elements.hierarchy, bound, least: &elements.least };
         let corners = ElementCorners::new(&room, &elements.hierarchy, &leaves);
         let views = gatherer.views(&links, &corners, &elements.sent);
-        let seen = lit_patches::leaf_visibility(&visibility, &elements, &leaves, &views.rows(), 32).expect("memory");
+        let seen = lit_patches::leaf_visibility(&visibility, &elements, &leaves, &views.rows(), 32, &|| false)
+            .expect("memory");
         let last = Some((&seen, &views));
         let solved = light(&elements, &links, last, 1e-9, &|| false, &mut report).expect("a solution");
         found.push((links.len(), solved.0));
