@@ -1,5 +1,6 @@
 //! What a distribution loses of light over the cosine, and how it is emitted again over the whole hemisphere.
 
+use super::even_table::{LinearPdf, interpolated};
 use crate::numeric::cubature::GAUSS;
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_1_PI, TAU};
@@ -22,38 +23,24 @@ pub(super) struct Losses {
     /// 1 − E over the incidence, at even steps of [`Losses::place`].
     lost: Vec<f64>,
     mean: f64,
-    /// The pdf, over the place in the table, of what is emitted again.
-    emitted: Vec<f64>,
-    /// The integral of that pdf up to the end of each interval; empty if nothing is lost.
-    below: Vec<f64>,
+    /// The pdf, over the place in the table, of what is emitted again; empty if nothing is lost.
+    emitted: LinearPdf,
 }
 
 impl Losses {
     /// - `roughness`: about how wide the distribution is. `lost`: what it loses at a cosine, 0..=1.
     pub(super) fn new(roughness: f64, lost: impl Fn(f64) -> f64 + Sync) -> Losses {
         let scale = 0.01 * roughness.min(1.0 / roughness);
-        let mut made = Losses { scale, lost: Vec::new(), mean: 0.0, emitted: Vec::new(), below: Vec::new() };
+        let mut made = Losses { scale, lost: Vec::new(), mean: 0.0, emitted: LinearPdf::default() };
         let cosine = |step: usize| made.cosine(step as f64 / STEPS as f64).max(LEAST_COSINE);
         let table: Vec<f64> = (0..=STEPS).into_par_iter().map(|step| lost(cosine(step))).collect();
         made.lost = table;
         made.mean = (0..STEPS).map(|step| made.lost_in(step)).sum();
-        made.emitted = (0..=STEPS)
-            .map(|step| {
-                let place = step as f64 / STEPS as f64;
-                made.lost[step] * made.cosine(place) * made.stretch(place)
-            })
-            .collect();
-        let intervals = made.emitted.windows(2).map(|pair| pair[0] + pair[1]);
-        let all: f64 = intervals.clone().sum();
-        if all > 0.0 {
-            made.below = intervals
-                .scan(0.0, |sum, part| {
-                    *sum += part / all;
-                    Some(*sum)
-                })
-                .collect();
-            made.emitted.iter_mut().for_each(|value| *value *= 2.0 * STEPS as f64 / all);
-        }
+        let emitted = |step: usize| {
+            let place = step as f64 / STEPS as f64;
+            made.lost[step] * made.cosine(place) * made.stretch(place)
+        };
+        made.emitted = LinearPdf::new((0..=STEPS).map(emitted).collect());
         made
     }
 
@@ -85,38 +72,20 @@ impl Losses {
 
     /// A cosine of what is emitted again, from a uniform number.
     pub(super) fn sample(&self, uniform: f64) -> f64 {
-        let step = self.below.partition_point(|below| *below <= uniform).min(STEPS - 1);
-        let before = if step == 0 { 0.0 } else { self.below[step - 1] };
-        let (from, to) = (self.emitted[step], self.emitted[step + 1]);
-        // The pdf is linear in the interval: from x + (to − from) x² / 2 is what is left.
-        let left = ((uniform - before) * STEPS as f64).max(0.0);
-        let root = (from * from + 2.0 * (to - from) * left).max(0.0).sqrt();
-        let part = if from + root > 0.0 { (2.0 * left / (from + root)).min(1.0) } else { 0.0 };
-        self.cosine((step as f64 + part) / STEPS as f64)
+        self.cosine(self.emitted.sample(uniform))
     }
 
     /// The pdf of [`Losses::sample`], 1/sr.
     pub(super) fn pdf(&self, cosine: f64) -> f64 {
         let place = self.place(cosine).clamp(0.0, 1.0);
-        let step = ((place * STEPS as f64) as usize).min(STEPS - 1);
-        let part = place * STEPS as f64 - step as f64;
-        (self.emitted[step] * (1.0 - part) + self.emitted[step + 1] * part) / (self.stretch(place) * TAU)
+        self.emitted.at(place) / (self.stretch(place) * TAU)
     }
 
     /// The part of light that is lost, 0..=1.
     ///
     /// - `cosine`: between light and normal, 0..=1.
     pub(super) fn lost(&self, cosine: f64) -> f64 {
-        let place = self.place(cosine).clamp(0.0, 1.0) * STEPS as f64;
-        let first = (place as usize).saturating_sub(1).min(STEPS - 3);
-        let x = place - first as f64;
-        // Lagrange's cubic through four entries.
-        let [a, b, c, d] = [0, 1, 2, 3].map(|i| self.lost[first + i]);
-        let cubic = a * (1.0 - x) * (2.0 - x) * (3.0 - x) / 6.0
-            + b * x * (2.0 - x) * (3.0 - x) / 2.0
-            + c * x * (x - 1.0) * (3.0 - x) / 2.0
-            + d * x * (x - 1.0) * (x - 2.0) / 6.0;
-        cubic.clamp(0.0, 1.0)
+        interpolated(&self.lost, self.place(cosine).clamp(0.0, 1.0)).clamp(0.0, 1.0)
     }
 
     /// The mean of [`Losses::lost`] over the hemisphere, weighted with the cosine.
@@ -126,7 +95,7 @@ impl Losses {
 
     /// The chance that a sample is of what was lost.
     pub(super) fn chance(&self, cosine: f64) -> f64 {
-        if self.below.is_empty() { 0.0 } else { self.lost(cosine).min(MOST_CHANCE) }
+        if self.emitted.is_empty() { 0.0 } else { self.lost(cosine).min(MOST_CHANCE) }
     }
 
     /// D of what is emitted again, 1/sr.

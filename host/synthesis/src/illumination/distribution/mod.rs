@@ -8,6 +8,7 @@ mod blinn;
 mod compensated;
 mod cook_torrance;
 mod error;
+pub(super) mod even_table;
 mod facet_models;
 mod facet_table;
 mod facets;

@@ -6,6 +6,7 @@
 
 use super::dielectric::beta;
 use crate::illumination::distribution::RoughFacets;
+use crate::illumination::distribution::even_table::{LinearPdf, interpolated};
 use crate::illumination::fresnel::Dielectric;
 use crate::numeric::cubature::{GAUSS, unit_square};
 use glam::DVec3;
@@ -37,10 +38,8 @@ struct Row {
     mean: f64,
     /// The mean of what Fresnel's equations let through.
     through: f64,
-    /// The pdf, over the place of the cosine, of what is sent on, and its integral up to the end of each interval; empty
-    /// if nothing is.
-    emitted: Vec<f64>,
-    below: Vec<f64>,
+    /// The pdf, over the place of the cosine, of what is sent on; empty if nothing is.
+    emitted: LinearPdf,
 }
 
 /// What a rough interface loses by one reflection or refraction.
@@ -114,7 +113,7 @@ impl InterfaceLosses {
 
     /// A row with its means.
     fn row_of(&self, index: usize, lost: Vec<f64>) -> Row {
-        let mean_lost = mean(|cosine| interpolated(&lost, self.place(cosine)));
+        let mean_lost = mean(|cosine| interpolated(&lost, self.place(cosine)).clamp(0.0, 1.0));
         // The side from which light is reflected totally has a kink; the mean of the other has none.
         let ratio = InterfaceLosses::ratio(index);
         let surface = Dielectric::new(1.0, ratio.max(ratio.recip()));
@@ -124,18 +123,8 @@ impl InterfaceLosses {
             let cosine = self.cosine(place(step));
             lost[step] * cosine / self.slope(cosine)
         };
-        let mut emitted: Vec<f64> = (0..=STEPS).map(emission).collect();
-        let all: f64 = emitted.windows(2).map(|pair| pair[0] + pair[1]).sum();
-        let mut below = Vec::new();
-        if all > 0.0 {
-            let mut sum = 0.0;
-            below.extend(emitted.windows(2).map(|pair| {
-                sum += (pair[0] + pair[1]) / all;
-                sum
-            }));
-            emitted.iter_mut().for_each(|value| *value *= 2.0 * STEPS as f64 / all);
-        }
-        Row { lost, mean: mean_lost, through, emitted, below }
+        let emitted = LinearPdf::new((0..=STEPS).map(emission).collect());
+        Row { lost, mean: mean_lost, through, emitted }
     }
 
     /// The place of a cosine, 0..=1: half of the places are spread evenly, half of them gather at the horizon.
@@ -184,28 +173,18 @@ impl InterfaceLosses {
 impl Row {
     /// A cosine of what is sent on, from a uniform number.
     fn sample(&self, losses: &InterfaceLosses, uniform: f64) -> f64 {
-        if self.below.is_empty() {
+        if self.emitted.is_empty() {
             return uniform.sqrt();
         }
-        let step = self.below.partition_point(|below| *below <= uniform).min(STEPS - 1);
-        let before = if step == 0 { 0.0 } else { self.below[step - 1] };
-        let (from, to) = (self.emitted[step], self.emitted[step + 1]);
-        // The pdf is linear in the interval: from x + (to − from) x² / 2 is what is left.
-        let left = ((uniform - before) * STEPS as f64).max(0.0);
-        let root = (from * from + 2.0 * (to - from) * left).max(0.0).sqrt();
-        let part = if from + root > 0.0 { (2.0 * left / (from + root)).min(1.0) } else { 0.0 };
-        losses.cosine((step as f64 + part) / STEPS as f64)
+        losses.cosine(self.emitted.sample(uniform))
     }
 
     /// The pdf of [`Row::sample`], 1/sr.
     fn pdf(&self, losses: &InterfaceLosses, cosine: f64) -> f64 {
-        if self.below.is_empty() {
+        if self.emitted.is_empty() {
             return cosine * FRAC_1_PI;
         }
-        let place = losses.place(cosine) * STEPS as f64;
-        let step = (place as usize).min(STEPS - 1);
-        let part = place - step as f64;
-        (self.emitted[step] * (1.0 - part) + self.emitted[step + 1] * part) * losses.slope(cosine) / TAU
+        self.emitted.at(losses.place(cosine)) * losses.slope(cosine) / TAU
     }
 }
 
@@ -232,7 +211,7 @@ impl LossesOfRatio<'_> {
     /// - `cosine`: between light and normal, 0..=1.
     pub(super) fn lost(&self, cosine: f64) -> f64 {
         let place = self.losses.place(cosine);
-        let [a, b] = self.rows.map(|row| interpolated(&row.lost, place));
+        let [a, b] = self.rows.map(|row| interpolated(&row.lost, place).clamp(0.0, 1.0));
         a + (b - a) * self.part
     }
 
@@ -262,21 +241,6 @@ impl LossesOfRatio<'_> {
         let own = self.mean() * if ratio >= 1.0 { 1.0 } else { square };
         if own > 0.0 { (flux / own).clamp(0.0, 1.0) } else { 0.0 }
     }
-}
-
-/// By Lagrange's cubic through four entries.
-///
-/// - `place`: 0..=1.
-fn interpolated(values: &[f64], place: f64) -> f64 {
-    let place = place * STEPS as f64;
-    let first = (place as usize).saturating_sub(1).min(STEPS - 3);
-    let x = place - first as f64;
-    let [a, b, c, d] = [0, 1, 2, 3].map(|i| values[first + i]);
-    let cubic = a * (1.0 - x) * (2.0 - x) * (3.0 - x) / 6.0
-        + b * x * (2.0 - x) * (3.0 - x) / 2.0
-        + c * x * (x - 1.0) * (3.0 - x) / 2.0
-        + d * x * (x - 1.0) * (x - 2.0) / 6.0;
-    cubic.clamp(0.0, 1.0)
 }
 
 /// 2 ∫ f μ dμ
