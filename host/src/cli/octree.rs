@@ -84,7 +84,10 @@ fn destination(path: &Path) -> Result<Destination, CommandFailure> {
 
 /// Builds the octree of a scene; also says how long it took, seconds.
 fn build(arguments: &Arguments) -> Result<(Octree, f64), CommandFailure> {
-    let prepared = Prepared::new(&load(&arguments.scene, &arguments.definitions)?.scene)?;
+    let mut scene = load(&arguments.scene, &arguments.definitions)?.scene;
+    // Bodies of lamps are no geometry of the scene.
+    scene.lights.clear();
+    let prepared = Prepared::new(&scene)?;
     let defaults = OctreeSettings::default();
     let settings = OctreeSettings {
         depth: arguments.depth.unwrap_or(defaults.depth),

@@ -3,7 +3,8 @@
 use super::builder::Builder;
 use super::function::{Function, function};
 use super::handle::CallResult;
-use super::kinds::{Flag, Length, NumberKind, Powers, TextKind, Vector};
+use super::kinds::{Flag, Length, MaterialOrigin, MaterialOriginKind, NumberKind, Powers, TextKind, Vector};
+use super::made_of::material_from;
 use super::parameter::{Defaulted, Optional, Required, optional, required, with_default};
 use crate::color::srgb::LUMINANCE;
 use crate::color::{Color, Spectrum, light_of_temperature};
@@ -35,6 +36,11 @@ const RADIUS: Defaulted<Length, f64> = with_default(Length, 1.0, "its radius");
 const INTENSITY: Optional<Powers> = optional(Powers, "that of the power", "radiant intensity, W/sr");
 const RADIANCE: Optional<Powers> = optional(Powers, "that of the power", "radiance, W/(m² sr)");
 const POWER: Optional<Powers> = optional(Powers, "that of the radiance", "radiant power, W");
+const MADE_OF: Optional<MaterialOriginKind> = optional(
+    MaterialOriginKind,
+    "it reflects nothing",
+    "what it is made of and so reflects, beside what it emits: a map of what material() takes, an object whose material it has, too, or a name, as stored() takes it",
+);
 
 /// How strong a light is: one of the two is given.
 struct Strength {
@@ -144,10 +150,11 @@ pub(super) const FUNCTIONS: &[Function] = &[
             radiance: RADIANCE,
             power: POWER,
             spectrum: SPECTRUM,
+            material: MADE_OF,
         )
-        "Adds a rectangle that shines on one side: where its two sides turn counter-clockwise."
+        "Adds a rectangle that shines on one side: where its two sides turn counter-clockwise. With a material it reflects on both sides."
         "rectangle_light(#{ corner: [-1, 5, -1], across: [2, 0, 0], up: [0, 0, 2], power: 60 });"
-        |builder| add_area(builder, LightShape::Rectangle { corner, across, up }, [radiance, power], spectrum)
+        |builder| add_area(builder, LightShape::Rectangle { corner, across, up }, [radiance, power], spectrum, material)
     },
     function! {
         disc_light(
@@ -157,16 +164,24 @@ pub(super) const FUNCTIONS: &[Function] = &[
             radiance: RADIANCE,
             power: POWER,
             spectrum: SPECTRUM,
+            material: MADE_OF,
         )
-        "Adds a disc that shines on the side of its normal."
+        "Adds a disc that shines on the side of its normal. With a material it reflects on both sides."
         "disc_light(#{ center: [0, 6, 0], radius: 0.5, power: 40 });"
-        |builder| add_area(builder, LightShape::Disc { center, normal, radius }, [radiance, power], spectrum)
+        |builder| add_area(builder, LightShape::Disc { center, normal, radius }, [radiance, power], spectrum, material)
     },
     function! {
-        sphere_light(center: CENTER, radius: RADIUS, radiance: RADIANCE, power: POWER, spectrum: SPECTRUM)
+        sphere_light(
+            center: CENTER,
+            radius: RADIUS,
+            radiance: RADIANCE,
+            power: POWER,
+            spectrum: SPECTRUM,
+            material: MADE_OF,
+        )
         "Adds a sphere that shines in all directions."
-        "sphere_light(#{ center: [3, 5, 2], radius: 0.4, power: 100, spectrum: \"blackbody 2900\" });"
-        |builder| add_area(builder, LightShape::Sphere { center, radius }, [radiance, power], spectrum)
+        "sphere_light(#{ center: [3, 5, 2], radius: 0.4, power: 100, spectrum: \"blackbody 2900\", material: #{ diffuse: 0.8 } });"
+        |builder| add_area(builder, LightShape::Sphere { center, radius }, [radiance, power], spectrum, material)
     },
     function! {
         sky(
@@ -246,12 +261,17 @@ fn add_area(
     patch: LightShape,
     given: [Option<DVec3>; 2],
     spectrum: Option<String>,
+    material: Option<MaterialOrigin>,
 ) -> CallResult {
     let [strength, power] = given;
     // A surface of radiance 1 emits pi on each unit of area.
     let flux = PI * patch.area().max(f64::MIN_POSITIVE);
     let radiance = Strength { named: "radiance", strength, power, flux, spectrum }.color(builder)?;
-    add(builder, Light::Area { patch, radiance })
+    let light = match material {
+        Some(material) => Light::Lamp { patch, radiance, material: Box::new(material_from(builder, material)?) },
+        None => Light::Area { patch, radiance },
+    };
+    add(builder, light)
 }
 
 /// Bands as a light, with a spectrum if one is given.

@@ -8,6 +8,7 @@ use super::kinds::{
     NumberOrTextValue, Powers, Reflectance, TextKind, Vector,
 };
 use super::lighting::{SPECTRUM, color_of_light};
+use super::made_of::{DIFFUSE, EXPONENT, MIRROR, SPECULAR, TRANSPARENCY};
 use super::parameter::{Defaulted, Optional, optional, required, with_default};
 use super::shared::OBJECT;
 use crate::color::{Color, shipped};
@@ -59,11 +60,11 @@ pub(super) const FUNCTIONS: &[Function] = &[
     function! {
         material(
             object: OBJECT,
-            diffuse: with_default(Reflectance, 0.7, "diffusely reflected fraction"),
-            specular: with_default(Reflectance, 0.0, "fraction in the highlight, the same at every incidence"),
-            exponent: with_default(AmountKind(1.0, Classic::MOST_EXPONENT), 50.0, "sharpness of the highlight"),
-            mirror: with_default(Reflectance, 0.0, "mirrored fraction"),
-            transparency: with_default(Reflectance, 0.0, "fraction that goes straight through"),
+            diffuse: DIFFUSE,
+            specular: SPECULAR,
+            exponent: EXPONENT,
+            mirror: MIRROR,
+            transparency: TRANSPARENCY,
         )
         "Says how the surface of an object reflects; what is not given becomes the default. Faces of a combined object keep what their operand was given."
         "pot.material(#{ diffuse: [0.8, 0.5, 0.3], specular: 0.1, exponent: 60, mirror: 0.1 });"

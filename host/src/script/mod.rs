@@ -20,6 +20,7 @@ mod shaping;
 mod sculpting;
 mod surfaces;
 mod subdividing;
+mod made_of;
 mod materials;
 mod texturing;
 mod lighting;

@@ -55,6 +55,33 @@ fn a_script_builds_what_it_says() {
 }
 
 #[test]
+fn lamps_reflect_as_what_they_are_made_of() {
+    let made = run("
+        let ring = torus(1, 0.2).principled(#{ metallic: 1 }).emits(2);
+        sphere_light(#{ center: [0, 5, 0], radiance: 2, material: #{ diffuse: \"red_brick\", mirror: 0.1 } });
+        disc_light(#{ center: [0, 5, 0], radiance: 2, material: ring });
+        rectangle_light(#{ corner: [0, 1, 0], across: [1, 0, 0], up: [0, 0, 1], power: 3, material: \"gold\" });
+        sphere_light(#{ center: [0, 5, 0], radiance: 2 });
+    ");
+    let words: Vec<Option<&str>> =
+        made.scene.lights.iter().map(|light| light.body().map(|(_, material)| material.word())).collect();
+    let of_ring = made.scene.objects[0].material.as_ref().expect("it was given one");
+    assert_eq!((words[1], words[3]), (Some(of_ring.word()), None));
+    let Some((LightShape::Sphere { .. }, of_map)) = made.scene.lights[0].body() else { panic!("{words:?}") };
+    assert_eq!(of_map.preview().mirror, DVec3::splat(0.1));
+    let Some((LightShape::Rectangle { .. }, Material { body: MaterialKind::Metal(_), .. })) =
+        made.scene.lights[2].body()
+    else {
+        panic!("{words:?}")
+    };
+    let lamp = |material: &str| format!("sphere_light(#{{ center: [0, 5, 0], radiance: 2, material: {material} }});");
+    assert!(problem(&lamp("#{ difuse: 0.5 }")).2.contains("unknown parameter difuse"));
+    assert!(problem(&lamp("#{ diffuse: 2 }")).2.contains("diffuse must be"));
+    assert!(problem(&lamp("0.5")).2.contains("material must be a map"));
+    assert!(problem(&lamp("\"cheese\"")).2.contains("no material is called"));
+}
+
+#[test]
 fn a_parallel_light_may_come_from_a_disc_in_the_sky_and_that_of_a_sky_through_portals() {
     let made = run("
         directional_light(#{ direction: [0, -2, 0], irradiance: 3, diameter: 60 });

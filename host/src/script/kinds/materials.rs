@@ -2,12 +2,13 @@
 
 use super::numbers::{NumberKind, number, shown};
 use super::vectors::vector_or_number;
-use super::words::TextKind;
+use super::words::{ObjectKind, TextKind};
 use crate::color::Color;
 use crate::database::Library;
 use crate::illumination::Paint;
 use crate::illumination::distribution::FacetTable;
 use crate::illumination::texture::{Band, NumberTexture as TextureNumber, Varying};
+use crate::script::handle::Handle;
 use crate::script::parameter::{HasDefault, ParameterKind};
 use rhai::Dynamic;
 
@@ -33,6 +34,38 @@ pub(in crate::script) enum DistributionValue {
     Name(String),
     /// One of the user's.
     Table(FacetTable),
+}
+
+/// What something is made of: a map, an object of the same material, or a name.
+#[derive(Clone, Copy)]
+pub(in crate::script) struct MaterialOriginKind;
+
+/// Where a material is taken from.
+pub(in crate::script) enum MaterialOrigin {
+    /// A map of what material() takes.
+    Map(Dynamic),
+    /// Another object.
+    Object(Handle),
+    /// The name of a record of an open database.
+    Record(String),
+}
+
+impl ParameterKind for MaterialOriginKind {
+    type Value = MaterialOrigin;
+
+    fn words(&self) -> String {
+        "a map of what material() takes, an object of the same material, or the name of a stored material".into()
+    }
+
+    fn read(&self, value: &Dynamic) -> Option<MaterialOrigin> {
+        if let Some(handle) = ObjectKind.read(value) {
+            return Some(MaterialOrigin::Object(handle));
+        }
+        if value.is_map() {
+            return Some(MaterialOrigin::Map(value.clone()));
+        }
+        TextKind.read(value).map(MaterialOrigin::Record)
+    }
 }
 
 impl ParameterKind for Reflectance {

@@ -9,7 +9,9 @@ mod materials;
 
 pub(super) use curves::{CurveKind, Loops, SidesKind, Spline};
 pub(super) use lists::{Contours, Indices, Numbers, Objects, PointsKind, RowsOfNumbers};
-pub(super) use materials::{AmountKind, DistributionKind, DistributionValue, FunctionOfAngle, Reflectance};
+pub(super) use materials::{
+    AmountKind, DistributionKind, DistributionValue, FunctionOfAngle, MaterialOrigin, MaterialOriginKind, Reflectance,
+};
 pub(super) use numbers::{ANY_NUMBER, Integer, Length, NumberKind, number};
 pub(super) use vectors::{AxisKind, Factors, Lengths, NamedAxis, Powers, Vector};
 pub(super) use words::{Flag, NumberOrText, NumberOrTextValue, ObjectKind, ScalarKind, TextKind, Word};

@@ -58,6 +58,8 @@ impl RecordKind {
             // 2: numbers that change from place to place, priorities of transparent bodies. 3: the facets of glass and
             // of brushed metals.
             RecordKind::Material => 3,
+            // 2: lamps that reflect. What was stored before is read as it is.
+            RecordKind::Light => 2,
             _ => 1,
         }
     }

@@ -351,7 +351,7 @@ fn checksum(kind: RecordKind, name: &str, bytes: &[u8]) -> u32 {
     sum.finalize()
 }
 
-/// The bytes of a material with a content of the form of an earlier version.
+/// The bytes of a record with a content of the form of an earlier version.
 #[cfg(test)]
 pub(super) fn earlier_for_tests(record: &Record, version: u8, content: &impl Serialize) -> Vec<u8> {
     let Origin { what, source, terms } = record.origin.clone();
@@ -359,7 +359,7 @@ pub(super) fn earlier_for_tests(record: &Record, version: u8, content: &impl Ser
     let mut bytes = vec![version, 0, 0, 0, 0, 0, 0, 0];
     bytes.extend(encoded(&head).expect("a head"));
     bytes.extend(encoded(content).expect("a content"));
-    let sum = checksum(RecordKind::Material, &record.name, &bytes);
+    let sum = checksum(record.kind(), &record.name, &bytes);
     bytes[4..BEFORE].copy_from_slice(&sum.to_le_bytes());
     bytes
 }

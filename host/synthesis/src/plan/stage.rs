@@ -81,12 +81,13 @@ impl<'a> Facts<'a> {
 
     /// Lights, and objects that emit.
     fn lights(&self) -> usize {
-        self.bright.iter().filter(|b| **b).count() + self.included().filter(|object| self.emits(object)).count()
+        let glowing = self.included().filter(|object| object.light.is_none() && self.emits(object));
+        self.bright.iter().filter(|b| **b).count() + glowing.count()
     }
 
     /// Whether an object emits light.
     pub(super) fn emits(&self, object: &PreparedObject) -> bool {
-        object.materials.iter().any(|material| !material.emission.is_black())
+        self.prepared.is_lit_lamp(object) || object.materials.iter().any(|material| !material.emission.is_black())
     }
 
     pub(super) fn shadows(&self) -> Decision {

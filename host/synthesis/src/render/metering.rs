@@ -16,7 +16,7 @@ use super::{Film, RenderError, RenderOrder, Renderer, Watch};
 use crate::color::srgb::LUMINANCE;
 use crate::picture::display::{DisplayTransform, Exposure, MIDDLE_GREY, Tone};
 use crate::picture::{Filter, Picture};
-use crate::scene::{Prepared, Settings, View};
+use crate::scene::{Prepared, PreparedObject, Settings, View};
 use crate::stages::stage;
 use glam::DVec3;
 use std::num::NonZeroUsize;
@@ -161,9 +161,13 @@ impl MeteredPixels {
     fn add_film(&mut self, film: &Film, prepared: &Prepared) {
         let is_lamp = |tally: &Tally| {
             let [object, material] = tally.first_ids;
-            let material = || prepared.objects.get(object as usize)?.materials.get(material as usize);
+            let object = prepared.objects.get(object as usize);
+            let emits = |object: &PreparedObject| {
+                let material = object.materials.get(material as usize);
+                prepared.is_lit_lamp(object) || material.is_some_and(|material| !material.emission.is_black())
+            };
             // A lamp that is no object is covered, but is no element.
-            (tally.elements as f32) < tally.covered || material().is_some_and(|material| !material.emission.is_black())
+            (tally.elements as f32) < tally.covered || object.is_some_and(emits)
         };
         for (tally, weight) in film.tallies().iter().zip(weights(film.width(), film.height())) {
             if tally.covered == 0.0 {

@@ -24,6 +24,8 @@ mod renderers;
 
 #[cfg(test)]
 mod extreme_tests;
+#[cfg(test)]
+mod lamp_tests;
 
 pub use error::{RadiosityError, RenderError};
 pub use film::Film;

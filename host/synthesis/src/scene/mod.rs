@@ -22,6 +22,7 @@ mod parameters;
 mod exact;
 mod acceleration;
 mod shared;
+mod lamp_body;
 mod prepared;
 mod texture_footprint;
 mod piercing;

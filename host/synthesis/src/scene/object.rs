@@ -187,7 +187,8 @@ impl Object {
         }
     }
 
-    pub(super) fn own_material(&self) -> Option<Material> {
+    /// The material that it was given; of a composite without one that of its first operand.
+    pub fn own_material(&self) -> Option<Material> {
         match &self.shape {
             Shape::Composite(composite) => self.material.clone().or_else(|| composite.first_material()),
             Shape::Rounded(rounded) => self.material.clone().or_else(|| rounded.object.own_material()),

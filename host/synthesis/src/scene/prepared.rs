@@ -2,6 +2,7 @@
 
 use super::acceleration::AccelerationCache;
 use super::exact::{ExactSurfaces, FLAT_SINE};
+use super::lamp_body::lamp_body;
 use super::object::{GROUND, Object};
 use super::parameters::parameters;
 use super::shape_mesh::ShapeMesh;
@@ -46,7 +47,7 @@ pub struct Contents {
     pub(super) exact: ExactSurfaces,
     /// For the triangles of objects of several materials, which of them.
     material_of: Vec<u32>,
-    /// The objects, in the order of the scene.
+    /// The objects, in the order of the scene, and then the bodies of its lamps that reflect.
     pub objects: Vec<PreparedObject>,
     /// The lights.
     pub lights: Vec<Light>,
@@ -79,6 +80,8 @@ pub struct PreparedObject {
     pub count: u32,
     /// A box around it, wherever it moves.
     pub bounds: Bounds,
+    /// The light whose body it is, an index into the lights of the scene; none of an object of the scene.
+    pub light: Option<u32>,
     /// How it moves while the shutter is open; its triangles are where it is in the middle of that time.
     pub motion: Option<Motion>,
     /// Where its corner normals begin; none for an object with flat faces.
@@ -156,13 +159,22 @@ impl Contents {
             let made = shared.mesh_of(scene, index)?;
             contents.add(object, &made, motions.get(&index).copied(), &scene.settings.geometry)?;
         }
+        for (light, number) in scene.lights.iter().zip(0u32..) {
+            let Some((patch, material)) = light.body() else { continue };
+            let (body, made) = lamp_body(patch, material, number, &scene.settings.geometry)?;
+            contents.add(&body, &made, None, &scene.settings.geometry)?;
+            if let Some(body) = contents.objects.last_mut() {
+                (body.shape, body.light) = ("light", Some(number));
+            }
+        }
         contents.camera = scene.camera.unwrap_or_else(|| Camera::framing(&contents.subject()));
         Ok(contents)
     }
 
-    /// A box around what is looked at: all objects that are no grounds, or everything if there are only these.
+    /// A box around what is looked at: all objects that are no grounds and no lamps, or everything if there are only these.
     pub fn subject(&self) -> Bounds {
-        let all = self.objects.iter().filter(|object| object.shape != GROUND && !object.bounds.is_empty());
+        let is_meant = |object: &&PreparedObject| object.shape != GROUND && object.light.is_none();
+        let all = self.objects.iter().filter(is_meant).filter(|object| !object.bounds.is_empty());
         all.map(|object| object.bounds).reduce(Bounds::union).unwrap_or(self.bounds)
     }
 
@@ -220,6 +232,7 @@ impl Contents {
             first,
             count: mesh.triangles.len() as u32,
             bounds,
+            light: None,
             motion,
             normals_from,
             parameters_from,
@@ -256,6 +269,12 @@ impl Contents {
         let from = (!of_triangles.is_empty()).then_some(self.material_of.len() as u32);
         self.material_of.extend(of_triangles);
         (materials, from)
+    }
+
+    /// Whether an object is the body of a lamp that has power.
+    pub fn is_lit_lamp(&self, object: &PreparedObject) -> bool {
+        let light = object.light.and_then(|light| self.lights.get(light as usize));
+        light.is_some_and(|light| !light.strength().1.is_black())
     }
 
     /// How a triangle reflects.

@@ -16,6 +16,8 @@ pub(super) struct AreaLight {
     pub(super) patch: LightShape,
     /// Radiance, W/(m² sr).
     pub(super) strength: SpectralTable,
+    /// Whether an object stands in its place, which rays hit instead.
+    pub(super) has_body: bool,
 }
 
 impl Emitter for AreaLight {
@@ -67,14 +69,25 @@ impl Emitter for AreaLight {
     }
 
     fn is_surface(&self) -> bool {
-        true
+        !self.has_body
     }
 
     fn intersect(&self, ray: &Ray, t_min: f64, t_max: f64, wavelength_set: usize) -> Option<LightHit> {
+        if self.has_body {
+            return None;
+        }
         let (t, front) = self.patch.intersect(ray, t_min, t_max)?;
         let length = ray.direction.length();
         let radiance = if front { self.strength.of(wavelength_set) } else { Channels::ZERO };
         Some(LightHit { t, radiance, pdf: self.patch.pdf(ray.origin, ray.direction / length, t * length) })
+    }
+
+    fn pdf_on_object(&self, from: DVec3, towards: DVec3, distance: f64, _: f64) -> f64 {
+        self.patch.pdf(from, towards, distance)
+    }
+
+    fn emission_on_object(&self, is_outside: bool, wavelength_set: usize) -> Channels {
+        if is_outside { self.strength.of(wavelength_set) } else { Channels::ZERO }
     }
 }
 

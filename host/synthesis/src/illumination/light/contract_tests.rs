@@ -69,7 +69,7 @@ fn seen(source: &LightSource, towards: DVec3) -> (f64, f64) {
     let distance = (a - POINT).dot(normal) / towards.dot(normal);
     let met = POINT + towards * distance;
     let is_in = [(a, b), (b, c), (c, a)].iter().all(|(p, q)| (*q - *p).cross(met - *p).dot(normal) > 0.0);
-    match source.pdf_on_triangle(distance, towards.dot(normal)) {
+    match source.pdf_on_object(POINT, towards, distance, towards.dot(normal)) {
         pdf if pdf > 0.0 && distance > 0.0 && is_in => (1.0, pdf),
         _ => (0.0, 0.0),
     }

@@ -72,9 +72,14 @@ pub(super) trait Emitter {
         None
     }
 
-    /// The pdf of a direction in which its triangles are hit.
-    fn pdf_on_triangle(&self, _: f64, _: f64) -> f64 {
+    /// The pdf of a direction in which its object is hit.
+    fn pdf_on_object(&self, _: DVec3, _: DVec3, _: f64, _: f64) -> f64 {
         0.0
+    }
+
+    /// The radiance of a side of its object.
+    fn emission_on_object(&self, _: bool, _: usize) -> Channels {
+        Channels::ZERO
     }
 
     /// The cone outside of which nothing is sent.

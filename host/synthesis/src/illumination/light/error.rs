@@ -1,5 +1,6 @@
 //! What can be wrong with a light.
 
+use crate::illumination::material::MaterialError;
 use glam::DVec3;
 
 /// A reason for which a light is none.
@@ -42,6 +43,9 @@ pub enum LightError {
     /// A surface that is flat or too large.
     #[error("its surface is {0}")]
     Patch(&'static str),
+    /// A material that is none.
+    #[error("its material: {0}")]
+    Material(#[source] MaterialError),
 }
 
 /// Refuses a place that is not finite.

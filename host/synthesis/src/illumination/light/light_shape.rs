@@ -10,6 +10,8 @@ use std::f64::consts::{PI, TAU};
 
 /// Below this solid angle, sr, a rectangle is sampled by its area: sums of its angles have too few digits.
 const SMALL: f64 = 1e-6;
+/// A point is in a plane if it is no farther from it, in parts of the largest coordinates.
+const IN_PLANE: f64 = 1e-14;
 
 /// A surface that emits light.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -153,10 +155,16 @@ impl LightShape {
         }
     }
 
-    /// Whether a point is on the side of a rectangle on which this emits; of other patches, always.
+    /// Whether a point is on the side of a rectangle on which this emits, and not in its plane, as far as coordinates
+    /// tell; of other patches, always.
     pub(super) fn is_before(&self, point: DVec3) -> bool {
         match *self {
-            LightShape::Rectangle { corner, across, up } => (point - corner).dot(across.cross(up)) > 0.0,
+            LightShape::Rectangle { corner, across, up } => {
+                // A point of the rectangle itself would see all of it on one side or the other, by chance.
+                let largest = corner.abs().max_element() + point.abs().max_element();
+                let normal = across.cross(up);
+                (point - corner).dot(normal) > IN_PLANE * largest * normal.length()
+            }
             LightShape::Disc { .. } | LightShape::Sphere { .. } => true,
         }
     }

@@ -102,7 +102,11 @@ impl Emitter for MeshLight {
         false
     }
 
-    fn pdf_on_triangle(&self, distance: f64, cosine: f64) -> f64 {
+    fn pdf_on_object(&self, _: DVec3, _: DVec3, distance: f64, cosine: f64) -> f64 {
         if cosine == 0.0 { 0.0 } else { distance * distance / (cosine.abs() * self.area) }
+    }
+
+    fn emission_on_object(&self, _: bool, wavelength_set: usize) -> Channels {
+        self.strength.of(wavelength_set)
     }
 }

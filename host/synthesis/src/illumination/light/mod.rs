@@ -36,6 +36,7 @@ pub use sky::Sky;
 pub use sky_map::{SkyDisc, SkyMap};
 pub use source::LightSource;
 
+use super::material::Material;
 use crate::color::{Color, WavelengthSets};
 use crate::numeric::bounds::Bounds;
 use area::AreaLight;
@@ -113,6 +114,16 @@ pub enum Light {
         /// Degrees by which the map is turned about the upright axis, as a right-handed screw turns.
         turned: f64,
     },
+    /// A surface that emits the same radiance in all directions, and reflects as what it is made of: an
+    /// [`Light::Area`] with a body.
+    Lamp {
+        /// The surface. The back of a flat one reflects as its front does, and emits nothing.
+        patch: LightShape,
+        /// Its radiance, W/(m² sr).
+        radiance: Color,
+        /// What it is made of. What this emits is left out: the lamp emits its own radiance.
+        material: Box<Material>,
+    },
 }
 
 impl Light {
@@ -122,7 +133,9 @@ impl Light {
             Light::Point { intensity, .. } | Light::Spot { intensity, .. } => ("its intensity", intensity),
             Light::Directional { irradiance, .. } => ("its irradiance", irradiance),
             Light::Luminaire { color, .. } => ("its color", color),
-            Light::Area { radiance, .. } | Light::Sky { radiance, .. } => ("its radiance", radiance),
+            Light::Area { radiance, .. } | Light::Lamp { radiance, .. } | Light::Sky { radiance, .. } => {
+                ("its radiance", radiance)
+            }
         }
     }
 
@@ -133,7 +146,7 @@ impl Light {
             Light::Directional { .. } => "parallel light",
             Light::Spot { .. } => "a spot light",
             Light::Luminaire { .. } => "a luminaire",
-            Light::Area { patch, .. } => patch.words(),
+            Light::Area { patch, .. } | Light::Lamp { patch, .. } => patch.words(),
             Light::Sky { .. } => "a sky",
         }
     }
@@ -143,12 +156,12 @@ impl Light {
         match self {
             Light::Point { at, .. } | Light::Spot { at, .. } | Light::Luminaire { at, .. } => LightOrigin::point(*at),
             Light::Directional { direction, .. } => LightOrigin::Towards(-direction.normalize_or(DVec3::NEG_Y)),
-            Light::Area { patch, .. } => LightOrigin::Within(Bounds::of(patch.bounds())),
+            Light::Area { patch, .. } | Light::Lamp { patch, .. } => LightOrigin::Within(Bounds::of(patch.bounds())),
             Light::Sky { .. } => LightOrigin::Everywhere,
         }
     }
 
-    /// The surface that emits and its radiance, if it has one of its own.
+    /// The surface that emits and its radiance, if it has one that reflects nothing.
     pub fn surface(&self) -> Option<(&LightShape, &Color)> {
         match self {
             Light::Area { patch, radiance } => Some((patch, radiance)),
@@ -156,9 +169,17 @@ impl Light {
         }
     }
 
+    /// The surface and the material of a lamp that reflects, if it is one.
+    pub fn body(&self) -> Option<(&LightShape, &Material)> {
+        match self {
+            Light::Lamp { patch, material, .. } => Some((patch, material)),
+            _ => None,
+        }
+    }
+
     /// Whether its shadows have soft edges: it is a surface, or a sky.
     pub fn has_size(&self) -> bool {
-        matches!(self, Light::Area { .. } | Light::Sky { .. })
+        matches!(self, Light::Area { .. } | Light::Lamp { .. } | Light::Sky { .. })
     }
 
     /// The map of a sky that is not the same all around.
@@ -196,7 +217,8 @@ impl Light {
                 let profile = GoniometricProfile::new(*down, *front, Arc::new(goniometry.clone()));
                 AnyEmitter::Luminaire(PointLight { at: *at, strength, profile })
             }
-            Light::Area { patch, .. } => AnyEmitter::Area(AreaLight { patch: *patch, strength }),
+            Light::Area { patch, .. } => AnyEmitter::Area(AreaLight { patch: *patch, strength, has_body: false }),
+            Light::Lamp { patch, .. } => AnyEmitter::Area(AreaLight { patch: *patch, strength, has_body: true }),
             Light::Sky { map, radiance, turned } => {
                 let sky = Sky::new(map.as_ref(), radiance, *turned, wavelengths);
                 AnyEmitter::Sky(EnvironmentLight { sky: Box::new(sky), strength })
@@ -230,6 +252,10 @@ impl Light {
                 directed("front across down", down.cross(*front))
             }
             Light::Area { patch, .. } => patch.check(),
+            Light::Lamp { patch, material, .. } => {
+                patch.check()?;
+                material.check().map_err(LightError::Material)
+            }
             Light::Sky { turned, .. } if turned.is_finite() => Ok(()),
             Light::Sky { turned, .. } => Err(LightError::NotFinite { what: "its turn", value: DVec3::splat(*turned) }),
         }

@@ -104,11 +104,19 @@ impl LightSource {
         self.0.emitter().sky_radiance(ray, normal, wavelength_set)
     }
 
-    /// The pdf of a direction by [`LightSource::sample_incident`] in which emitting triangles are hit, 1/sr.
+    /// The pdf of a direction by [`LightSource::sample_incident`] in which the object is hit that emits its light, 1/sr; 0
+    /// for a light that is no object.
     ///
-    /// - `cosine`: between the direction and the normal of the triangle, any sign.
-    pub fn pdf_on_triangle(&self, distance: f64, cosine: f64) -> f64 {
-        self.0.emitter().pdf_on_triangle(distance, cosine)
+    /// - `from`: where the ray begins. `towards`: unit length. `distance`: from there to the hit, scene units. `cosine`:
+    ///   between the direction and the normal of the triangle that is hit, any sign.
+    pub fn pdf_on_object(&self, from: DVec3, towards: DVec3, distance: f64, cosine: f64) -> f64 {
+        self.0.emitter().pdf_on_object(from, towards, distance, cosine)
+    }
+
+    /// Radiance of the object that emits its light, W/(m² sr): a lamp's emits on the outside of its triangles, another on
+    /// both sides; 0 for a light that is no object.
+    pub fn emission_on_object(&self, is_outside: bool, wavelength_set: usize) -> Channels {
+        self.0.emitter().emission_on_object(is_outside, wavelength_set)
     }
 
     /// Whether it is a delta light: its light comes from one direction only at every point.

@@ -384,3 +384,44 @@ fn portals_change_where_a_sky_is_looked_for_and_not_how_much_it_lights() {
         );
     }
 }
+
+#[test]
+fn a_lamp_that_reflects_is_sampled_as_one_that_does_not_and_left_to_its_body_to_be_hit() {
+    let center = DVec3::new(0.3, 2.0, -0.2);
+    let point = DVec3::new(0.5, 0.1, 0.4);
+    for patch in [
+        LightShape::Rectangle { corner: center, across: DVec3::X, up: DVec3::Z },
+        LightShape::Rectangle { corner: center, across: DVec3::Z, up: DVec3::X },
+        LightShape::Disc { center, normal: DVec3::NEG_Y, radius: 0.5 },
+        LightShape::Sphere { center, radius: 0.5 },
+    ] {
+        let material = Box::default();
+        let bare = source(Light::Area { patch, radiance: Color::grey(2.0) });
+        let lamp = source(Light::Lamp { patch, radiance: Color::grey(2.0), material });
+        assert!(!lamp.is_surface() && !lamp.is_delta() && lamp.origin() == bare.origin());
+        assert_eq!(lamp.power(1.0, 0), bare.power(1.0, 0));
+        for uniform in [[0.1, 0.7], [0.5, 0.5], [0.8, 0.2]] {
+            let sample = lamp.sample_incident(point, None, uniform, 0);
+            assert_eq!(sample, bare.sample_incident(point, None, uniform, 0));
+            let Some(LightSample { towards, distance, pdf: Some(pdf), .. }) = sample else { continue };
+            let ray = Ray { origin: point, direction: towards };
+            assert_eq!(lamp.intersect(&ray, 0.0, f64::INFINITY, 0), None);
+            let found = lamp.pdf_on_object(point, towards, distance, 1.0);
+            assert!((found / pdf - 1.0).abs() < 1e-9, "{patch:?}: {found} {pdf}");
+        }
+        let emitted = [true, false].map(|is_outside| lamp.emission_on_object(is_outside, 0).0[0]);
+        assert_eq!(emitted, [2.0, 0.0]);
+    }
+}
+
+#[test]
+fn no_point_of_a_rectangle_itself_is_lit_by_it() {
+    let (corner, across, up) = (DVec3::new(0.1, 0.2, 0.3), DVec3::new(0.3, 0.7, 0.1), DVec3::new(-0.2, 0.1, 0.9));
+    let patch = LightShape::Rectangle { corner, across, up };
+    let source = source(Light::Lamp { patch, radiance: Color::grey(1.0), material: Box::default() });
+    for step in 0..100 {
+        let part = f64::from(step) / 100.0;
+        let point = corner + across * part + up * (0.3 + 0.5 * part);
+        assert_eq!(source.sample_incident(point, None, [0.3, 0.6], 0), None, "{point}");
+    }
+}

@@ -48,10 +48,15 @@ impl<'a> DirectLighting<'a> {
         mut add: impl FnMut(usize, Channels),
     ) -> [Channels; 2] {
         let PathVertex { interaction, context, sampler, segment, .. } = vertex;
+        let own_light = self.world.prepared().objects[interaction.object as usize].light;
         let mut sum = [Channels::ZERO; 2];
         for (index, (number, source)) in self.world.appearance.sources.iter().enumerate() {
             let samples = if source.is_delta() { 1 } else { self.samples };
             if vertex.is_in_photon_map && source.emits_photons() {
+                continue;
+            }
+            // Lamps are convex and emit outwards: their own bodies get none of their light straight.
+            if own_light == Some(*number as u32) {
                 continue;
             }
             if self.is_dark(vertex, index) {

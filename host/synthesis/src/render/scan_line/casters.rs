@@ -96,8 +96,10 @@ impl<'a> Casters<'a> {
     }
 
     /// For each triangle of the scene, on which side of it a light is: 1 outside, -1 inside, 0 for one that is lit edge
-    /// on or throws no shadow.
-    pub(super) fn facing(&self, light: &LightPosition) -> Vec<i8> {
+    /// on or throws no shadow. The body of a lamp throws none in the lamp's own light.
+    ///
+    /// - `own`: the light of the scene whose point it is, if it is one.
+    pub(super) fn facing(&self, light: &LightPosition, own: Option<u32>) -> Vec<i8> {
         let mut facing = vec![0i8; self.prepared.triangles.len()];
         let side = |triangle: usize| {
             let [a, b, c] = self.prepared.corners(triangle as u32);
@@ -108,6 +110,9 @@ impl<'a> Casters<'a> {
             facing.par_iter_mut().with_min_len(1 << 12).enumerate().for_each(|(i, facing)| *facing = side(i));
         } else {
             self.triangles.iter().for_each(|&triangle| facing[triangle as usize] = side(triangle as usize));
+        }
+        if let Some(body) = own.and_then(|own| self.prepared.objects.iter().find(|object| object.light == Some(own))) {
+            facing[body.first as usize..(body.first + body.count) as usize].fill(0);
         }
         facing
     }

@@ -171,10 +171,11 @@ impl<'a> ScanLine<'a> {
         let casters = Casters::new(prepared, if shadows { triangles.clone() } else { Vec::new() }, groups);
         let samples = prepared.settings.light.samples.max(1);
         let mut lamps = Vec::new();
-        for (source, (_, light)) in appearance.sources.iter().enumerate().filter(|_| solution.is_none()) {
+        for (source, (number, light)) in appearance.sources.iter().enumerate().filter(|_| solution.is_none()) {
             for point in light.points(samples) {
                 let position = point.at.map_or(LightPosition::Direction(point.towards), LightPosition::Point);
-                lamps.push(LampPoint { source, point, position });
+                let light = Some(*number as u32).filter(|_| *number < prepared.lights.len());
+                lamps.push(LampPoint { source, light, point, position });
             }
         }
         let sky_light = if solution.is_none() { SkyLight::new(appearance) } else { None };
@@ -207,7 +208,7 @@ impl<'a> ScanLine<'a> {
             return Vec::new();
         }
         let groups = self.group_transmittance.len();
-        let shadow = |lamp: &LampPoint| Shadow::new(&self.casters, lamp.position, screen, facets, reach, bands, groups);
+        let shadow = |lamp: &LampPoint| Shadow::new(&self.casters, *lamp, screen, facets, reach, bands, groups);
         self.lamps.par_iter().map(shadow).collect()
     }
 

@@ -472,10 +472,14 @@ impl<'a> Shader<'a> {
         context: &ShadingContext<'_>,
     ) -> Channels {
         let PixelInteraction { element, bsdf, .. } = interaction;
-        let mut own = bsdf.emission.as_ref().map_or(Channels::ZERO, |emission| emission.of(context.wavelength_set));
+        let prepared = self.appearance.prepared;
+        let (object, material) =
+            (prepared.object_of[interaction.triangle as usize], prepared.material_number(interaction.triangle));
+        let emission = self.appearance.emission(object, material, element.outside, context.wavelength_set);
+        let mut own = emission.map_or(Channels::ZERO, |(emission, _)| emission);
         if let Some(solution) = self.solution {
             // Elements of flat triangles are moved from pixel to pixel without their weights.
-            let weights = weights(self.appearance.prepared.corners(interaction.triangle), element.position);
+            let weights = weights(prepared.corners(interaction.triangle), element.position);
             let irradiance = solution.irradiance(interaction.triangle, element.outside, weights, Light::All);
             return own + diffuse_albedo(bsdf, context.wavelength_set, context.texture_values) * irradiance * FRAC_1_PI;
         }
@@ -503,7 +507,13 @@ impl<'a> Shader<'a> {
     fn lights(&self, interaction: &PixelInteraction<'a>) -> impl Iterator<Item = LampContribution> {
         let answers = self.solution.is_none() && interaction.bsdf.has_non_delta();
         let lamps = if answers { self.lamps } else { &[] };
-        lamps.iter().enumerate().map(|(number, lamp)| self.between(number, lamp, interaction))
+        let own = self.appearance.prepared.object(interaction.triangle).light;
+        let is_other = move |lamp: &LampPoint| own.is_none() || lamp.light != own;
+        lamps
+            .iter()
+            .enumerate()
+            .filter(move |(_, lamp)| is_other(lamp))
+            .map(|(number, lamp)| self.between(number, lamp, interaction))
     }
 
     /// The radiance that a lamp adds where nothing occludes it.

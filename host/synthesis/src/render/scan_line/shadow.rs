@@ -10,7 +10,7 @@
 
 use super::casters::{Casters, Silhouette};
 use super::enclosed::ShadowVolumes;
-use super::lamp::LightPosition;
+use super::lamp::{LampPoint, LightPosition};
 use super::reach::Reach;
 use super::screen::{ClipCorner, ClippedPolygon, MOST_CORNERS, Screen, ScreenPoint};
 use super::sorted_groups::SortedGroups;
@@ -49,17 +49,18 @@ pub(super) struct Shadow {
 }
 
 impl Shadow {
-    /// - `lines`: of a band; `bands`: how many there are. `groups`: of casters.
+    /// - `own`: the light of the scene that it is, if it is one. `lines`: of a band; `bands`: how many there are. `groups`:
+    ///   of casters.
     pub(super) fn new(
         casters: &Casters<'_>,
-        light: LightPosition,
+        LampPoint { position: light, light: own, .. }: LampPoint,
         screen: &Screen,
         facets: &ScreenTriangles<'_>,
         reach: &Reach<'_>,
         [lines, bands]: [usize; 2],
         groups: usize,
     ) -> Shadow {
-        let facing = casters.facing(&light);
+        let facing = casters.facing(&light, own);
         let silhouettes = casters.silhouettes(&facing);
         let start = casters.start(&light, screen.viewpoint);
         let start = start.map_or(vec![0; groups], |start| {

@@ -274,7 +274,7 @@ fn points_are_in_shadow_volumes_where_rays_to_the_light_are_stopped() {
     ];
     let mut in_shadow = 0;
     for light in lights {
-        let facing = casters.facing(&light);
+        let facing = casters.facing(&light, None);
         let silhouettes = casters.silhouettes(&facing);
         let enclosed = ShadowVolumes::new(&casters, light, &facing, &silhouettes, 1).sorted();
         for _ in 0..points {

@@ -165,7 +165,8 @@ impl TileShading<'_> {
     /// The colours of a place of a triangle, as a display gets them.
     fn colors(&self, triangle: u32, weights: [f64; 3]) -> Colors {
         let Appearance { prepared, wavelengths, .. } = self.appearance;
-        let bsdf = self.appearance.bsdf(prepared.object_of[triangle as usize], prepared.material_number(triangle));
+        let (object, material) = (prepared.object_of[triangle as usize], prepared.material_number(triangle));
+        let bsdf = self.appearance.bsdf(object, material);
         let mixture = bsdf
             .is_textured()
             .then(|| bsdf.texture_mixture(&prepared.texture_place(triangle, weights, Default::default())));
@@ -174,14 +175,17 @@ impl TileShading<'_> {
         let mut seen = [DVec3::ZERO; 2];
         let sets = wavelengths.count();
         for wavelength_set in 0..sets {
-            let own = bsdf.emission.as_ref().map_or(Channels::ZERO, |emission| emission.of(wavelength_set));
+            let own = [true, false].map(|outside| {
+                let emission = self.appearance.emission(object, material, outside, wavelength_set);
+                emission.map_or(Channels::ZERO, |(emission, _)| emission)
+            });
             let texture_values = mixture.as_ref().map(|mixture| mixture.at(wavelength_set));
             let reflectance = diffuse_albedo(
                 bsdf,
                 wavelength_set,
                 texture_values.as_ref().map_or(&[], |painting| painting.as_slice()),
             );
-            for (seen, irradiance) in seen.iter_mut().zip(irradiance) {
+            for ((seen, irradiance), own) in seen.iter_mut().zip(irradiance).zip(own) {
                 *seen += wavelengths.to_srgb(wavelength_set, own + reflectance * irradiance * FRAC_1_PI);
             }
         }

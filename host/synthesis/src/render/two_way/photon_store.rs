@@ -12,6 +12,7 @@ use super::{BatchResult, CHUNK, PathBatch};
 use crate::color::{Channels, Color, LANES, Origin};
 use crate::database::{DatabaseError, PhotonBlock, Record, RecordContent, RecordKind, Store, StoredPhotons};
 use crate::encoding::{Integers, encode_into};
+use crate::illumination::Light;
 use crate::illumination::optics::Interreflection;
 use crate::render::world::World;
 use crate::scene::{ImageSettings, LightSettings, PhotonSettings, Prepared, RadiositySettings, Scene, Settings};
@@ -91,7 +92,13 @@ impl PhotonStore {
         Store::open_to_write(path)?;
         let mut dark = scene.clone();
         dark.camera = None;
-        dark.lights.clear();
+        // Of lamps, what they reflect stays.
+        dark.lights.retain(|light| light.body().is_some());
+        for light in &mut dark.lights {
+            if let Light::Lamp { radiance, .. } = light {
+                *radiance = Color::BLACK;
+            }
+        }
         for material in dark.objects.iter_mut().filter_map(|object| object.material.as_mut()) {
             material.emission = Color::grey(0.0);
         }
@@ -134,12 +141,13 @@ impl PhotonStore {
         let kept: Vec<bool> = (0..prepared.objects.len()).map(keeps).collect();
         let ways = (appearance.wavelengths.is_spectral(), appearance.curved, appearance.exact, appearance.has_passable);
         sum.add(&(self.scene, number as u64, pilot, kept, ways));
-        match appearance.emitter(lamp.source) {
-            None => sum.add(&prepared.lights[number]),
-            Some((object, material)) => {
+        match (prepared.lights.get(number), appearance.emitter(lamp.source)) {
+            (Some(light), _) => sum.add(light),
+            (None, Some((object, material))) => {
                 let material = &prepared.objects[object as usize].materials[material as usize];
                 sum.add(&(object, &material.emission));
             }
+            (None, None) => {}
         }
         format!("{}-{:032x}", self.prefix(), sum.value())
     }

@@ -125,7 +125,7 @@ impl<'a> Appearance<'a> {
         self.emitters.iter().find(|(_, emitted)| *emitted == source).map(|(emitter, _)| *emitter)
     }
 
-    /// Objects that emit are lights, too.
+    /// Objects that emit are lights, too; the bodies of lamps emit what these do.
     fn add_emitters(&mut self, plan: &Plan) {
         let prepared = self.prepared;
         for (index, object) in prepared.objects.iter().enumerate().filter(|(index, _)| plan.includes_object(*index)) {
@@ -138,6 +138,12 @@ impl<'a> Appearance<'a> {
                     self.emitters.push(((index as u32, number as u32), self.sources.len()));
                     self.sources.push((prepared.lights.len() + self.emitters.len() - 1, source));
                 }
+            }
+        }
+        for (index, object) in prepared.objects.iter().enumerate() {
+            let Some(light) = object.light else { continue };
+            if let Some(source) = self.sources.iter().position(|(number, _)| *number == light as usize) {
+                self.emitters.push(((index as u32, 0), source));
             }
         }
     }
@@ -194,17 +200,25 @@ impl<'a> Appearance<'a> {
         nearest
     }
 
-    /// The light that a material emits; which of the lights it is, if any.
+    /// The radiance that a side of an object emits; which of the lights it is, if any.
     pub(in crate::render) fn emission(
         &self,
         object: u32,
         material: u32,
+        is_outside: bool,
         wavelength_set: usize,
     ) -> Option<(Channels, Option<usize>)> {
-        let emission = self.bsdf(object, material).emission.as_ref()?.of(wavelength_set);
+        let own = self.bsdf(object, material).emission.as_ref();
+        if own.is_none() && self.prepared.objects[object as usize].light.is_none() {
+            return None;
+        }
         let key = (object, material);
-        let index = self.emitters.iter().find(|(emitter, _)| *emitter == key).map(|(_, index)| *index);
-        Some((emission, index))
+        match self.emitters.iter().find(|(emitter, _)| *emitter == key) {
+            Some(&(_, index)) => {
+                Some((self.sources[index].1.emission_on_object(is_outside, wavelength_set), Some(index)))
+            }
+            None => own.map(|emission| (emission.of(wavelength_set), None)),
+        }
     }
 }
 

@@ -239,11 +239,13 @@ impl<'a> World<'a> {
         wavelength_set: usize,
         part: impl Fn(&LightSource, f64) -> f64,
     ) -> Option<(Channels, f64)> {
-        let (emission, index) = self.appearance.emission(interaction.object, interaction.material, wavelength_set)?;
-        let cosine = towards.dot(interaction.element.face);
+        let SurfaceInteraction { object, material, element, depth, .. } = interaction;
+        let (emission, index) = self.appearance.emission(*object, *material, element.outside, wavelength_set)?;
+        let cosine = towards.dot(element.face);
         let counted = |index: usize| {
             let source = &self.appearance.sources[index].1;
-            part(source, source.pdf_on_triangle(interaction.distance, cosine))
+            let from = element.position - towards * *depth;
+            part(source, source.pdf_on_object(from, towards, interaction.distance, cosine))
         };
         Some((emission, index.map_or(1.0, counted)))
     }
