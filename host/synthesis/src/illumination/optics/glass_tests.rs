@@ -87,6 +87,22 @@ fn rough_glass_loses_no_light_from_either_side() {
 }
 
 #[test]
+fn smooth_glass_loses_no_light_from_either_side() {
+    for index in [1.1, 1.5, 3.0] {
+        let lobe = glass(index, 0.0, FacetForm::default());
+        for [before, behind] in [[1.0, index], [index, 1.0]] {
+            for degrees in [0.0, 20.0, 45.0, 60.0, 89.0] {
+                let context = context(degrees, before, behind);
+                let gained = (behind / before).powi(2);
+                let sent = lobe.specular_samples(&context).into_iter().flatten();
+                let all: f64 = sent.map(|sent| sent.weight.0[0] * if sent.light.z < 0.0 { gained } else { 1.0 }).sum();
+                assert!((all - 1.0).abs() < 1e-12, "{index} from {before} at {degrees}: {all}");
+            }
+        }
+    }
+}
+
+#[test]
 fn what_is_lost_and_where_it_leaves_are_those_of_random_walks() {
     // Of 200,000 walks on a surface of GGX (Heitz, Hanika, d'Eon and Dachsbacher 2016), light from all around: roughness,
     // index; lost from outside and from inside; of that the part that goes through, from outside and from inside.

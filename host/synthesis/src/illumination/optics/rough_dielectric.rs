@@ -215,3 +215,183 @@ impl Lobe for RoughDielectric {
         reflected(context, context.view.z)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::InterfaceIndices;
+    use super::*;
+    use crate::illumination::distribution::SlopeDistribution;
+    use crate::numeric::cubature::{GAUSS, unit_square};
+    use crate::numeric::sampling::RandomStream;
+    use glam::DVec2;
+    use rayon::prelude::*;
+    use std::f64::consts::TAU;
+
+    fn context(degrees: f64, before: f64, behind: f64) -> ShadingContext<'static> {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let indices = InterfaceIndices {
+            before: Channels::splat(before),
+            behind: Channels::splat(behind),
+            inside: before > behind,
+        };
+        ShadingContext { view: DVec3::new(sin, 0.0, cos), wavelength_set: 0, indices, lane: 0, texture_values: &[] }
+    }
+
+    /// The light of an even sky on both sides that comes to a viewer, over the square of the index: of one reflection or
+    /// refraction by cubature over the facets that the viewer sees, however narrow the lobe is, and of further ones by
+    /// cubature over cosines that gather at the horizon.
+    fn furnace(surface: &RoughDielectric, context: &ShadingContext) -> f64 {
+        let (view, facets) = (context.view, &surface.facets);
+        let gained = (context.indices.behind.0[0] / context.indices.before.0[0]).powi(2);
+        let sent = |light: DVec3, facet: DVec3| {
+            let density = facets.normal_pdf(view, facet) * surface.jacobian(context, light, facet, 0);
+            let sent = surface.once(context, light).0[0] * light.z.abs() / density;
+            if light.z < 0.0 { sent * gained } else { sent }
+        };
+        let once = |[x, y]: [f64; 2]| {
+            // One half of the directions is the mirror image of the other.
+            let Some(facet) = facets.normal(view, [x, 0.5 * y]) else { return 0.0 };
+            let cosine = facet.dot(view);
+            let mirrored = Some(facet * (2.0 * cosine) - view).filter(|light| light.z > 0.0);
+            let refracted = interface(context, 0).and_then(|surface| surface.refracted(view, facet));
+            let refracted = refracted.filter(|light| light.z < 0.0);
+            [mirrored, refracted].into_iter().flatten().map(|light| sent(light.normalize(), facet)).sum()
+        };
+        let losses = surface.losses.as_deref().expect("facets that send light on");
+        let parts = 400;
+        let further: f64 = (0..parts)
+            .flat_map(|part| GAUSS.map(|(at, weight)| ((f64::from(part) + at) / f64::from(parts), weight)))
+            .map(|(root, weight)| {
+                let cosine = root.powi(4);
+                let light = DVec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
+                let above = surface.further(losses, context, light).0[0];
+                let below = surface.further(losses, context, -light).0[0] * gained;
+                (above + below) * cosine * TAU * 4.0 * root.powi(3) * weight / f64::from(parts)
+            })
+            .sum();
+        unit_square(once, 1e-5, 30_000).value + further
+    }
+
+    fn ggx(roughness: f64) -> RoughDielectric {
+        RoughDielectric::new(RoughFacets::Slopes(SlopeDistribution::Ggx, DVec2::splat(roughness)), true, true)
+    }
+
+    /// Contexts from both sides.
+    fn contexts(index: f64, degrees: &[f64]) -> impl Iterator<Item = ShadingContext<'static>> {
+        let sides = [[1.0, index], [index, 1.0]];
+        sides.into_iter().flat_map(move |[before, behind]| degrees.iter().map(move |d| context(*d, before, behind)))
+    }
+
+    #[test]
+    fn glass_of_little_roughness_loses_no_light_from_either_side() {
+        let everywhere = [1.1, 1.5, 3.0].into_iter().flat_map(|index| [(index, 1e-3), (index, 0.01), (index, 0.05)]);
+        let cases: Vec<(f64, f64)> = everywhere.chain([(1.5, 1e-6), (1.5, 0.03), (1.5, 0.1)]).collect();
+        cases.par_iter().for_each(|(index, roughness)| {
+            let surface = ggx(*roughness);
+            for context in contexts(*index, &[0.0, 45.0, 80.0, 89.0]) {
+                let all = furnace(&surface, &context);
+                assert!((all - 1.0).abs() < 1e-3, "{index} {roughness}: {} {:?}: {all}", context.view, context.indices);
+            }
+        });
+    }
+
+    #[test]
+    fn light_goes_to_and_fro_alike_within_narrow_lobes() {
+        let mut stream = RandomStream::new(2, 9);
+        for roughness in [1e-4, 1e-3, 0.01, 0.1] {
+            let surface = ggx(roughness);
+            for context in contexts(1.5, &[10.0, 40.0, 70.0, 85.0]) {
+                for _ in 0..50 {
+                    // Where it is sampled, a lobe is not nothing.
+                    let Some(BsdfSample { light, .. }) = surface.sample(&context, stream.uniform(), stream.point())
+                    else {
+                        continue;
+                    };
+                    let InterfaceIndices { before, behind, inside } = context.indices;
+                    let view = DVec3::new(light.x, light.y, light.z.abs());
+                    let (back, other, squares) = if light.z > 0.0 {
+                        (ShadingContext { view, ..context }, context.view, [1.0; 2])
+                    } else {
+                        let indices = InterfaceIndices { before: behind, behind: before, inside: !inside };
+                        let other = DVec3::new(context.view.x, context.view.y, -context.view.z);
+                        (ShadingContext { view, indices, ..context }, other, [behind.0[0], before.0[0]])
+                    };
+                    let there = surface.value(&context, light).0[0] * squares[0] * squares[0];
+                    let back = surface.value(&back, other).0[0] * squares[1] * squares[1];
+                    assert!((there / back - 1.0).abs() < 1e-6, "{roughness} {} {light}: {there} {back}", context.view);
+                }
+            }
+        }
+    }
+
+    /// Bins along each side of the square of slopes.
+    const BINS: usize = 10;
+    /// The side of a bin.
+    const SIDE: f64 = 2.0 / BINS as f64;
+
+    /// The place in a square of a slope over the roughness, one coordinate of it, and the slope at such a place.
+    fn squeezed(slope: f64) -> f64 {
+        slope / (1.0 + slope * slope).sqrt()
+    }
+
+    fn stretched(place: f64) -> f64 {
+        place / (1.0 - place * place).max(1e-30).sqrt()
+    }
+
+    #[test]
+    fn samples_of_narrow_lobes_follow_their_pdf() {
+        let count = 20_000;
+        for roughness in [1e-4, 0.03] {
+            let surface = ggx(roughness);
+            for context in contexts(1.5, &[10.0, 70.0]) {
+                let mut stream = RandomStream::new(4, 1);
+                // Samples by the slopes of their facets, over the roughness: of reflected light and of refracted.
+                let mut found = vec![0.0; 2 * BINS * BINS];
+                for _ in 0..count {
+                    let Some(BsdfSample { light, .. }) = surface.sample(&context, stream.uniform(), stream.point())
+                    else {
+                        continue;
+                    };
+                    let Some(facet) = surface.facet(&context, light, 0) else { continue };
+                    let bin = |slope: f64| (((squeezed(slope / roughness) + 1.0) / SIDE) as usize).min(BINS - 1);
+                    let [x, y] = [bin(facet.x / facet.z), bin(facet.y / facet.z)];
+                    found[(usize::from(light.z < 0.0) * BINS + y) * BINS + x] += 1.0;
+                }
+                let density = |is_through: bool, [x, y]: [f64; 2]| {
+                    let facet = DVec3::new(stretched(x) * roughness, stretched(y) * roughness, 1.0).normalize();
+                    let cosine = facet.dot(context.view);
+                    let light = match is_through {
+                        false => Some(facet * (2.0 * cosine) - context.view).filter(|light| light.z > 0.0),
+                        true => interface(&context, 0).and_then(|surface| surface.refracted(context.view, facet)),
+                    };
+                    let light = light.filter(|light| cosine > 0.0 && (light.z < 0.0) == is_through)?;
+                    // From solid angles of light to those of facets, to slopes, to the square.
+                    let of_facets = surface.pdf(&context, light) / surface.jacobian(&context, light, facet, 0);
+                    let stretch = [x, y].map(|place| roughness * (1.0 - place * place).powf(-1.5));
+                    Some(of_facets * facet.z.powi(3) * stretch[0] * stretch[1])
+                };
+                let (mut square, mut freedom, mut rest) = (0.0, 0.0, [f64::from(count); 2]);
+                for (bin, found) in found.iter().enumerate() {
+                    let [x, y] = [bin % BINS, bin / BINS % BINS].map(|place| place as f64 * SIDE - 1.0);
+                    let at = |[u, v]: [f64; 2]| [x + u * SIDE, y + v * SIDE];
+                    let term = |uv: [f64; 2]| density(bin >= BINS * BINS, at(uv)).unwrap_or(0.0);
+                    let expected = unit_square(term, 1e-4, 2_000).value * SIDE * SIDE * f64::from(count);
+                    if expected >= 8.0 {
+                        square += (found - expected).powi(2) / expected;
+                        freedom += 1.0;
+                        rest = [rest[0] - found, rest[1] - expected];
+                    }
+                }
+                square += (rest[0] - rest[1]).powi(2) / rest[1].max(8.0);
+                // By Wilson and Hilferty the third root is about normal.
+                let variance: f64 = 2.0 / (9.0 * freedom);
+                let deviations = ((square / freedom).cbrt() - (1.0 - variance)) / variance.sqrt();
+                assert!(
+                    freedom > 10.0 && deviations < 5.0 && rest[1] > -8.0,
+                    "{roughness} {}: {deviations}, {freedom} bins, left {rest:?}",
+                    context.view
+                );
+            }
+        }
+    }
+}
