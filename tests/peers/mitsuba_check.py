@@ -106,6 +106,27 @@ def planes():
     }
 
 
+def lamps():
+    def shining(shape, bsdf, *color):
+        return dict(shape, bsdf={"type": "twosided", "bsdf": bsdf}, emitter={"type": "area", "radiance": rgb(*color)})
+    corner, across, up = np.array([0.2, -0.95, -0.3]), np.array([1.2, 0, -0.5]), np.array([0, 1.6, 0])
+    front = np.cross(across, up)
+    frame = np.eye(4)
+    frame[:3] = np.column_stack([across / 2, up / 2, front / np.linalg.norm(front), corner + (across + up) / 2])
+    floor = mi.ScalarTransform4f().translate([0, -1, 0]).rotate([1, 0, 0], -90).scale(4)
+    disc = mi.ScalarTransform4f().translate([0.3, 2.6, 1]).rotate([1, 0, 0], 90).scale([0.9, 0.9, 1])
+    mirror = {"type": "conductor", "material": "none", "specular_reflectance": rgb(0.8, 0.8, 0.8)}
+    return {
+        "type": "scene", "integrator": {"type": "path", "max_depth": 31, "rr_depth": 40},
+        "sensor": sensor([0, 0.8, 5.5], 36, 64, 64),
+        "floor": {"type": "rectangle", "to_world": floor, "bsdf": diffuse(0.5, 0.5, 0.5)},
+        "ball": {"type": "sphere", "center": [-0.75, -0.3, 0], "radius": 0.7, "bsdf": diffuse(0.8, 0.8, 0.8),
+                 "emitter": {"type": "area", "radiance": rgb(0.4, 0.3, 0.2)}},
+        "mirror": shining({"type": "rectangle", "to_world": mi.ScalarTransform4f(frame)}, mirror, 0.1, 0.12, 0.2),
+        "disc": shining({"type": "disk", "to_world": disc}, diffuse(0.6, 0.6, 0.6), 4, 4, 4),
+    }
+
+
 # Name, script, what it is told, variant of Mitsuba, and its scene.
 CASES = [
     ("direct light in a box", "box.rhai", {}, "scalar_rgb", lambda: box(False)),
@@ -116,6 +137,7 @@ CASES = [
     ("rough copper sphere, spectral", "spheres.rhai", {"which": "rough copper"}, "scalar_spectral",
      lambda: spheres(dict(copper(), type="roughconductor", distribution="beckmann", alpha=0.3), True)),
     ("textured planes", "planes.rhai", {}, "scalar_rgb", planes),
+    ("lamps that reflect", "lamps.rhai", {}, "scalar_rgb", lamps),
 ]
 
 

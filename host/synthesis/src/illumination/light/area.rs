@@ -83,11 +83,11 @@ impl Emitter for AreaLight {
     }
 
     fn pdf_on_object(&self, from: DVec3, towards: DVec3, distance: f64, _: f64) -> f64 {
-        self.patch.pdf(from, towards, distance)
+        if self.has_body { self.patch.pdf(from, towards, distance) } else { 0.0 }
     }
 
     fn emission_on_object(&self, is_outside: bool, wavelength_set: usize) -> Channels {
-        if is_outside { self.strength.of(wavelength_set) } else { Channels::ZERO }
+        if self.has_body && is_outside { self.strength.of(wavelength_set) } else { Channels::ZERO }
     }
 }
 
