@@ -2,8 +2,10 @@
 //! back.
 
 use super::super::context::ShadingContext;
+use super::super::interface_losses::{InterfaceLosses, LossesOfRatio};
 use super::albedo::{DirectionalAlbedos, InterfaceSide};
-use super::surface::{PrincipledSurface, PrincipledValues};
+use super::surface::{PrincipledSurface, PrincipledValues, over};
+use glam::DVec3;
 
 /// The part of all light that is lost when facets have reflected and refracted once.
 #[derive(Clone, Copy)]
@@ -50,6 +52,38 @@ impl PrincipledSurface {
         MissingEnergy { opaque: opaque.max(0.0), metal: metal.max(0.0), clear: clear.max(0.0) }
     }
 
+    /// Diffuse value of what a transparent one misses, from the side of the light; its colour, and how radiance changes
+    /// on the way through, are left out.
+    ///
+    /// Beside other media than air a coat is taken for none.
+    pub(super) fn clear_spread(&self, at: &PrincipledValues, context: &ShadingContext, light: DVec3) -> f64 {
+        let (view, cosine) = (context.view.z, light.z.abs());
+        if self.is_alone(context, at.side) {
+            let own = self.mean_missing(at, at.side).clear;
+            let [stays, goes] = self.division(at, own);
+            let from = self.missing(at, at.side, view).clear;
+            let (part, side) = if light.z > 0.0 { (stays, at.side) } else { (goes, self.beyond(at)) };
+            let to = self.missing(at, side, cosine).clear;
+            return part * over(from * to, self.mean_missing(at, side).clear);
+        }
+        let Some(losses) = &self.beside_others else { return 0.0 };
+        let ([own, other], goes) = between(losses, context);
+        let (part, side) = if light.z > 0.0 { (1.0 - goes, own) } else { (goes, other) };
+        part * over(own.lost(view) * side.lost(cosine), side.mean())
+    }
+
+    /// The parts of what a transparent one misses that stay on the side of the viewer, and that go through.
+    pub(super) fn clear_shares(&self, at: &PrincipledValues, context: &ShadingContext) -> [f64; 2] {
+        if self.is_alone(context, at.side) {
+            let missing = self.missing(at, at.side, context.view.z).clear;
+            return self.division(at, self.mean_missing(at, at.side).clear).map(|part| part * missing);
+        }
+        let Some(losses) = &self.beside_others else { return [0.0; 2] };
+        let ([own, _], goes) = between(losses, context);
+        let lost = own.lost(context.view.z);
+        [(1.0 - goes) * lost, goes * lost]
+    }
+
     /// Whether the media on both sides are those for which the tables were made.
     pub(super) fn is_alone(&self, context: &ShadingContext, seen: InterfaceSide) -> bool {
         let [before, behind] = [context.indices.before.0[0], context.indices.behind.0[0]];
@@ -81,4 +115,11 @@ impl PrincipledSurface {
         let goes = if own > 0.0 { (1.0 - fresnel) * (other / own).min(1.0) } else { 0.0 };
         [1.0 - goes, goes]
     }
+}
+
+/// What facets lose on the side of the viewer and on the other, and the part of it that goes through.
+fn between<'a>(losses: &'a InterfaceLosses, context: &ShadingContext) -> ([LossesOfRatio<'a>; 2], f64) {
+    let [before, behind] = [context.indices.before.0[0], context.indices.behind.0[0]];
+    let [own, other] = [losses.between(before, behind), losses.between(behind, before)];
+    ([own, other], own.part_through(&other, behind / before))
 }

@@ -2,11 +2,12 @@
 
 use super::super::context::{BsdfSample, ShadingContext};
 use super::super::dielectric::{beta, interface, reflected};
+use super::super::interface_losses::InterfaceLosses;
 use super::super::prepared_textures::{PreparedNumber, PreparedPaint};
 use super::albedo::{Albedo, AlbedoInterface, CoatAlbedo, InterfaceSide, pane};
 use super::sheen::Sheen;
 use crate::color::Channels;
-use crate::illumination::distribution::{Distribution, Microfacet, SlopeDistribution};
+use crate::illumination::distribution::{Distribution, Microfacet, RoughFacets, SlopeDistribution};
 use crate::illumination::fresnel::Dielectric;
 use crate::illumination::material::MaterialError;
 use crate::numeric::sampling::cosine_hemisphere;
@@ -36,6 +37,9 @@ pub(in crate::illumination::optics) struct PrincipledSurface {
     coat_surface: Dielectric,
     coat_facets: Option<Microfacet>,
     pub(super) albedo: Albedo,
+    /// What facets lose between other media than those for which the albedo was tabulated; none where light does not go
+    /// through rough ones.
+    pub(super) beside_others: Option<InterfaceLosses>,
 }
 
 /// A part of what it scatters.
@@ -126,6 +130,9 @@ impl PrincipledSurface {
             .then(|| CoatAlbedo::new(AlbedoInterface { roughness: make.coat_roughness, surface: coat_surface }));
         let transmits = make.transmits && !make.thin;
         let albedo = Albedo::new(AlbedoInterface { roughness: make.roughness, surface }, below, transmits);
+        let slopes = make.roughness.filter(|_| transmits).map(DVec2::splat);
+        let beside_others =
+            slopes.map(|slopes| InterfaceLosses::new(RoughFacets::Slopes(SlopeDistribution::Ggx, slopes), true));
         Ok(PrincipledSurface {
             base,
             sheen,
@@ -141,6 +148,7 @@ impl PrincipledSurface {
             coat_surface,
             coat_facets: facets(make.coat_roughness)?,
             albedo,
+            beside_others,
         })
     }
 
@@ -319,23 +327,18 @@ impl PrincipledSurface {
         }
         let ground = at.rim.ground(context.view.z, light.z);
         value = value * (Channels::ONE - at.cloth) + at.cloth * at.base * ((1.0 - at.clear()) * ground);
-        if at.clear() > 0.0 && self.is_alone(context, at.side) {
-            let [stays, _] = self.division(at, mean.clear);
-            value += Channels::splat(at.clear() * stays * over(from.clear * to.clear, mean.clear));
+        if at.clear() > 0.0 {
+            value += Channels::splat(at.clear() * self.clear_spread(at, context, light));
         }
         value
     }
 
     /// Diffuse value of missing energy that comes from the other side.
     fn spread_through(&self, at: &PrincipledValues, context: &ShadingContext, light: DVec3) -> Channels {
-        if at.clear() == 0.0 || !self.is_alone(context, at.side) {
+        if at.clear() == 0.0 {
             return Channels::ZERO;
         }
-        let beyond = self.beyond(at);
-        let [_, goes] = self.division(at, self.mean_missing(at, at.side).clear);
-        let from = self.missing(at, at.side, context.view.z).clear;
-        let to = self.missing(at, beyond, -light.z).clear;
-        let part = at.clear() * goes * over(from * to, self.mean_missing(at, beyond).clear);
+        let part = at.clear() * self.clear_spread(at, context, light);
         if self.thin { at.base * part } else { at.base.map(f64::sqrt) * (part * radiance_scale(context)) }
     }
 
@@ -413,11 +416,11 @@ impl PrincipledSurface {
         let color = at.base.max();
         let cloth = at.cloth.max() * (1.0 - at.clear()) * (1.0 - at.rim.albedo(context.view.z));
         let above = at.opaque() * color * missing.opaque + at.metallic * further * missing.metal + cloth * color;
-        if at.clear() == 0.0 || !self.is_alone(context, at.side) {
+        if at.clear() == 0.0 {
             return [above, 0.0];
         }
-        let [stays, goes] = self.division(at, self.mean_missing(at, at.side).clear);
-        [above + at.clear() * stays * missing.clear, at.clear() * goes * missing.clear * color.sqrt()]
+        let [stays, goes] = self.clear_shares(at, context);
+        [above + at.clear() * stays, at.clear() * goes * color.sqrt()]
     }
 
     /// Specular samples of a part: what is reflected, and what comes through.
@@ -526,7 +529,7 @@ impl PrincipledSurface {
 }
 
 /// A value over π and a mean; 0 where there is nothing.
-fn over(value: f64, mean: f64) -> f64 {
+pub(super) fn over(value: f64, mean: f64) -> f64 {
     if mean > 1e-9 { value * FRAC_1_PI / mean } else { 0.0 }
 }
 

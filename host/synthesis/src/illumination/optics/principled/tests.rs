@@ -59,7 +59,12 @@ fn surface(numbers: &Numbers, base: f64) -> PrincipledSurface {
 }
 
 fn context(numbers: &Numbers, view: DVec3, inside: bool) -> ShadingContext<'static> {
-    let [air, body] = [1.0, if numbers.thin { 1.0 } else { numbers.index }].map(Channels::splat);
+    beside(1.0, numbers, view, inside)
+}
+
+/// A context where the body is in a medium of an index.
+fn beside(medium: f64, numbers: &Numbers, view: DVec3, inside: bool) -> ShadingContext<'static> {
+    let [air, body] = [medium, if numbers.thin { medium } else { numbers.index }].map(Channels::splat);
     let side = match inside {
         false => InterfaceIndices { before: air, behind: body, inside },
         true => InterfaceIndices { before: body, behind: air, inside },
@@ -168,6 +173,24 @@ fn a_white_one_returns_all_light_whatever_its_numbers_are() {
 }
 
 #[test]
+fn a_white_body_returns_all_light_beside_other_media_than_air() {
+    let cases = [(0.4, 1.5, 1.33), (0.7, 1.5, 1.33), (1.0, 1.5, 1.33), (0.6, 1.2, 1.6), (0.8, 2.4, 1.33)];
+    cases.par_iter().for_each(|(roughness, index, other)| {
+        let numbers = Numbers { roughness: *roughness, index: *index, transmission: 1.0, ..PLAIN };
+        let white = surface(&numbers, 1.0);
+        for inside in [false, true] {
+            for degrees in [0.0, 40.0, 75.0, 89.0] {
+                let found = furnace(&white, &beside(*other, &numbers, at(degrees), inside));
+                assert!(
+                    (found - 1.0).abs() < 1e-3,
+                    "{numbers:?} beside {other} at {degrees}, inside: {inside}: {found}"
+                );
+            }
+        }
+    });
+}
+
+#[test]
 fn a_grey_one_never_gains() {
     for numbers in [
         PLAIN,
@@ -210,6 +233,31 @@ fn light_to_and_fro_is_the_same() {
             }
             assert!((there - back).abs() <= 1e-9 * there.abs().max(1e-6), "{numbers:?}: {there} {back}");
         }
+    }
+}
+
+#[test]
+fn light_to_and_fro_is_the_same_beside_other_media() {
+    let mut stream = RandomStream::new(6, 8);
+    let turned = |way: DVec3| DVec3::new(way.x, way.y, -way.z);
+    let numbers = Numbers { transmission: 1.0, roughness: 0.7, ..PLAIN };
+    let (white, medium) = (surface(&numbers, 0.8), 1.33);
+    for _ in 0..60 {
+        let [view, light] = [0; 2].map(|_| sphere(stream.point()));
+        let view = if view.z < 0.0 { turned(view) } else { view };
+        let of = beside(medium, &numbers, view, false);
+        let value = |part, context: &ShadingContext, light| white.value(part, context, light).0[0];
+        let (mut there, mut back) = (0.0, 0.0);
+        for part in [PrincipledPart::Facets, PrincipledPart::Spread] {
+            if light.z > 0.0 {
+                there += value(part, &of, light);
+                back += value(part, &beside(medium, &numbers, light, false), view);
+            } else {
+                there += value(part, &of, light) * numbers.index.powi(2);
+                back += value(part, &beside(medium, &numbers, turned(light), true), turned(view)) * medium.powi(2);
+            }
+        }
+        assert!((there - back).abs() <= 1e-6 * there.abs().max(1e-6), "{view} {light}: {there} {back}");
     }
 }
 
