@@ -4,22 +4,17 @@
 //! light that a cluster receives may be spread over all of it. A smooth piece of a surface of many small triangles is
 //! one element: a cluster that is not divided, a face cluster.
 
-use super::disjoint_sets::DisjointSets;
+use super::face_clusters::face_clusters;
 use super::form_factor::Convex;
 use crate::color::Channels;
 use crate::numeric::triangle;
 use glam::DVec3;
-use rustc_hash::FxHashMap as HashMap;
 use std::ops::{Add, Mul, Range};
 
 /// How much a difference of unit normals counts in clusters, in diagonals of the scene.
 const NORMALS: f64 = 0.35;
 /// A triangle is a sliver if its longest edge is so many times as long as the height on it.
 const SLIVER: f64 = 6.0;
-/// Patches of a face cluster at the least: light over fewer is smoother if each is an element.
-const FEWEST: usize = 4;
-/// The greatest angle of a normal of a face cluster to the mean one, radians.
-const FACING: f64 = 0.35;
 /// Points that stand for a node where visibility is asked for.
 pub(super) const POINTS: usize = 4;
 /// No node.
@@ -182,27 +177,30 @@ impl Hierarchy {
             (low.min(node.middle), high.max(node.middle))
         });
         let scale = NORMALS * low.distance(high);
-        let mut order: Vec<u32> = (0..own.len() as u32).collect();
+        let faces = face_clusters(&own, finest);
+        let of_faces = |faces_of: &[u32]| -> Vec<u32> {
+            faces_of.iter().flat_map(|face| faces[*face as usize].iter().copied()).collect()
+        };
+        let node_of_face = |members: &Vec<u32>| match members[..] {
+            [single] => own[single as usize],
+            _ => cluster(members, &own),
+        };
+        let face: Vec<HierarchyNode> = faces.iter().map(node_of_face).collect();
+        let mut order: Vec<u32> = (0..faces.len() as u32).collect();
         // Breadth first, so that all clusters come before all patches but those that are alone.
         hierarchy.nodes.push(own[0]);
-        let mut waiting = std::collections::VecDeque::from([(0usize, 0..own.len())]);
+        let mut waiting = std::collections::VecDeque::from([(0usize, 0..faces.len())]);
         let mut ranges = Vec::new();
         while let Some((place, range)) = waiting.pop_front() {
             let part = &mut order[range.clone()];
             if let [single] = part {
-                hierarchy.nodes[place] = own[*single as usize];
-                hierarchy.node_of[*single as usize] = place as u32;
+                hierarchy.nodes[place] = face[*single as usize];
+                faces[*single as usize].iter().for_each(|patch| hierarchy.node_of[*patch as usize] = place as u32);
                 ranges.push(range);
                 continue;
             }
-            let all = cluster(part, &own);
-            if part.len() >= FEWEST && all.radius <= finest && all.spread <= FACING && is_one_piece(part, &own) {
-                part.iter().for_each(|patch| hierarchy.node_of[*patch as usize] = place as u32);
-                hierarchy.nodes[place] = all;
-                ranges.push(range);
-                continue;
-            }
-            halve(part, &own, scale);
+            let all = cluster(&of_faces(part), &own);
+            halve(part, &face, scale);
             let child = hierarchy.nodes.len() as u32;
             hierarchy.nodes[place] = HierarchyNode { child, children: 2, ..all };
             hierarchy.nodes.extend([own[0]; 2]);
@@ -210,6 +208,16 @@ impl Hierarchy {
             waiting.extend([(child as usize, range.start..middle), (child as usize + 1, middle..range.end)]);
             ranges.push(range);
         }
+        // From ranges of faces to those of their patches.
+        let mut first = Vec::with_capacity(order.len() + 1);
+        let mut below = 0;
+        for face in &order {
+            first.push(below);
+            below += faces[*face as usize].len();
+        }
+        first.push(below);
+        let order = of_faces(&order);
+        let ranges: Vec<Range<usize>> = ranges.iter().map(|range| first[range.start]..first[range.end]).collect();
         let points = |range: &Range<usize>| representatives(&order[range.clone()], &own);
         hierarchy.cluster_points = ranges.iter().map(points).collect();
         (hierarchy.order, hierarchy.ranges) = (order, ranges);
@@ -375,20 +383,8 @@ fn halve(part: &mut [u32], own: &[HierarchyNode], scale: f64) {
     part.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)).then(a.cmp(b)));
 }
 
-/// Whether triangles are connected by their corners.
-fn is_one_piece(part: &[u32], own: &[HierarchyNode]) -> bool {
-    let mut pieces = DisjointSets::new(part.len());
-    let mut first: HashMap<[u64; 3], u32> = HashMap::default();
-    for (place, member) in (0..).zip(part) {
-        for corner in own[*member as usize].corners {
-            let other = *first.entry(key(corner)).or_insert(place);
-            pieces.join(place, other);
-        }
-    }
-    (0..part.len() as u32).all(|place| pieces.root(place) == 0)
-}
-
-fn cluster(part: &[u32], own: &[HierarchyNode]) -> HierarchyNode {
+/// The node of a cluster of some patches.
+pub(super) fn cluster(part: &[u32], own: &[HierarchyNode]) -> HierarchyNode {
     let members = || part.iter().map(|member| &own[*member as usize]);
     let area: f64 = members().map(|node| node.area).sum();
     let middle = members().map(|node| node.middle * node.area).sum::<DVec3>() / area;

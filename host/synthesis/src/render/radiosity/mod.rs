@@ -37,6 +37,7 @@ mod refinement;
 mod gather;
 mod faces;
 mod form_factor;
+mod face_clusters;
 mod hierarchy;
 mod report;
 mod solver;

@@ -1,0 +1,143 @@
+//! Face clusters: smooth pieces of surfaces of many small triangles, each of which is one element.
+//!
+//! At first each triangle is a piece. Neighbours that are each other's best partner become one piece, as long as a piece
+//! is small and nearly flat, until none are left.
+//!
+//! # Source
+//! Face clusters: Willmott, Heckbert and Garland 1999. Mutually best partners: Borůvka 1926.
+
+use super::hierarchy::{HierarchyNode, cluster, key};
+use rayon::prelude::*;
+use rustc_hash::FxHashMap as HashMap;
+
+/// Patches of a face cluster at the least: light over fewer is smoother if each is an element.
+const FEWEST: usize = 4;
+/// The greatest angle of a normal of a face cluster to the mean one, radians.
+const FACING: f64 = 0.35;
+
+/// A piece of surface.
+struct Piece {
+    /// Its patches, and the pieces beside it; in order.
+    members: Vec<u32>,
+    beside: Vec<u32>,
+    /// The piece that it became part of.
+    merged_into: Option<u32>,
+    /// The best piece to be one with, and the cost of that.
+    best: Option<(f64, u32)>,
+    /// Whether the best piece is to be looked for again.
+    is_changed: bool,
+}
+
+/// Divides patches into face clusters and patches that are alone, in the order of their first patches.
+///
+/// - `own`: a node for each patch.
+/// - `finest`: the radius of a face cluster, at the most.
+pub(super) fn face_clusters(own: &[HierarchyNode], finest: f64) -> Vec<Vec<u32>> {
+    let mut pieces: Vec<Piece> = neighbours(own, finest)
+        .into_iter()
+        .enumerate()
+        .map(|(patch, beside)| {
+            let is_changed = !beside.is_empty();
+            Piece { members: vec![patch as u32], beside, merged_into: None, best: None, is_changed }
+        })
+        .collect();
+    let mut changed: Vec<u32> = (0..pieces.len() as u32).filter(|piece| pieces[*piece as usize].is_changed).collect();
+    while !changed.is_empty() {
+        let best: Vec<Option<(f64, u32)>> =
+            changed.par_iter().map(|piece| best_partner(&pieces, *piece, own, finest)).collect();
+        for (piece, best) in changed.iter().zip(best) {
+            let piece = &mut pieces[*piece as usize];
+            (piece.best, piece.is_changed) = (best, false);
+        }
+        let partner = |piece: u32| pieces[piece as usize].best.map(|(_, partner)| partner);
+        let pairs: Vec<[u32; 2]> = changed
+            .iter()
+            .filter_map(|one| {
+                let other = partner(*one)?;
+                // Of two that both changed, the lower tells of them.
+                let is_told = *one < other || !changed.binary_search(&other).is_ok();
+                (is_told && partner(other) == Some(*one)).then_some([*one.min(&other), *one.max(&other)])
+            })
+            .collect();
+        changed.clear();
+        for [kept, gone] in pairs {
+            changed.extend(merge(&mut pieces, kept, gone));
+        }
+        changed.retain(|piece| pieces[*piece as usize].merged_into.is_none());
+        changed.sort_unstable();
+        changed.dedup();
+    }
+    let mut found: Vec<Vec<u32>> = Vec::new();
+    for piece in pieces.into_iter().filter(|piece| piece.merged_into.is_none()) {
+        if piece.members.len() >= FEWEST {
+            found.push(piece.members);
+        } else {
+            found.extend(piece.members.into_iter().map(|patch| vec![patch]));
+        }
+    }
+    found.sort_unstable_by_key(|members| members[0]);
+    found
+}
+
+/// For each patch that is small enough, those that share an edge with it and are, too.
+fn neighbours(own: &[HierarchyNode], finest: f64) -> Vec<Vec<u32>> {
+    let mut at_edge: HashMap<[[u64; 3]; 2], Vec<u32>> = HashMap::default();
+    let mut beside: Vec<Vec<u32>> = vec![Vec::new(); own.len()];
+    for (patch, node) in (0..).zip(own).filter(|(_, node)| node.radius <= finest) {
+        for i in 0..3 {
+            let mut edge = [key(node.corners[i]), key(node.corners[(i + 1) % 3])];
+            edge.sort_unstable();
+            let others = at_edge.entry(edge).or_default();
+            for other in others.iter() {
+                beside[patch as usize].push(*other);
+                beside[*other as usize].push(patch);
+            }
+            others.push(patch);
+        }
+    }
+    beside.par_iter_mut().for_each(|beside| {
+        beside.sort_unstable();
+        beside.dedup();
+    });
+    beside
+}
+
+/// The best piece that one can be one with, and the cost: how large both together are and how far they bend.
+fn best_partner(pieces: &[Piece], piece: u32, own: &[HierarchyNode], finest: f64) -> Option<(f64, u32)> {
+    let Piece { members, beside, .. } = &pieces[piece as usize];
+    let cost = |other: &u32| {
+        // In one order, so that both find the same cost.
+        let (first, second) = if piece < *other { (piece, *other) } else { (*other, piece) };
+        let of = |piece: u32| pieces[piece as usize].members.iter().copied();
+        let both: Vec<u32> = of(first).chain(of(second)).collect();
+        let HierarchyNode { radius, spread, .. } = cluster(&both, own);
+        let is_possible = radius <= finest && spread <= FACING;
+        is_possible.then_some(((radius / finest).powi(2) + (spread / FACING).powi(2), *other))
+    };
+    debug_assert!(!members.is_empty());
+    beside.iter().filter_map(cost).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))
+}
+
+/// Makes two pieces one. Tells which pieces are to look for a partner again.
+fn merge(pieces: &mut [Piece], kept: u32, gone: u32) -> Vec<u32> {
+    let Piece { members, beside, .. } = &mut pieces[gone as usize];
+    let (members, others) = (std::mem::take(members), std::mem::take(beside));
+    pieces[gone as usize].merged_into = Some(kept);
+    for other in others.iter().filter(|other| **other != kept) {
+        let beside = &mut pieces[*other as usize].beside;
+        beside.retain(|piece| *piece != gone);
+        if let Err(place) = beside.binary_search(&kept) {
+            beside.insert(place, kept);
+        }
+    }
+    let piece = &mut pieces[kept as usize];
+    piece.members.extend(members);
+    piece.members.sort_unstable();
+    piece.beside.extend(others);
+    piece.beside.retain(|other| *other != kept && *other != gone);
+    piece.beside.sort_unstable();
+    piece.beside.dedup();
+    let mut changed = piece.beside.clone();
+    changed.push(kept);
+    changed
+}
