@@ -286,8 +286,9 @@ impl Production {
 /// [`ProductionError`]; more polygons than the machine renders are one.
 pub fn tiling(scene: &Scene, threads: Option<NonZeroUsize>, watch: &Watch<'_>) -> Result<Tiling, ProductionError> {
     let mut prepared = Prepared::new(scene)?;
-    // Surfaces out of view send light, too, and come into view.
+    // Surfaces out of view send light, too, and come into view; near ones, too.
     prepared.settings.light.interreflection.count();
+    prepared.settings.radiosity.pixels = 0.0;
     let plan = Plan::new(&prepared, &prepared.view());
     let workers = Workers::new(threads).map_err(RenderError::from)?;
     let tiling = workers.install(|| {

@@ -276,6 +276,11 @@ pub(super) const FUNCTIONS: &[Function] = &[
                 RadiositySettings::DEFAULT.finest,
                 "shortest edge of a patch that is divided, as a part of the diagonal of the scene",
             ),
+            pixels: setting(
+                NumberKind(0.0, 1000.0),
+                RadiositySettings::DEFAULT.pixels,
+                "shortest edge of a patch that is divided, in pixels of the picture, where that is more; 0 for light that is the same in pictures of all sizes",
+            ),
             directions: setting(
                 Integer(1, 4096),
                 RadiositySettings::DEFAULT.directions,
@@ -300,6 +305,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             settings.radiosity = RadiositySettings {
                 error: error.unwrap_or(now.error),
                 finest: finest.unwrap_or(now.finest),
+                pixels: pixels.unwrap_or(now.pixels),
                 directions: directions.unwrap_or(now.directions),
                 tolerance: tolerance.unwrap_or(now.tolerance),
             };

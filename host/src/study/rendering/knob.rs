@@ -302,6 +302,18 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         set: |setup, value| setup.settings.radiosity.finest = value,
     },
     RenderKnob {
+        name: "radiosity_pixels",
+        sets: "pixels below which patches are not divided in radiosity, where that is longer",
+        renderers: RAYS,
+        is_model: false,
+        remodels: false,
+        idle: no_radiosity,
+        values: |base| halved(base, COARSEST_PATCHES).chain([0.0]).collect(),
+        best: |_, _| 0.0,
+        get: |setup| setup.settings.radiosity.pixels,
+        set: |setup, value| setup.settings.radiosity.pixels = value,
+    },
+    RenderKnob {
         name: "radiosity_directions",
         sets: "directions in which each patch of radiosity looks around at the least, by which form factors are balanced",
         renderers: RAYS,

@@ -27,6 +27,8 @@ pub struct Plan {
     objects: Vec<bool>,
     #[serde(skip)]
     lights: Vec<bool>,
+    #[serde(skip)]
+    views: Vec<View>,
 }
 
 /// One line of a plan.
@@ -89,6 +91,7 @@ impl Plan {
             stages: [true; Stage::ALL.len()],
             objects: Vec::new(),
             lights: Vec::new(),
+            views: views.to_vec(),
         };
         let lights: Vec<Decision> = prepared.lights.iter().map(light).collect();
         let facts = stage::Facts::new(prepared, lights.iter().map(|d| d.needed).collect());
@@ -131,6 +134,11 @@ impl Plan {
     /// Whether a light, an index into [`lights`](crate::scene::Contents::lights), is included.
     pub fn includes_light(&self, index: usize) -> bool {
         self.lights.get(index).copied().unwrap_or(true)
+    }
+
+    /// The views for which it is.
+    pub fn views(&self) -> &[View] {
+        &self.views
     }
 
     /// Takes note of how long stages took.

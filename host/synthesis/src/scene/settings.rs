@@ -102,6 +102,9 @@ pub struct RadiositySettings {
     pub error: f64,
     /// Patches are not divided below this length, as a part of the diagonal of the scene, above 0.
     pub finest: f64,
+    /// Patches are not divided below so many pixels of a picture that shows them, 0 and more; it counts where that is more
+    /// than [`finest`](RadiositySettings::finest). By 0, elements are the same for all views and pictures of any size.
+    pub pixels: f64,
     /// Directions in which each patch looks around at the least, 1 and more.
     pub directions: u32,
     /// Error of the solver, as a part of the greatest irradiance, above 0.
@@ -221,10 +224,13 @@ impl LightSettings {
 impl RadiositySettings {
     /// What holds without a word.
     pub const DEFAULT: RadiositySettings =
-        RadiositySettings { error: 0.005, finest: 1.0 / 200.0, directions: 32, tolerance: 1e-6 };
+        RadiositySettings { error: 0.005, finest: 1.0 / 200.0, pixels: 0.5, directions: 32, tolerance: 1e-6 };
 
     fn check(&self) -> Result<(), String> {
         let is_part = |part: f64| part > 0.0 && part.is_finite();
+        if !(self.pixels >= 0.0 && self.pixels.is_finite()) {
+            return Err(format!("elements of {} pixels in radiosity", self.pixels));
+        }
         match is_part(self.error) && is_part(self.finest) && is_part(self.tolerance) && self.directions > 0 {
             true => Ok(()),
             false => Err("a setting of radiosity is not above 0, or not finite".into()),

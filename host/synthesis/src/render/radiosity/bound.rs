@@ -9,8 +9,6 @@ pub(super) struct RefinementBound {
     pub(super) mean: f64,
     /// What the irradiance of a receiver counts as at the least, as a part of the mean.
     pub(super) dimmest: f64,
-    /// No edge is divided that is shorter than twice this.
-    pub(super) finest: f64,
 }
 
 impl RefinementBound {

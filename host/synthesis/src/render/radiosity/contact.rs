@@ -1,6 +1,7 @@
 //! Contacts: where surfaces touch or pass through each other, elements end, so that none is partly inside of something.
 
 use super::hierarchy::{Hierarchy, normal_and_area};
+use super::shortest_edges::ShortestEdges;
 use super::visibility::VisibilityTester;
 use crate::numeric::bounds::Bounds;
 use glam::DVec3;
@@ -258,9 +259,7 @@ fn fan(polygon: &[DVec3]) -> Vec<[DVec3; 3]> {
 impl Hierarchy {
     /// Divides patches so that no line leads through an element, where that can be had with elements as short as the
     /// finest.
-    ///
-    /// - `finest`: a length.
-    pub(super) fn cut(&mut self, contacts: &Contacts, finest: f64) {
+    pub(super) fn cut(&mut self, contacts: &Contacts, edges: &ShortestEdges) {
         let on = |patch: &u32| contacts.on(self.patches[*patch as usize].triangle).to_vec();
         let is_alone = |patch: &u32| self.nodes[self.node_of[*patch as usize] as usize].patch == *patch;
         let alone = (0..self.patches.len() as u32).filter(is_alone);
@@ -269,7 +268,7 @@ impl Hierarchy {
         while let Some((place, mut lines)) = waiting.pop() {
             let node = self.nodes[place as usize];
             lines.retain(|line| contacts.crosses(line, &node.corners, node.normal));
-            let length = node.longest_edge();
+            let (length, finest) = (node.longest_edge(), edges.of(&node));
             let creases = contacts.creases(self.patches[node.patch as usize].triangle);
             let is_at_crease = || creases.iter().any(|line| contacts.touches(line, &node.corners, node.normal));
             if lines.is_empty() {

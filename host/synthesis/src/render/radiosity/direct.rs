@@ -3,6 +3,7 @@
 use super::hierarchy::{HierarchyNode, RadiosityPatch};
 use super::visibility::VisibilityTester;
 use crate::color::Channels;
+use crate::illumination::light::LightSource;
 use crate::numeric::ray::Ray;
 use crate::numeric::sequence::SobolSequence;
 use glam::DVec3;
@@ -163,6 +164,32 @@ impl VisibilityTester<'_> {
         self.light_by(place, shadows, ([LEAST_SAMPLES, LEAST_OF_SKY], 0))
     }
 
+    /// Whether there is any irradiance at a point of an element.
+    pub(super) fn is_lit_at(&self, place: [DVec3; 2], shadows: bool) -> bool {
+        let sources = &self.world.appearance.sources;
+        let is_lit_by = |index: usize| {
+            let (number, source) = &sources[index];
+            let sequence = SobolSequence::new(0, *number as u64);
+            (0..self.samples_of(source, [LEAST_SAMPLES, LEAST_OF_SKY])).any(|sample| {
+                let light = self.sample_light(place, index, sequence.point(sample, 0), shadows);
+                light.is_some_and(|light| light.irradiance.max() > 0.0)
+            })
+        };
+        (0..sources.len()).any(is_lit_by)
+    }
+
+    /// How many light samples a source is asked for.
+    ///
+    /// - `least`: of a light with a size, and of a sky.
+    fn samples_of(&self, source: &LightSource, [of_light, of_sky]: [u32; 2]) -> u32 {
+        let least = self.world.appearance.prepared.settings.light.samples;
+        match source.is_delta() {
+            true => 1,
+            false if source.is_sky() => least.max(of_sky),
+            false => least.max(of_light),
+        }
+    }
+
     /// The irradiance at a point of an element, by few light samples.
     ///
     /// - `turn`: which of several sets of samples.
@@ -174,17 +201,12 @@ impl VisibilityTester<'_> {
         &self,
         [point, normal]: [DVec3; 2],
         shadows: bool,
-        ([of_light, of_sky], turn): ([u32; 2], u32),
+        (least, turn): ([u32; 2], u32),
     ) -> Channels {
         let appearance = &self.world.appearance;
-        let least = appearance.prepared.settings.light.samples;
         let mut sum = Channels::ZERO;
         for (index, (number, source)) in appearance.sources.iter().enumerate() {
-            let mut samples = match source.is_delta() {
-                true => 1,
-                false if source.is_sky() => least.max(of_sky),
-                false => least.max(of_light),
-            };
+            let mut samples = self.samples_of(source, least);
             let most = if source.is_delta() || source.is_sky() { samples } else { MORE * samples };
             let (mut asked, mut seen) = (0, 0);
             // The same points of a light for all elements: their light differs as smoothly as they do.

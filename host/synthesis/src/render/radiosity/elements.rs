@@ -6,6 +6,7 @@ use super::direct::{CornerLight, Exitance, ExternalLight, RandomLight, bend, of_
 use super::exchange::LeafVisibility;
 use super::hierarchy::{Hierarchy, HierarchyNode, NONE, RadiosityPatch, normal_and_area};
 use super::regions::{self, FluxEstimate};
+use super::shortest_edges::ShortestEdges;
 use super::side_elements::SideElements;
 use super::through_openings::LightThroughOpening;
 use super::visibility::VisibilityTester;
@@ -15,6 +16,8 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
+/// The longest edge of an element, in shortest ones.
+pub(super) const COARSEST: f64 = 16.0;
 /// Elements at the most.
 const MOST_ELEMENTS: usize = 2_000_000;
 /// Light through openings is more than corners tell if it is by so many standard errors.
@@ -45,8 +48,8 @@ pub(super) struct Elements<'a> {
     pub(super) least: Vec<f64>,
     /// External light at places of each node.
     pub(super) corner_light: Vec<CornerLight>,
-    /// Elements are divided that are twice as long or longer; or, of each patch, than what it needs beside openings.
-    finest: f64,
+    /// How short edges may be; and, of each patch, how short beside openings.
+    edges: &'a ShortestEdges,
     beside_openings: Vec<f64>,
     exitance: Option<Exitance<'a>>,
     through: &'a [LightThroughOpening],
@@ -75,14 +78,13 @@ impl<'a> Elements<'a> {
     /// Finds the external light of all patches.
     ///
     /// - `through`: light that comes through openings.
-    /// - `finest`: a length; elements are divided that are twice as long or longer.
     pub(super) fn new(
         hierarchy: Hierarchy,
         visibility: &VisibilityTester<'_>,
         exitance: Option<Exitance<'a>>,
         through: &'a [LightThroughOpening],
         shadows: bool,
-        finest: f64,
+        edges: &'a ShortestEdges,
     ) -> Elements<'a> {
         let beside_openings =
             hierarchy.patches.iter().map(|patch| visibility.openings.finest_of(patch.corners)).collect();
@@ -95,7 +97,7 @@ impl<'a> Elements<'a> {
             sent: Vec::new(),
             least: Vec::new(),
             corner_light: Vec::new(),
-            finest,
+            edges,
             beside_openings,
             exitance,
             through,
@@ -125,24 +127,22 @@ impl<'a> Elements<'a> {
 
     /// Whether an element is long enough to be divided.
     pub(super) fn may_divide(&self, node: &HierarchyNode) -> bool {
-        node.longest_edge() >= 2.0 * self.finest_of(node, self.finest)
+        node.longest_edge() >= 2.0 * self.shortest_edge(node)
     }
 
-    /// The finest elements of a leaf.
-    ///
-    /// - `finest`: a length, where there is no opening.
-    pub(super) fn finest_of(&self, node: &HierarchyNode, finest: f64) -> f64 {
-        if node.is_cluster() { finest } else { finest.min(self.beside_openings[node.patch as usize]) }
+    /// How short edges of parts of a node may be.
+    fn shortest_edge(&self, node: &HierarchyNode) -> f64 {
+        let shortest = self.edges.of(node);
+        if node.is_cluster() { shortest } else { shortest.min(self.beside_openings[node.patch as usize]) }
     }
 
     /// Divides leaves over which external light is farther from linear than so many bounds, those on which more comes
-    /// through openings than their corners tell, and those that are larger than a length.
+    /// through openings than their corners tell, and those that are too large.
     pub(super) fn divide_where_light_varies(
         &mut self,
         visibility: &VisibilityTester<'_>,
         bound: RefinementBound,
         times: f64,
-        coarsest: f64,
     ) {
         let mut from = 0;
         loop {
@@ -157,7 +157,9 @@ impl<'a> Elements<'a> {
                     excess > bound() * nodes[*node].area && excess > SIGNIFICANT * variance.sqrt()
                 };
                 is_divisible
-                    && (nodes[*node].longest_edge() > coarsest || bend(&self.corner_light[*node]) > bound() || missed())
+                    && (nodes[*node].longest_edge() > COARSEST * self.edges.of(&nodes[*node])
+                        || bend(&self.corner_light[*node]) > bound()
+                        || missed())
             };
             let divided: Vec<u32> = (from..nodes.len()).filter(varies).map(|node| node as u32).collect();
             from = nodes.len();
@@ -338,7 +340,8 @@ impl<'a> Elements<'a> {
     }
 
     /// The standard error of the mean over all leaves of what each receives as rays tell it, as a part of that: so dim
-    /// leaves count as much as bright ones.
+    /// leaves count as much as bright ones. That of one leaf is no more than all its light: few next to dark leaves would
+    /// tell of nothing but themselves.
     pub(super) fn error_by_chance(&self, leaves: &[u32], visibility: &LeafVisibility) -> f64 {
         let of = |values: &[Channels]| -> Vec<Channels> { leaves.iter().map(|leaf| values[*leaf as usize]).collect() };
         let [reflectance, direct, extra, irradiance] =
@@ -349,7 +352,7 @@ impl<'a> Elements<'a> {
         let all = |i: usize| areas[i] * total(direct[i] + irradiance[i]);
         let estimates = flux_estimates(&areas, visibility, &light);
         let of = |(i, estimate): (usize, &FluxEstimate)| match all(i) {
-            all if all > 0.0 => estimate.variance / (all * all),
+            all if all > 0.0 => (estimate.variance / (all * all)).min(1.0),
             _ => 0.0,
         };
         let sum: f64 = estimates.iter().enumerate().map(of).sum();

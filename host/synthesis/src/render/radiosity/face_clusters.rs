@@ -7,6 +7,7 @@
 //! Face clusters: Willmott, Heckbert and Garland 1999. Mutually best partners: Borůvka 1926.
 
 use super::hierarchy::{HierarchyNode, cluster, key};
+use super::shortest_edges::ShortestEdges;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap as HashMap;
 
@@ -31,9 +32,9 @@ struct Piece {
 /// Divides patches into face clusters and patches that are alone, in the order of their first patches.
 ///
 /// - `own`: a node for each patch.
-/// - `finest`: the radius of a face cluster, at the most.
-pub(super) fn face_clusters(own: &[HierarchyNode], finest: f64) -> Vec<Vec<u32>> {
-    let mut pieces: Vec<Piece> = neighbours(own, finest)
+/// - `edges`: of elements; the radius of a face cluster is no greater.
+pub(super) fn face_clusters(own: &[HierarchyNode], edges: &ShortestEdges) -> Vec<Vec<u32>> {
+    let mut pieces: Vec<Piece> = neighbours(own, edges)
         .into_iter()
         .enumerate()
         .map(|(patch, beside)| {
@@ -44,7 +45,7 @@ pub(super) fn face_clusters(own: &[HierarchyNode], finest: f64) -> Vec<Vec<u32>>
     let mut changed: Vec<u32> = (0..pieces.len() as u32).filter(|piece| pieces[*piece as usize].is_changed).collect();
     while !changed.is_empty() {
         let best: Vec<Option<(f64, u32)>> =
-            changed.par_iter().map(|piece| best_partner(&pieces, *piece, own, finest)).collect();
+            changed.par_iter().map(|piece| best_partner(&pieces, *piece, own, edges)).collect();
         for (piece, best) in changed.iter().zip(best) {
             let piece = &mut pieces[*piece as usize];
             (piece.best, piece.is_changed) = (best, false);
@@ -80,10 +81,10 @@ pub(super) fn face_clusters(own: &[HierarchyNode], finest: f64) -> Vec<Vec<u32>>
 }
 
 /// For each patch that is small enough, those that share an edge with it and are, too.
-fn neighbours(own: &[HierarchyNode], finest: f64) -> Vec<Vec<u32>> {
+fn neighbours(own: &[HierarchyNode], edges: &ShortestEdges) -> Vec<Vec<u32>> {
     let mut at_edge: HashMap<[[u64; 3]; 2], Vec<u32>> = HashMap::default();
     let mut beside: Vec<Vec<u32>> = vec![Vec::new(); own.len()];
-    for (patch, node) in (0..).zip(own).filter(|(_, node)| node.radius <= finest) {
+    for (patch, node) in (0..).zip(own).filter(|(_, node)| node.radius <= edges.of(node)) {
         for i in 0..3 {
             let mut edge = [key(node.corners[i]), key(node.corners[(i + 1) % 3])];
             edge.sort_unstable();
@@ -103,19 +104,17 @@ fn neighbours(own: &[HierarchyNode], finest: f64) -> Vec<Vec<u32>> {
 }
 
 /// The best piece that one can be one with, and the cost: how large both together are and how far they bend.
-fn best_partner(pieces: &[Piece], piece: u32, own: &[HierarchyNode], finest: f64) -> Option<(f64, u32)> {
-    let Piece { members, beside, .. } = &pieces[piece as usize];
+fn best_partner(pieces: &[Piece], piece: u32, own: &[HierarchyNode], edges: &ShortestEdges) -> Option<(f64, u32)> {
     let cost = |other: &u32| {
         // In one order, so that both find the same cost.
         let (first, second) = if piece < *other { (piece, *other) } else { (*other, piece) };
         let of = |piece: u32| pieces[piece as usize].members.iter().copied();
         let both: Vec<u32> = of(first).chain(of(second)).collect();
-        let HierarchyNode { radius, spread, .. } = cluster(&both, own);
-        let is_possible = radius <= finest && spread <= FACING;
-        is_possible.then_some(((radius / finest).powi(2) + (spread / FACING).powi(2), *other))
+        let both = cluster(&both, own);
+        let (size, bend) = (both.radius / edges.of(&both), both.spread / FACING);
+        (size <= 1.0 && bend <= 1.0).then_some((size * size + bend * bend, *other))
     };
-    debug_assert!(!members.is_empty());
-    beside.iter().filter_map(cost).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))
+    pieces[piece as usize].beside.iter().filter_map(cost).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))
 }
 
 /// Makes two pieces one. Tells which pieces are to look for a partner again.

@@ -6,6 +6,7 @@
 
 use super::face_clusters::face_clusters;
 use super::form_factor::Convex;
+use super::shortest_edges::ShortestEdges;
 use crate::color::Channels;
 use crate::numeric::triangle;
 use glam::DVec3;
@@ -165,8 +166,8 @@ pub(super) struct Hierarchy {
 impl Hierarchy {
     /// Clusters over patches, each of which has an area.
     ///
-    /// - `finest`: the radius of face clusters, at the most.
-    pub(super) fn new(patches: Vec<RadiosityPatch>, finest: f64) -> Hierarchy {
+    /// - `edges`: of elements; face clusters have no greater radius.
+    pub(super) fn new(patches: Vec<RadiosityPatch>, edges: &ShortestEdges) -> Hierarchy {
         let mut hierarchy = Hierarchy { node_of: vec![NONE; patches.len()], patches, ..Hierarchy::default() };
         if hierarchy.patches.is_empty() {
             return hierarchy;
@@ -177,7 +178,7 @@ impl Hierarchy {
             (low.min(node.middle), high.max(node.middle))
         });
         let scale = NORMALS * low.distance(high);
-        let faces = face_clusters(&own, finest);
+        let faces = face_clusters(&own, edges);
         let of_faces = |faces_of: &[u32]| -> Vec<u32> {
             faces_of.iter().flat_map(|face| faces[*face as usize].iter().copied()).collect()
         };
@@ -436,7 +437,7 @@ mod tests {
         let slim = [at(0.0, 0.0, 0.0), at(0.0, 0.1, 0.0), at(-8.0, 0.0, 0.0)];
         let broad = [at(0.0, 0.0, 0.0), at(3.0, 0.0, 0.0), at(0.0, 3.0, 0.0)];
         for (corners, parts) in [(slim, 2), (broad, 4)] {
-            let mut hierarchy = Hierarchy::new(vec![patch(corners)], 0.0);
+            let mut hierarchy = Hierarchy::new(vec![patch(corners)], &ShortestEdges::everywhere(1e-9));
             let sliver = hierarchy.nodes[0].sliver();
             hierarchy.divide(0);
             let children: Vec<HierarchyNode> = hierarchy.nodes[1..].to_vec();
@@ -468,7 +469,9 @@ mod tests {
                 ]
             })
         };
-        let leaves = |patches: Vec<RadiosityPatch>, finest: f64| Hierarchy::new(patches, finest).leaves().len();
+        let leaves = |patches: Vec<RadiosityPatch>, finest: f64| {
+            Hierarchy::new(patches, &ShortestEdges::everywhere(finest)).leaves().len()
+        };
         assert_eq!(leaves(row(0.0, 0.0).collect(), 10.0), 1);
         // In two of four each, or alone.
         assert_eq!(leaves(row(0.0, 0.0).collect(), 1.2), 2);

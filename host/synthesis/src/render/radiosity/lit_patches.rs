@@ -3,9 +3,10 @@
 use super::contact::Contacts;
 use super::direct::Exitance;
 use super::disjoint_sets::DisjointSets;
-use super::elements::Elements;
+use super::elements::{COARSEST, Elements};
 use super::exchange::{ExchangeLink, LeafHit, LeafVisibility};
-use super::hierarchy::{Hierarchy, HierarchyNode, NONE, RadiosityPatch};
+use super::hierarchy::{Hierarchy, NONE, POINTS, RadiosityPatch};
+use super::shortest_edges::ShortestEdges;
 use super::side_elements::SideElements;
 use super::through_openings::{LightThroughOpening, SeenThroughOpening};
 use super::visibility::{RayTarget, VisibilityTester};
@@ -25,7 +26,7 @@ const MOST_RAYS: usize = 1 << 22;
 /// dark.
 ///
 /// - `through`: light that comes through openings.
-/// - `finest`, `coarsest`: lengths; patches are tested in parts of the second.
+/// - `edges`: of elements.
 pub(super) fn lit_hierarchy(
     visibility: &VisibilityTester<'_>,
     patches: Vec<RadiosityPatch>,
@@ -33,19 +34,19 @@ pub(super) fn lit_hierarchy(
     exitance: Option<Exitance<'_>>,
     through: &[LightThroughOpening],
     shadows: bool,
-    [finest, coarsest]: [f64; 2],
+    edges: &ShortestEdges,
 ) -> Hierarchy {
-    let mut all = Hierarchy::new(patches, finest);
-    all.cut(contacts, finest);
-    let is_dark = dark(visibility, &all, exitance, through, shadows, coarsest);
+    let mut all = Hierarchy::new(patches, edges);
+    all.cut(contacts, edges);
+    let is_dark = dark(visibility, &all, exitance, through, shadows, COARSEST * edges.everywhere);
     all.darken(&is_dark);
     let is_lit = |patch: usize| !all.nodes[all.node_of[patch] as usize].is_dark;
     if (0..all.patches.len()).all(is_lit) {
         return all;
     }
     let lit: Vec<usize> = (0..all.patches.len()).filter(|patch| is_lit(*patch)).collect();
-    let mut hierarchy = Hierarchy::new(lit.iter().map(|patch| all.patches[*patch]).collect(), finest);
-    hierarchy.cut(contacts, finest);
+    let mut hierarchy = Hierarchy::new(lit.iter().map(|patch| all.patches[*patch]).collect(), edges);
+    hierarchy.cut(contacts, edges);
     // Patches are divided as they were before.
     let mut is_dark = vec![false; hierarchy.nodes.len()];
     let mut pairs: Vec<[u32; 2]> =
@@ -60,6 +61,8 @@ pub(super) fn lit_hierarchy(
 }
 
 /// Whether each node that is a leaf gets no light.
+///
+/// - `coarsest`: a length; patches are tested in parts no longer than that.
 fn dark(
     visibility: &VisibilityTester<'_>,
     hierarchy: &Hierarchy,
@@ -80,7 +83,7 @@ fn dark(
             let patch = &hierarchy.patches[patch as usize];
             exitance.is_some_and(|of| of(patch.triangle, patch.outside, point).max() > 0.0)
         };
-        let takes = |place: [DVec3; 2]| visibility.light_at(place, shadows).max() > 0.0;
+        let takes = |place: [DVec3; 2]| visibility.is_lit_at(place, shadows);
         if !node.is_leaf() {
             false
         } else if is_lit_through_opening[number as usize] {
@@ -93,11 +96,8 @@ fn dark(
             is_any_lit(node.corners, coarsest, &|point| sends(node.patch, point) || takes([point, node.normal]))
         }
     };
-    let looked = |number: usize, node: &HierarchyNode| {
-        let number = number as u32;
-        if !node.is_leaf() {
-            return Vec::new();
-        }
+    let looked = |number: u32| {
+        let node = &nodes[number as usize];
         let parts = (node.area / (coarsest * coarsest)).ceil().max(1.0);
         let count = (f64::from(DIRECTIONS) * parts).min(f64::from(MOST_DIRECTIONS)) as u32;
         let of = |seen: RayTarget| elements_of_sides.find(seen);
@@ -111,11 +111,29 @@ fn dark(
         seen.dedup();
         seen
     };
-    let seen: Vec<Vec<u32>> = visibility.map(nodes, looked);
+    let leaves: Vec<u32> = (0..nodes.len() as u32).filter(|node| nodes[*node as usize].is_leaf()).collect();
+    let middle = |_, leaf: &u32| visibility.is_lit_at(hierarchy.points(*leaf)[POINTS - 1], shadows);
+    let is_middle_lit = visibility.map(&leaves, middle);
     let mut joined = DisjointSets::new(nodes.len());
-    for (number, seen) in (0..).zip(&seen) {
-        seen.iter().for_each(|other| joined.join(number, *other));
+    let join = |joined: &mut DisjointSets, some: Vec<u32>| {
+        let seen: Vec<Vec<u32>> = visibility.map(&some, |_, number| looked(*number));
+        for (number, seen) in some.into_iter().zip(seen) {
+            seen.into_iter().for_each(|other| joined.join(number, other));
+        }
+    };
+    // Most are lit in the middle, or see what is: others are asked only if that does not tell of all.
+    let mut is_known_lit = vec![false; nodes.len()];
+    leaves.iter().zip(&is_middle_lit).for_each(|(leaf, is_lit)| is_known_lit[*leaf as usize] = *is_lit);
+    let of = |lit: bool| -> Vec<u32> {
+        leaves.iter().zip(&is_middle_lit).filter(|(_, is_lit)| **is_lit == lit).map(|(leaf, _)| *leaf).collect()
+    };
+    join(&mut joined, of(false));
+    let known = |some: &[u32]| some.iter().map(|number| is_known_lit[*number as usize]).collect();
+    let is_alight = joined.joined_to_lit(known);
+    if leaves.iter().all(|leaf| is_alight[*leaf as usize]) {
+        return is_alight.iter().map(|alight| !alight).collect();
     }
+    join(&mut joined, of(true));
     joined.joined_to_lit(|some| visibility.map(some, |_, node| is_lit(*node))).iter().map(|alight| !alight).collect()
 }
 

@@ -37,6 +37,7 @@ mod refinement;
 mod gather;
 mod faces;
 mod form_factor;
+mod shortest_edges;
 mod face_clusters;
 mod hierarchy;
 mod report;
@@ -66,6 +67,7 @@ use exchange::{Exchange, ExchangeLink, LeafVisibility};
 use gather::{CornerViews, Gatherer};
 use hierarchy::{RadiosityPatch, normal_and_area};
 use refinement::{AssessedLink, refine};
+use shortest_edges::ShortestEdges;
 use solver::solve;
 use surface::SurfaceLight;
 use visibility::VisibilityTester;
@@ -74,8 +76,6 @@ use visibility::VisibilityTester;
 const ROUNDS: u64 = 3;
 /// How often light is gathered once more as each element sees it.
 const PASSES: usize = 4;
-/// The longest edge of an element, in shortest ones.
-const COARSEST: f64 = 16.0;
 /// The light of lights may be so many errors from linear over an element.
 const BENT: f64 = 4.0;
 /// What receives light counts as no dimmer than this part of the mean irradiance, where errors are bounded by it.
@@ -112,21 +112,20 @@ impl Radiosity {
         let visibility = VisibilityTester::new(world, watch.memo);
         let shadows = plan.needs(Stage::Shadows);
         let diagonal = prepared.bounds.diagonal();
-        let finest = (settings.finest * diagonal).max(f64::MIN_POSITIVE);
-        let lengths = [finest, COARSEST * finest];
-        let contacts = Contacts::new(&visibility, diagonal, finest, |t| {
+        let edges = ShortestEdges::new(prepared, plan, settings);
+        let contacts = Contacts::new(&visibility, diagonal, edges.everywhere, |t| {
             plan.includes_object(prepared.object_of[t as usize] as usize)
         });
         let patches = patches(prepared, plan, &visibility);
         let through = visibility.light_through_openings(shadows);
         let hierarchy =
-            lit_patches::lit_hierarchy(&visibility, patches, &contacts, exitance, &through, shadows, lengths);
+            lit_patches::lit_hierarchy(&visibility, patches, &contacts, exitance, &through, shadows, &edges);
         if hierarchy.nodes.is_empty() {
             return Ok(Radiosity { light: SurfaceLight::dark(prepared), report: RadiosityReport::default() });
         }
-        let mut elements = Elements::new(hierarchy, &visibility, exitance, &through, shadows, finest);
-        let bound = |mean: f64, dimmest: f64| RefinementBound { error: settings.error, mean, dimmest, finest };
-        elements.divide_where_light_varies(&visibility, bound(elements.mean_irradiance(), 1.0), BENT, lengths[1]);
+        let mut elements = Elements::new(hierarchy, &visibility, exitance, &through, shadows, &edges);
+        let bound = |mean: f64, dimmest: f64| RefinementBound { error: settings.error, mean, dimmest };
+        elements.divide_where_light_varies(&visibility, bound(elements.mean_irradiance(), 1.0), BENT);
         let mut links: Vec<AssessedLink> = Vec::new();
         let mut report = RadiosityReport { patches: elements.hierarchy.patches.len(), ..RadiosityReport::default() };
         let mut leaves = Vec::new();
@@ -135,7 +134,7 @@ impl Radiosity {
             // What comes from other elements is not known at first: nothing is too dark then.
             let bound = bound(elements.mean_irradiance(), if round == 0 { 1.0 } else { DIM });
             if round > 0 {
-                elements.divide_where_light_varies(&visibility, bound, BENT, lengths[1]);
+                elements.divide_where_light_varies(&visibility, bound, BENT);
             }
             refine(&visibility, &mut elements, &mut links, bound, &stopped);
             stage.progress((2 * round + 1) as f64);

@@ -71,8 +71,7 @@ pub(super) fn refine(
     });
     while !pending.is_empty() {
         let may_divide = elements.hierarchy.nodes.len() < MOST_NODES && !stopped();
-        let bound =
-            if may_divide { bound } else { RefinementBound { finest: f64::INFINITY, mean: f64::INFINITY, ..bound } };
+        let bound = if may_divide { bound } else { RefinementBound { mean: f64::INFINITY, ..bound } };
         let decide = |_, (pair, is_clear): &([u32; 2], bool)| {
             RefinementOracle { visibility, elements, bound }.decide(*pair, *is_clear)
         };
@@ -213,9 +212,7 @@ impl RefinementOracle<'_, '_> {
 
     /// The larger of both that can be divided.
     fn divide(&self, a: u32, b: u32, is_clear: bool) -> Option<RefinementStep> {
-        let is_long =
-            |node: &HierarchyNode| node.longest_edge() >= 2.0 * self.elements.finest_of(node, self.bound.finest);
-        let can = |node: &HierarchyNode| !node.is_leaf() || is_long(node);
+        let can = |node: &HierarchyNode| !node.is_leaf() || self.elements.may_divide(node);
         let (first, second) = (self.node(a), self.node(b));
         let takes_first = can(first) && (first.radius >= second.radius || !can(second));
         if takes_first {

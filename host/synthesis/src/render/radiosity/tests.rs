@@ -185,9 +185,20 @@ fn the_hierarchy_gives_what_a_full_matrix_gives() {
     let visibility = VisibilityTester::new(&world, None);
     let inside: Vec<RadiosityPatch> =
         patches(&room, &plan, &visibility).into_iter().filter(|patch| !patch.outside).collect();
-    let mut elements = Elements::new(Hierarchy::new(inside, 0.1), &visibility, None, &[], true, 0.1);
-    let bound = |error: f64, mean: f64| RefinementBound { error, mean, dimmest: 1.0, finest: 0.6 };
-    elements.divide_where_light_varies(&visibility, bound(1.0, f64::INFINITY), 1.0, 0.6);
+    let edges = ShortestEdges::everywhere(0.3);
+    let mut elements = Elements::new(Hierarchy::new(inside, &edges), &visibility, None, &[], true, &edges);
+    let bound = |error: f64, mean: f64| RefinementBound { error, mean, dimmest: 1.0 };
+    // All as fine as they may be, so that links do not divide elements.
+    loop {
+        let leaves = elements.hierarchy.leaves();
+        let may_divide = |leaf: &u32| elements.may_divide(&elements.hierarchy.nodes[*leaf as usize]);
+        let divided: Vec<u32> = leaves.into_iter().filter(may_divide).collect();
+        if divided.is_empty() {
+            break;
+        }
+        elements.divide(&visibility, divided);
+    }
+    elements.divide_where_light_varies(&visibility, bound(1.0, f64::INFINITY), 1.0);
     let mut links = Vec::new();
     let mut found = Vec::new();
     for error in [0.05, 0.002] {
@@ -462,11 +473,11 @@ fn flux_of_lights(room: &Prepared) -> f64 {
     let visibility = VisibilityTester::new(&world, None);
     let is_inner = |patch: &RadiosityPatch| normal_and_area(patch.corners).0.dot(patch.corners[0]) < 0.0;
     let inner: Vec<RadiosityPatch> = patches(room, &plan, &visibility).into_iter().filter(is_inner).collect();
-    let finest = room.bounds.diagonal() / 200.0;
+    let edges = ShortestEdges::everywhere(room.bounds.diagonal() / 200.0);
     let through = visibility.light_through_openings(true);
-    let mut elements = Elements::new(Hierarchy::new(inner, finest), &visibility, None, &through, true, finest);
-    let bound = RefinementBound { error: 0.005, mean: elements.mean_irradiance(), dimmest: 1.0, finest };
-    elements.divide_where_light_varies(&visibility, bound, BENT, COARSEST * finest);
+    let mut elements = Elements::new(Hierarchy::new(inner, &edges), &visibility, None, &through, true, &edges);
+    let bound = RefinementBound { error: 0.005, mean: elements.mean_irradiance(), dimmest: 1.0 };
+    elements.divide_where_light_varies(&visibility, bound, BENT);
     let leaves = elements.hierarchy.leaves();
     elements.correct_direct(&visibility, &leaves);
     leaves.iter().map(|leaf| elements.direct[*leaf as usize].0[0] * elements.hierarchy.nodes[*leaf as usize].area).sum()
