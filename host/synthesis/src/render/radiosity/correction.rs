@@ -25,6 +25,8 @@ const MOST_SWEEPS: u32 = 1000;
 const CONVERGED: f64 = 1e-7;
 /// So many times what chance explains of a difference within a region is taken from it.
 const CAUTION: f64 = 2.0;
+/// Mirrored rays over which light by mirrors is a mean.
+const MIRRORED_RAYS: u64 = 128;
 /// What a leaf sees counts as no smaller part of all, where a mean is taken over it.
 const LEAST_SEEN_PART: f64 = 0.1;
 
@@ -70,9 +72,11 @@ impl RegionCorrection {
         let mut system = RegionSystem {
             pairs: exchange(&areas, region, visibility, light),
             received: vec![Channels::ZERO; regions.count],
+            mirrored_sky: vec![Channels::ZERO; regions.count],
         };
         for (i, region) in region.iter().enumerate().filter(|(i, _)| !visibility.is_dark[*i]) {
             system.received[*region] += light.irradiance[i] * areas[i];
+            system.mirrored_sky[*region] += visibility.mirrored_sky[i].irradiance * areas[i];
         }
         let factors = system.solve();
         let total =
@@ -91,6 +95,57 @@ impl RegionCorrection {
             standard_error: regions.all.relative_error(),
         }
     }
+}
+
+/// The irradiance of leaves by what mirrors show them of others and of skies, as their rays tell it, where that is more
+/// than what comes straight from others: factors would have little to multiply there. None if that is nowhere.
+///
+/// It is the mean over so large a part of the scene that chance is little.
+///
+/// - `leaves`: their nodes. `visibility`: what rays from them hit.
+pub(super) fn mirrored_irradiance(
+    hierarchy: &Hierarchy,
+    leaves: &[u32],
+    visibility: &LeafVisibility,
+    light: &LeafLight<'_>,
+) -> Option<Vec<Channels>> {
+    let is_mirrored = |i: usize| visibility.mirrored_part[i] > 0.0 || visibility.mirrored_sky[i].rays > 0;
+    if !(0..leaves.len()).any(is_mirrored) {
+        return None;
+    }
+    let nodes = &hierarchy.nodes;
+    // Of each node: flux by mirrors and straight from others, the area that receives it, and rays that tell of it.
+    let mut sums = vec![(Channels::ZERO, Channels::ZERO, 0.0, 0); nodes.len()];
+    for (i, leaf) in leaves.iter().enumerate().filter(|(i, _)| !visibility.is_dark[*i]) {
+        let area = nodes[*leaf as usize].area;
+        let (mut flux, mut rays) = (visibility.mirrored_sky[i].irradiance * area, visibility.mirrored_sky[i].rays);
+        for hit in visibility.hits_of(i).iter().filter(|hit| hit.is_mirrored && hit.leaf != NONE) {
+            let from = hit.leaf as usize;
+            let sent = light.first[from] + light.reflectance[from] * light.irradiance[from];
+            flux += sent * (area * f64::from(hit.transmittance) / f64::from(visibility.directions));
+            rays += 1;
+        }
+        sums[*leaf as usize] = (flux, light.irradiance[i] * area, area, rays);
+    }
+    for place in (0..nodes.len()).rev() {
+        for child in nodes[place].children() {
+            let (flux, straight, area, rays) = sums[child];
+            let sum = &mut sums[place];
+            *sum = (sum.0 + flux, sum.1 + straight, sum.2 + area, sum.3 + rays);
+        }
+    }
+    let mut around: Vec<usize> = (0..nodes.len()).collect();
+    for place in 0..nodes.len() {
+        for child in nodes[place].children() {
+            around[child] = if sums[child].3 >= MIRRORED_RAYS { child } else { around[place] };
+        }
+    }
+    let of = |(i, leaf): (usize, &u32)| match sums[around[*leaf as usize]] {
+        (flux, straight, area, _) if flux.max() > straight.max() && !visibility.is_dark[i] => flux * area.recip(),
+        _ => Channels::ZERO,
+    };
+    let irradiance: Vec<Channels> = leaves.iter().enumerate().map(of).collect();
+    irradiance.iter().any(|light| *light != Channels::ZERO).then_some(irradiance)
 }
 
 /// Calls a function with all exchange that rays found, both ways: the leaf that receives, that which sends, and A F.
@@ -127,8 +182,8 @@ pub(super) fn flux_estimates(areas: &[f64], visibility: &LeafVisibility, light: 
     let mean: Vec<f64> = (0..areas.len()).map(mean).collect();
     let known = |i: usize| FluxEstimate {
         by_elements: areas[i] * received[i],
-        by_rays: areas[i] * mean[i] * visibility.seen_part[i],
-        variance: 0.0,
+        by_rays: areas[i] * (mean[i] * visibility.part(i) + total(visibility.mirrored_sky[i].irradiance)),
+        variance: areas[i] * areas[i] * visibility.mirrored_sky[i].variance,
         rays: 0,
     };
     let mut estimates: Vec<FluxEstimate> = (0..areas.len()).map(known).collect();
@@ -154,7 +209,7 @@ fn exchange(
 ) -> Vec<([usize; 2], RegionExchange)> {
     let mut pairs: Vec<([usize; 2], RegionExchange)> = Vec::new();
     let mut place_of: HashMap<[usize; 2], usize> = HashMap::default();
-    let mut row: Vec<f64> = areas.iter().zip(&visibility.seen_part).map(|(area, part)| area * part).collect();
+    let mut row: Vec<f64> = areas.iter().enumerate().map(|(i, area)| area * visibility.part(i)).collect();
     let mut add = |to: usize, from: usize, exchange: f64| {
         let key = [region[to], region[from]];
         let place = *place_of.entry(key).or_insert_with(|| {
@@ -179,8 +234,9 @@ fn exchange(
 /// The equations of regions: what each receives is a factor times what it received before.
 struct RegionSystem {
     pairs: Vec<([usize; 2], RegionExchange)>,
-    /// What each receives before the correction, W.
+    /// What each receives before the correction, and what mirrors show it of skies: W.
     received: Vec<Channels>,
+    mirrored_sky: Vec<Channels>,
 }
 
 impl RegionSystem {
@@ -188,7 +244,7 @@ impl RegionSystem {
     fn solve(&self) -> Vec<Channels> {
         let count = self.received.len();
         let mut rows: Vec<Vec<(usize, Channels)>> = vec![Vec::new(); count];
-        let mut first = vec![Channels::ZERO; count];
+        let mut first = self.mirrored_sky.clone();
         for ([to, from], pair) in &self.pairs {
             first[*to] += pair.first;
             rows[*to].push((*from, pair.reflected));

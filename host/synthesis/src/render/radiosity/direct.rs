@@ -197,12 +197,7 @@ impl VisibilityTester<'_> {
         self.light_by(place, shadows, ([FEW_SAMPLES, FEW_OF_SKY], turn))
     }
 
-    fn light_by(
-        &self,
-        [point, normal]: [DVec3; 2],
-        shadows: bool,
-        (least, turn): ([u32; 2], u32),
-    ) -> Channels {
+    fn light_by(&self, [point, normal]: [DVec3; 2], shadows: bool, (least, turn): ([u32; 2], u32)) -> Channels {
         let appearance = &self.world.appearance;
         let mut sum = Channels::ZERO;
         for (index, (number, source)) in appearance.sources.iter().enumerate() {

@@ -28,7 +28,7 @@ const FEW_SAMPLES: u32 = 16;
 const MOST_SAMPLES: u32 = 512;
 const SAMPLES: usize = 1 << 21;
 /// The standard error of the irradiance of a leaf by light samples, as a part of it, that needs no more.
-const SAMPLED_ERROR: f64 = 0.02;
+const SAMPLED_ERROR: f64 = 0.03;
 /// So many times what chance explains of a difference is taken from it.
 const CAUTION: f64 = 1.0;
 /// Leaves that tell together how many light samples each of them needs.

@@ -4,8 +4,10 @@
 //! matrix that takes means and G that of the links, leaves exchange M = Pᵀ G P, symmetric whatever the links are.
 
 use super::hierarchy::{Hierarchy, HierarchyNode, NONE, Summable};
+use crate::color::Channels;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
 
 /// Rounds of balancing at the most, and the error of a row that ends them.
 const MOST_ROUNDS: u32 = 100;
@@ -34,8 +36,12 @@ pub(super) struct LeafVisibility {
     pub(super) directions: u32,
     /// What rays in these directions hit, leaf by leaf.
     pub(super) hits: Vec<LeafHit>,
-    /// For each leaf, the part of all light in these directions that comes from something that exchanges light.
+    /// For each leaf, the part of all light in these directions that comes straight from something that exchanges light,
+    /// and the part that comes by mirrors.
     pub(super) seen_part: Vec<f64>,
+    pub(super) mirrored_part: Vec<f64>,
+    /// Light of skies that comes to each leaf by mirrors.
+    pub(super) mirrored_sky: Vec<MirroredSky>,
     /// For each leaf, the part of all that it sees from its middle that exchanges light.
     pub(super) row: Vec<f64>,
     /// Whether no light can come to it.
@@ -45,6 +51,11 @@ pub(super) struct LeafVisibility {
 }
 
 impl LeafVisibility {
+    /// The part of all light around a leaf that comes from something that exchanges light, straight or by mirrors.
+    pub(super) fn part(&self, leaf: usize) -> f64 {
+        self.seen_part[leaf] + self.mirrored_part[leaf]
+    }
+
     /// What the rays of a leaf hit.
     pub(super) fn hits_of(&self, leaf: usize) -> &[LeafHit] {
         let directions = self.directions as usize;
@@ -59,13 +70,40 @@ pub(super) struct LeafHit {
     pub(super) leaf: u32,
     /// The part of light that is let through on the way, 0..=1.
     pub(super) transmittance: f32,
-    /// Whether it crosses an opening.
+    /// Whether it crosses an opening, and was not reflected.
     pub(super) through_opening: bool,
+    /// Whether it was reflected by a mirror or a pane.
+    pub(super) is_mirrored: bool,
 }
 
 impl LeafHit {
     /// Light escapes.
-    pub(super) const NOTHING: LeafHit = LeafHit { leaf: NONE, transmittance: 0.0, through_opening: false };
+    pub(super) const NOTHING: LeafHit =
+        LeafHit { leaf: NONE, transmittance: 0.0, through_opening: false, is_mirrored: false };
+}
+
+/// The irradiance of a leaf by what mirrors show it of skies.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct MirroredSky {
+    /// W/m².
+    pub(super) irradiance: Channels,
+    /// The variance of that in all lanes together.
+    pub(super) variance: f64,
+    /// How many rays tell of it.
+    pub(super) rays: u64,
+}
+
+impl MirroredSky {
+    /// - `radiance`: from directions that are as dense as their cosine, W/(m² sr).
+    pub(super) fn of(radiance: &[Channels]) -> MirroredSky {
+        let count = radiance.len() as f64;
+        let mean = radiance.iter().fold(Channels::ZERO, |sum, one| sum + *one) * count.recip();
+        let total = |channels: Channels| PI * channels.0.iter().sum::<f64>();
+        let squares: f64 = radiance.iter().map(|one| total(*one).powi(2)).sum();
+        let variance = (squares / count - total(mean).powi(2)).max(0.0) / count;
+        let rays = radiance.iter().filter(|one| **one != Channels::ZERO).count() as u64;
+        MirroredSky { irradiance: mean * PI, variance, rays }
+    }
 }
 
 /// Two nodes that exchange light.

@@ -109,8 +109,7 @@ fn best_partner(pieces: &[Piece], piece: u32, own: &[HierarchyNode], edges: &Sho
         // In one order, so that both find the same cost.
         let (first, second) = if piece < *other { (piece, *other) } else { (*other, piece) };
         let of = |piece: u32| pieces[piece as usize].members.iter().copied();
-        let both: Vec<u32> = of(first).chain(of(second)).collect();
-        let both = cluster(&both, own);
+        let both = cluster(of(first).chain(of(second)), own);
         let (size, bend) = (both.radius / edges.of(&both), both.spread / FACING);
         (size <= 1.0 && bend <= 1.0).then_some((size * size + bend * bend, *other))
     };

@@ -18,7 +18,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 /// Light below this part of the error of a link is sampled with one ray instead of some.
-const LITTLE: f64 = 0.5;
+const LITTLE: f64 = 1.0;
 /// The greatest difference of what parts of a node send, as a part of it.
 const UNEVEN: f64 = 0.1;
 

@@ -168,23 +168,30 @@ impl Hierarchy {
     ///
     /// - `edges`: of elements; face clusters have no greater radius.
     pub(super) fn new(patches: Vec<RadiosityPatch>, edges: &ShortestEdges) -> Hierarchy {
+        let own: Vec<HierarchyNode> = own_nodes(&patches);
+        let faces = face_clusters(&own, edges);
+        Hierarchy::of_faces(patches, &faces)
+    }
+
+    /// Clusters over patches of which it is known which are one element.
+    ///
+    /// - `faces`: the patches of each face cluster, and each patch that is alone.
+    pub(super) fn of_faces(patches: Vec<RadiosityPatch>, faces: &[Vec<u32>]) -> Hierarchy {
         let mut hierarchy = Hierarchy { node_of: vec![NONE; patches.len()], patches, ..Hierarchy::default() };
         if hierarchy.patches.is_empty() {
             return hierarchy;
         }
-        let own: Vec<HierarchyNode> =
-            (0..).zip(&hierarchy.patches).map(|(i, patch)| HierarchyNode::triangle(patch.corners, i)).collect();
+        let own = own_nodes(&hierarchy.patches);
         let (low, high) = own.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), node| {
             (low.min(node.middle), high.max(node.middle))
         });
         let scale = NORMALS * low.distance(high);
-        let faces = face_clusters(&own, edges);
         let of_faces = |faces_of: &[u32]| -> Vec<u32> {
             faces_of.iter().flat_map(|face| faces[*face as usize].iter().copied()).collect()
         };
         let node_of_face = |members: &Vec<u32>| match members[..] {
             [single] => own[single as usize],
-            _ => cluster(members, &own),
+            _ => cluster(members.iter().copied(), &own),
         };
         let face: Vec<HierarchyNode> = faces.iter().map(node_of_face).collect();
         let mut order: Vec<u32> = (0..faces.len() as u32).collect();
@@ -200,7 +207,7 @@ impl Hierarchy {
                 ranges.push(range);
                 continue;
             }
-            let all = cluster(&of_faces(part), &own);
+            let all = cluster(of_faces(part).iter().copied(), &own);
             halve(part, &face, scale);
             let child = hierarchy.nodes.len() as u32;
             hierarchy.nodes[place] = HierarchyNode { child, children: 2, ..all };
@@ -223,6 +230,21 @@ impl Hierarchy {
         hierarchy.cluster_points = ranges.iter().map(points).collect();
         (hierarchy.order, hierarchy.ranges) = (order, ranges);
         hierarchy
+    }
+
+    /// The patches of each face cluster, and each patch that is alone.
+    pub(super) fn faces(&self) -> Vec<Vec<u32>> {
+        let mut number_of = vec![NONE; self.nodes.len()];
+        let mut faces: Vec<Vec<u32>> = Vec::new();
+        for (patch, node) in (0..).zip(&self.node_of) {
+            let number = &mut number_of[*node as usize];
+            if *number == NONE {
+                *number = faces.len() as u32;
+                faces.push(Vec::new());
+            }
+            faces[*number as usize].push(patch);
+        }
+        faces
     }
 
     /// The point of a cluster that is the nearest to its middle.
@@ -364,6 +386,11 @@ impl Hierarchy {
     }
 }
 
+/// A node for each patch.
+fn own_nodes(patches: &[RadiosityPatch]) -> Vec<HierarchyNode> {
+    (0..).zip(patches).map(|(i, patch)| HierarchyNode::triangle(patch.corners, i)).collect()
+}
+
 /// Orders the members so that the two halves are well apart.
 fn halve(part: &mut [u32], own: &[HierarchyNode], scale: f64) {
     let place = |node: &HierarchyNode| {
@@ -384,13 +411,15 @@ fn halve(part: &mut [u32], own: &[HierarchyNode], scale: f64) {
     part.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)).then(a.cmp(b)));
 }
 
-/// The node of a cluster of some patches.
-pub(super) fn cluster(part: &[u32], own: &[HierarchyNode]) -> HierarchyNode {
-    let members = || part.iter().map(|member| &own[*member as usize]);
+/// The node of a cluster of some patches, at least one.
+pub(super) fn cluster(part: impl Iterator<Item = u32> + Clone, own: &[HierarchyNode]) -> HierarchyNode {
+    let members = || part.clone().map(|member| &own[member as usize]);
     let area: f64 = members().map(|node| node.area).sum();
     let middle = members().map(|node| node.middle * node.area).sum::<DVec3>() / area;
-    let normal =
-        members().map(|node| node.normal * node.area).sum::<DVec3>().normalize_or(own[part[0] as usize].normal);
+    let normal = members()
+        .map(|node| node.normal * node.area)
+        .sum::<DVec3>()
+        .normalize_or(members().next().map_or(DVec3::ZERO, |node| node.normal));
     let spread = members().map(|node| node.normal.dot(normal).clamp(-1.0, 1.0).acos()).fold(0.0, f64::max);
     let radius = members().flat_map(|node| node.corners).map(|corner| corner.distance(middle)).fold(0.0, f64::max);
     let corners = [middle; 3];

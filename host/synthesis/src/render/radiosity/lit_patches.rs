@@ -4,13 +4,16 @@ use super::contact::Contacts;
 use super::direct::Exitance;
 use super::disjoint_sets::DisjointSets;
 use super::elements::{COARSEST, Elements};
-use super::exchange::{ExchangeLink, LeafHit, LeafVisibility};
+use super::exchange::{ExchangeLink, LeafHit, LeafVisibility, MirroredSky};
 use super::hierarchy::{Hierarchy, NONE, POINTS, RadiosityPatch};
+use super::mirrors::MirroredTarget;
 use super::shortest_edges::ShortestEdges;
 use super::side_elements::SideElements;
 use super::through_openings::{LightThroughOpening, SeenThroughOpening};
 use super::visibility::{RayTarget, VisibilityTester};
+use crate::color::Channels;
 use crate::memory::{self, MemoryExceeded};
+use crate::numeric::ray::Ray;
 use glam::DVec3;
 
 /// Directions that are traced from a patch for each of its parts, and at the most.
@@ -45,7 +48,13 @@ pub(super) fn lit_hierarchy(
         return all;
     }
     let lit: Vec<usize> = (0..all.patches.len()).filter(|patch| is_lit(*patch)).collect();
-    let mut hierarchy = Hierarchy::new(lit.iter().map(|patch| all.patches[*patch]).collect(), edges);
+    let mut number_of = vec![NONE; all.patches.len()];
+    lit.iter().zip(0..).for_each(|(patch, number)| number_of[*patch] = number);
+    // A face cluster is lit or dark.
+    let mut faces = all.faces();
+    faces.iter_mut().for_each(|face| face.iter_mut().for_each(|patch| *patch = number_of[*patch as usize]));
+    faces.retain(|face| face[0] != NONE);
+    let mut hierarchy = Hierarchy::of_faces(lit.iter().map(|patch| all.patches[*patch]).collect(), &faces);
     hierarchy.cut(contacts, edges);
     // Patches are divided as they were before.
     let mut is_dark = vec![false; hierarchy.nodes.len()];
@@ -105,6 +114,7 @@ fn dark(
             |index, uniform| hierarchy.place(number, index, uniform),
             u64::from(number),
             count,
+            |ray, _| visibility.trace(ray),
         );
         let mut seen: Vec<u32> = seen.into_iter().map(of).filter(|node| *node != NONE).collect();
         seen.sort_unstable();
@@ -200,29 +210,39 @@ fn traced(
     let looked = |number: usize, leaf: &u32| {
         // Beyond the numbers of all patches.
         let own = (1 << 40) + number as u64;
-        let of = |seen: RayTarget| match (elements_of_sides.find(seen), seen) {
+        let of = |seen: RayTarget, is_mirrored: bool| match (elements_of_sides.find(seen), seen) {
             (NONE, _) | (_, RayTarget::Nothing | RayTarget::Lamp) => LeafHit::NOTHING,
             (leaf, RayTarget::Side { transmittance, through_opening, .. }) => {
-                LeafHit { leaf: place[leaf as usize], transmittance: transmittance as f32, through_opening }
+                let leaf = place[leaf as usize];
+                LeafHit { leaf, transmittance: transmittance as f32, through_opening, is_mirrored }
             }
         };
-        visibility
-            .trace_hemisphere(|index, uniform| hierarchy.place(*leaf, index, uniform), own, directions)
-            .into_iter()
-            .map(of)
-            .collect::<Vec<LeafHit>>()
+        let place = |index: u32, uniform: [f64; 2]| hierarchy.place(*leaf, index, uniform);
+        if !visibility.by_mirrors {
+            let straight = |ray: &Ray, _: &dyn Fn(u64) -> f64| of(visibility.trace(ray), false);
+            return (visibility.trace_hemisphere(place, own, directions, straight), MirroredSky::default());
+        }
+        let by_mirrors = |ray: &Ray, uniform: &dyn Fn(u64) -> f64| {
+            let MirroredTarget { target, is_mirrored, sky } = visibility.trace_by_mirrors(ray, uniform);
+            (of(target, is_mirrored), sky)
+        };
+        let (hits, sky): (Vec<LeafHit>, Vec<Channels>) =
+            visibility.trace_hemisphere(place, own, directions, by_mirrors).into_iter().unzip();
+        (hits, MirroredSky::of(&sky))
     };
-    let seen: Vec<Vec<LeafHit>> = visibility.map(leaves, looked);
+    let (seen, mirrored_sky): (Vec<Vec<LeafHit>>, Vec<MirroredSky>) =
+        visibility.map(leaves, looked).into_iter().unzip();
     let mut joined = DisjointSets::new(leaves.len());
     for (number, seen) in (0..).zip(&seen) {
         seen.iter().filter(|hit| hit.leaf != NONE).for_each(|hit| joined.join(number, hit.leaf));
     }
     let sends = |leaf: u32| (elements.direct[leaf as usize] + elements.extra[leaf as usize]).max() > 0.0;
     let alight = joined.joined_to_lit(|some| some.iter().map(|number| sends(leaves[*number as usize])).collect());
-    let part = |seen: &Vec<LeafHit>| {
-        let hits = seen.iter().filter(|hit| hit.leaf != NONE);
+    let part = |seen: &Vec<LeafHit>, is_mirrored: bool| {
+        let hits = seen.iter().filter(|hit| hit.leaf != NONE && hit.is_mirrored == is_mirrored);
         hits.map(|hit| f64::from(hit.transmittance)).sum::<f64>() / f64::from(directions)
     };
+    let parts = |is_mirrored: bool| seen.iter().map(|seen| part(seen, is_mirrored)).collect();
     let through = visibility.seen_through_openings();
     let link = |SeenThroughOpening { sides, exchange }: SeenThroughOpening| {
         let [a, b] = sides.map(|side| match elements_of_sides.find(side) {
@@ -232,6 +252,14 @@ fn traced(
         (a != NONE && b != NONE).then_some(ExchangeLink { a, b, exchange })
     };
     let through_openings = through.into_iter().filter_map(link).collect();
-    let (part, is_dark) = (seen.iter().map(part).collect(), alight.iter().map(|alight| !alight).collect());
-    LeafVisibility { directions, hits: seen.concat(), seen_part: part, row: row.to_vec(), is_dark, through_openings }
+    LeafVisibility {
+        directions,
+        seen_part: parts(false),
+        mirrored_part: parts(true),
+        mirrored_sky,
+        hits: seen.concat(),
+        row: row.to_vec(),
+        is_dark: alight.iter().map(|alight| !alight).collect(),
+        through_openings,
+    }
 }

@@ -15,8 +15,8 @@
 //! What light cannot come to is left out first: rays join patches that see each other, and only what is joined to a lit
 //! one takes part. A closed dark room stays dark to the last bit.
 //!
-//! *Not modelled*: light that mirrors, glass and gloss pass on; what such surfaces take counts as escaped. Light
-//! through coloured surfaces loses as much in all bands as in the mean. What moves stands where it is in the middle of
+//! *Not modelled*: light that rough mirrors, glass that bends it and gloss pass on; what such surfaces take counts as
+//! escaped. Light through coloured surfaces loses as much in all bands as in the mean. What moves stands where it is in the middle of
 //! the time. Of spectra, eight bands are known, each 59 nm wide: within a band, light of other surfaces has the same
 //! strength everywhere.
 
@@ -25,6 +25,7 @@ mod contact;
 mod disjoint_sets;
 mod openings;
 mod visibility;
+mod mirrors;
 mod direct;
 mod through_openings;
 mod side_elements;
@@ -61,7 +62,7 @@ use crate::stages::stage;
 use bound::RefinementBound;
 use contact::Contacts;
 use corners::ElementCorners;
-use correction::{LeafLight, RegionCorrection};
+use correction::{LeafLight, RegionCorrection, mirrored_irradiance};
 use elements::Elements;
 use exchange::{Exchange, ExchangeLink, LeafVisibility};
 use gather::{CornerViews, Gatherer};
@@ -109,7 +110,9 @@ impl Radiosity {
         let stage = stage!("solving for radiosity", (2 * ROUNDS) as f64, "rounds");
         let stopped = || watch.is_cancelled();
         let prepared = world.prepared();
-        let visibility = VisibilityTester::new(world, watch.memo);
+        let mut visibility = VisibilityTester::new(world, watch.memo);
+        // Photons are traced from surfaces through mirrors, too.
+        visibility.by_mirrors = !plan.needs(Stage::PhotonMap) && mirrors::has_mirrors(world);
         let shadows = plan.needs(Stage::Shadows);
         let diagonal = prepared.bounds.diagonal();
         let edges = ShortestEdges::new(prepared, plan, settings);
@@ -248,6 +251,15 @@ fn light(
                 .zip(&leaf_visibility.is_dark)
                 .filter(|(_, dark)| **dark)
                 .for_each(|(light, _)| *light = Channels::ZERO);
+        }
+        let mirrored = {
+            let light = LeafLight { first: &first, reflectance: &reflectance, irradiance: &irradiance };
+            mirrored_irradiance(&elements.hierarchy, &leaves, leaf_visibility, &light)
+        };
+        if let Some(mirrored) = mirrored {
+            irradiance.iter_mut().zip(&mirrored).for_each(|(light, more)| *light += *more);
+            let more = views.at_corners(&mirrored);
+            at_corners.iter_mut().zip(&more).for_each(|(light, more)| *light += *more);
         }
         let light = LeafLight { first: &first, reflectance: &reflectance, irradiance: &irradiance };
         let correction = RegionCorrection::new(&elements.hierarchy, &leaves, leaf_visibility, &light);

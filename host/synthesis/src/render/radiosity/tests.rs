@@ -508,3 +508,45 @@ fn what_comes_through_an_opening_is_what_the_closed_form_tells() {
         }
     }
 }
+
+/// A thin upright plate of a perfect mirror.
+fn mirror(middle: DVec3, size: DVec3) -> Object {
+    let mirror = Classic { diffuse: Paint::grey(0.0), mirror: Paint::grey(1.0), ..Classic::default() };
+    let plate = object("mirror", Shape::from(Primitive::Box { size }), 0.0);
+    Object { transform: DMat4::from_translation(middle), material: Some(mirror.into()), ..plate }
+}
+
+#[test]
+fn mirrors_show_elements_the_sky_and_each_other() {
+    // A mirror stands on the ground: what it takes of the sky it shows, and the sky is there in all directions.
+    let plate = mirror(DVec3::new(0.0, 1.0, 0.0), DVec3::new(0.02, 2.0, 3.0));
+    let sky = Light::Sky { map: None, radiance: Color::grey(1.0), turned: 0.0 };
+    let ground = object("ground", Shape::Ground { size: 3.0 }, 0.5);
+    let open = prepared(vec![ground, plate], vec![sky]);
+    let radiosity = solved(&open, &RadiositySettings { error: 0.02, finest: 0.02, ..coarse() }, None);
+    // Points of both triangles of the ground, none next to the mirror.
+    let points: Vec<[f64; 3]> = (0..100)
+        .map(|i| [f64::from(i % 10) + 0.5, f64::from(i / 10) + 0.5].map(|x| x / 10.0))
+        .map(|[u, v]| if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] })
+        .map(|[u, v]| [1.0 - u - v, u, v])
+        .filter(|weights| {
+            (0..2).all(|triangle| {
+                let corners = open.corners(triangle);
+                (0..3).map(|i| corners[i].x * weights[i]).sum::<f64>().abs() > 0.05
+            })
+        })
+        .collect();
+    let [all, by_mirror] = [IrradiancePart::All, IrradiancePart::Indirect].map(|part| {
+        let at =
+            |weights: &[f64; 3]| -> f64 { (0..2).map(|t| radiosity.irradiance(t, true, *weights, part).0[0]).sum() };
+        points.iter().map(at).sum::<f64>() / (2 * points.len()) as f64
+    });
+    assert!(by_mirror > 0.3 && (all / PI - 1.0).abs() < 0.01, "{all} {by_mirror}");
+    // A wall of a closed room is a mirror: all that the others send comes to them, and light is the same everywhere.
+    let wall = mirror(DVec3::new(0.97, 0.0, 0.0), DVec3::new(0.02, 1.999, 1.999));
+    let room = prepared(vec![cube("room", 2.0, 0.6), wall], vec![]);
+    let sends = |_: u32, outside: bool, _: DVec3| Channels::splat(if outside { 0.0 } else { 1.0 });
+    let radiosity = solved(&room, &coarse(), Some(&sends));
+    let light = mean(&room, &radiosity, 0, false, IrradiancePart::All);
+    assert!((light / 2.5 - 1.0).abs() < 0.03, "{light} {:?}", radiosity.report);
+}

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 /// Rounding errors, in units of the last place of the largest coordinate, that rays keep clear of.
 const CLEARANCE_ULPS: f64 = 64.0;
 /// Length of a ray to what it hits, over the distance, so that it does not hit it.
-const SHORT: f64 = 1.0 - 1e-7;
+pub(super) const SHORT: f64 = 1.0 - 1e-7;
 /// Surfaces that let light straight through and that a ray passes, at the most.
 const MOST_PASSABLE: usize = 64;
 
@@ -25,6 +25,8 @@ pub(super) struct VisibilityTester<'a> {
     pub(super) clearance: f64,
     pub(super) seed: u64,
     pub(super) openings: Openings,
+    /// Whether mirrors and panes send light on.
+    pub(super) by_mirrors: bool,
     /// The memo in which results are kept, if there is one.
     memo: Option<&'a Memo>,
 }
@@ -47,7 +49,7 @@ impl<'a> VisibilityTester<'a> {
         let largest = prepared.vertices.iter().fold(0.0f64, |most, vertex| most.max(vertex.abs().max_element()));
         let clearance = (CLEARANCE_ULPS * f64::EPSILON * largest).max(f64::MIN_POSITIVE);
         let (seed, openings) = (prepared.settings.image.seed, Openings::new(&prepared.portals));
-        VisibilityTester { world, clearance, seed, openings, memo }
+        VisibilityTester { world, clearance, seed, openings, by_mirrors: false, memo }
     }
 
     /// Maps a function over items, on all threads; see [`Memo::map`].
@@ -69,7 +71,7 @@ impl<'a> VisibilityTester<'a> {
     }
 
     /// Transmittance of a ray up to a parameter, in the mean over the lanes, 0..=1.
-    fn along(&self, ray: &Ray, t_max: f64) -> f64 {
+    pub(super) fn along(&self, ray: &Ray, t_max: f64) -> f64 {
         let transmittance = self.world.transmittance(ray, t_max, usize::MAX, None, 0, 0.0).0;
         let lanes = self.world.appearance.wavelengths.lanes();
         transmittance.0[..lanes].iter().sum::<f64>() / lanes as f64
@@ -93,17 +95,20 @@ impl<'a> VisibilityTester<'a> {
     ///
     /// - `place`: a point with its unit normal, told which one and a point of the unit square.
     /// - `number`: of the element: each has directions of its own. `count`: of directions.
-    pub(super) fn trace_hemisphere(
+    /// - `trace`: tells what a ray hits; it is given numbers in 0..1 for what is by chance on the way.
+    pub(super) fn trace_hemisphere<T>(
         &self,
         place: impl Fn(u32, [f64; 2]) -> [DVec3; 2],
         number: u64,
         count: u32,
-    ) -> Vec<RayTarget> {
+        trace: impl Fn(&Ray, &dyn Fn(u64) -> f64) -> T,
+    ) -> Vec<T> {
         let sequence = SobolSequence::new(self.seed, number);
         let look = |index: u32| {
             let [point, normal] = place(index, sequence.point(index, 0));
             let towards = cosine_hemisphere(sequence.point(index, 1), normal);
-            self.trace(&Ray { origin: point + normal * self.clearance, direction: towards })
+            let ray = Ray { origin: point + normal * self.clearance, direction: towards };
+            trace(&ray, &|which| sequence.number(index, 2 + which))
         };
         (0..count).map(look).collect()
     }
