@@ -5,8 +5,8 @@
 //! what large regions exchange, though not what elements do. So the irradiance of all leaves of a region is multiplied by
 //! one factor: with it, regions receive what rays tell that they receive of each other.
 //!
-//! A ray from leaf i to leaf j tells of the exchange of both: with n rays from each, A F is estimated as the count of
-//! rays either way over n / A(i) + n / A(j), which is the balance heuristic. What then lacks in a row, or is too much,
+//! A ray from leaf i to leaf j tells of the exchange of both: with n(i) rays from one and n(j) from the other, A F is
+//! estimated as the count of rays either way over n(i) / A(i) + n(j) / A(j), which is the balance heuristic. What then lacks in a row, or is too much,
 //! a leaf exchanges with itself, so that the exchange stays symmetric and no light is lost where nothing escapes.
 //!
 //! # Source
@@ -122,7 +122,7 @@ pub(super) fn mirrored_irradiance(
         for hit in visibility.hits_of(i).iter().filter(|hit| hit.is_mirrored && hit.leaf != NONE) {
             let from = hit.leaf as usize;
             let sent = light.first[from] + light.reflectance[from] * light.irradiance[from];
-            flux += sent * (area * f64::from(hit.transmittance) / f64::from(visibility.directions));
+            flux += sent * (area * f64::from(hit.transmittance) / visibility.rays[i].len() as f64);
             rays += 1;
         }
         sums[*leaf as usize] = (flux, light.irradiance[i] * area, area, rays);
@@ -154,11 +154,12 @@ fn for_each_exchange(areas: &[f64], visibility: &LeafVisibility, mut f: impl FnM
         f(*a as usize, *b as usize, *exchange);
         f(*b as usize, *a as usize, *exchange);
     }
-    let count = f64::from(visibility.directions);
+    // Rays for each unit of area.
+    let density: Vec<f64> = areas.iter().zip(&visibility.rays).map(|(area, rays)| rays.len() as f64 / area).collect();
     for i in (0..areas.len()).filter(|i| !visibility.is_dark[*i]) {
         for hit in visibility.hits_of(i).iter().filter(|hit| hit.leaf != NONE && !hit.through_opening) {
             let j = hit.leaf as usize;
-            let exchange = f64::from(hit.transmittance) / (count * (areas[i].recip() + areas[j].recip()));
+            let exchange = f64::from(hit.transmittance) / (density[i] + density[j]);
             f(i, j, exchange);
             f(j, i, exchange);
         }

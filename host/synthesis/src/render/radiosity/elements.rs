@@ -359,6 +359,11 @@ impl<'a> Elements<'a> {
         sum.sqrt() / leaves.len().max(1) as f64
     }
 
+    /// The power that a node sends, in all lanes together: W.
+    pub(super) fn power(&self, node: u32) -> f64 {
+        total(self.sent[node as usize]) * self.hierarchy.nodes[node as usize].area
+    }
+
     /// Brings what is known of leaves up to the root.
     pub(super) fn pull(&mut self) {
         let Elements { hierarchy, reflectance, direct, indirect, extra, sent, least, .. } = self;

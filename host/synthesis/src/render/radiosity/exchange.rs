@@ -8,6 +8,7 @@ use crate::color::Channels;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
+use std::ops::Range;
 
 /// Rounds of balancing at the most, and the error of a row that ends them.
 const MOST_ROUNDS: u32 = 100;
@@ -32,9 +33,9 @@ const NEIGHBOURING_RAYS: u64 = 2048;
 /// Leaf visibility: what leaves see in directions that are as dense as their cosine.
 #[derive(Clone, Debug)]
 pub(super) struct LeafVisibility {
-    /// How many directions are traced from each leaf.
-    pub(super) directions: u32,
-    /// What rays in these directions hit, leaf by leaf.
+    /// For each leaf, which of the hits are those of its rays.
+    pub(super) rays: Vec<Range<usize>>,
+    /// What rays in directions that are as dense as their cosine hit, leaf by leaf.
     pub(super) hits: Vec<LeafHit>,
     /// For each leaf, the part of all light in these directions that comes straight from something that exchanges light,
     /// and the part that comes by mirrors.
@@ -58,8 +59,7 @@ impl LeafVisibility {
 
     /// What the rays of a leaf hit.
     pub(super) fn hits_of(&self, leaf: usize) -> &[LeafHit] {
-        let directions = self.directions as usize;
-        &self.hits[leaf * directions..(leaf + 1) * directions]
+        &self.hits[self.rays[leaf].clone()]
     }
 }
 
@@ -253,7 +253,7 @@ impl<'a> Exchange<'a> {
         // Of each node: rays, and whether one is lost.
         let mut sums = vec![(0u64, false); nodes.len()];
         for (i, leaf) in self.leaves.iter().enumerate().filter(|(i, _)| !leaf_visibility.is_dark[*i]) {
-            sums[*leaf as usize] = (u64::from(leaf_visibility.directions), leaf_visibility.seen_part[i] < 1.0);
+            sums[*leaf as usize] = (leaf_visibility.rays[i].len() as u64, leaf_visibility.seen_part[i] < 1.0);
         }
         for place in (0..nodes.len()).rev() {
             for child in nodes[place].children() {

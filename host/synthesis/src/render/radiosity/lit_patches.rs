@@ -24,6 +24,8 @@ const MOST_DIRECTIONS: u32 = 1024;
 const MOST_ERROR: f64 = 0.0004;
 /// Rays of all leaves at the most, unless the scene asks for more.
 const MOST_RAYS: usize = 1 << 22;
+/// Rays of one leaf that are its for what it sends, at the most.
+const MOST_OF_BRIGHT: u32 = 1 << 16;
 
 /// The hierarchy of the patches to which light comes, straight or from others; elements of them to which none comes are
 /// dark.
@@ -159,7 +161,8 @@ fn is_any_lit(corners: [DVec3; 3], coarsest: f64, at: &impl Fn(DVec3) -> bool) -
         && [[a, ab, ca], [ab, b, bc], [ca, bc, c], [bc, ca, ab]].iter().any(|part| is_any_lit(*part, coarsest, at))
 }
 
-/// Leaf visibility, by rays: so many that chance is a small part of what leaves receive.
+/// Leaf visibility, by rays: so many that chance is a small part of what leaves receive. Half of them are from all leaves
+/// alike, half the more from a leaf the more it sends: rays to a small bright spot seldom hit it.
 ///
 /// - `row`: for each leaf, the part of all that it sees that exchanges light.
 /// - `directions`: rays of each leaf, at the least. `stopped`: whether these will do.
@@ -175,33 +178,45 @@ pub(super) fn leaf_visibility(
     stopped: &dyn Fn() -> bool,
 ) -> Result<LeafVisibility, MemoryExceeded> {
     // What rays hit is known leaf by leaf first, then all together.
-    let reserve = |directions: u32| {
-        let rays = leaves.len() as u64 * u64::from(directions);
+    let reserve = |counts: &[u32]| {
+        let rays: u64 = counts.iter().map(|count| u64::from(*count)).sum();
         memory::reserve(2 * rays * size_of::<LeafHit>() as u64, || {
-            format!("radiosity: {directions} rays of {} elements each", leaves.len())
+            format!("radiosity: {rays} rays of {} elements", leaves.len())
         })
     };
-    reserve(directions)?;
-    let pilot = traced(visibility, elements, leaves, row, directions.max(1));
+    let directions = directions.max(1);
+    let few = vec![directions; leaves.len()];
+    reserve(&few)?;
+    let pilot = traced(visibility, elements, leaves, row, &few);
     let error = elements.error_by_chance(leaves, &pilot);
     let most = (MOST_RAYS / leaves.len().max(1)).clamp(1, MOST_DIRECTIONS as usize) as f64;
-    let needed = f64::from(pilot.directions) * (error / MOST_ERROR).powi(2);
+    let needed = f64::from(directions) * (error / MOST_ERROR).powi(2);
     let more = needed.min(most).ceil() as u32;
-    if more <= pilot.directions || stopped() {
+    if more <= directions || stopped() {
         return Ok(pilot);
     }
     drop(pilot);
-    reserve(more)?;
-    Ok(traced(visibility, elements, leaves, row, more))
+    let sent: Vec<f64> = leaves.iter().zip(row).map(|(leaf, row)| elements.power(*leaf) * row).collect();
+    let all: f64 = sent.iter().sum();
+    let rays = 0.5 * f64::from(more) * leaves.len() as f64;
+    let count = |sent: &f64| {
+        let by_power = if all > 0.0 { (rays * sent / all) as u32 } else { 0 };
+        more.div_ceil(2).max(directions) + by_power.min(MOST_OF_BRIGHT)
+    };
+    let counts: Vec<u32> = sent.iter().map(count).collect();
+    reserve(&counts)?;
+    Ok(traced(visibility, elements, leaves, row, &counts))
 }
 
-/// What so many rays of each leaf hit.
+/// What rays of each leaf hit.
+///
+/// - `counts`: of each leaf, how many rays.
 fn traced(
     visibility: &VisibilityTester<'_>,
     elements: &Elements<'_>,
     leaves: &[u32],
     row: &[f64],
-    directions: u32,
+    counts: &[u32],
 ) -> LeafVisibility {
     let hierarchy: &Hierarchy = &elements.hierarchy;
     let elements_of_sides = SideElements::new(visibility, hierarchy);
@@ -220,14 +235,14 @@ fn traced(
         let place = |index: u32, uniform: [f64; 2]| hierarchy.place(*leaf, index, uniform);
         if !visibility.by_mirrors {
             let straight = |ray: &Ray, _: &dyn Fn(u64) -> f64| of(visibility.trace(ray), false);
-            return (visibility.trace_hemisphere(place, own, directions, straight), MirroredSky::default());
+            return (visibility.trace_hemisphere(place, own, counts[number], straight), MirroredSky::default());
         }
         let by_mirrors = |ray: &Ray, uniform: &dyn Fn(u64) -> f64| {
             let MirroredTarget { target, is_mirrored, sky } = visibility.trace_by_mirrors(ray, uniform);
             (of(target, is_mirrored), sky)
         };
         let (hits, sky): (Vec<LeafHit>, Vec<Channels>) =
-            visibility.trace_hemisphere(place, own, directions, by_mirrors).into_iter().unzip();
+            visibility.trace_hemisphere(place, own, counts[number], by_mirrors).into_iter().unzip();
         (hits, MirroredSky::of(&sky))
     };
     let (seen, mirrored_sky): (Vec<Vec<LeafHit>>, Vec<MirroredSky>) =
@@ -240,7 +255,7 @@ fn traced(
     let alight = joined.joined_to_lit(|some| some.iter().map(|number| sends(leaves[*number as usize])).collect());
     let part = |seen: &Vec<LeafHit>, is_mirrored: bool| {
         let hits = seen.iter().filter(|hit| hit.leaf != NONE && hit.is_mirrored == is_mirrored);
-        hits.map(|hit| f64::from(hit.transmittance)).sum::<f64>() / f64::from(directions)
+        hits.map(|hit| f64::from(hit.transmittance)).sum::<f64>() / seen.len() as f64
     };
     let parts = |is_mirrored: bool| seen.iter().map(|seen| part(seen, is_mirrored)).collect();
     let through = visibility.seen_through_openings();
@@ -252,8 +267,14 @@ fn traced(
         (a != NONE && b != NONE).then_some(ExchangeLink { a, b, exchange })
     };
     let through_openings = through.into_iter().filter_map(link).collect();
+    let mut end = 0;
+    let range = |seen: &Vec<LeafHit>| {
+        let first = end;
+        end += seen.len();
+        first..end
+    };
     LeafVisibility {
-        directions,
+        rays: seen.iter().map(range).collect(),
         seen_part: parts(false),
         mirrored_part: parts(true),
         mirrored_sky,

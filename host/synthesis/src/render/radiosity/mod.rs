@@ -41,6 +41,7 @@ mod form_factor;
 mod shortest_edges;
 mod face_clusters;
 mod hierarchy;
+mod shown;
 mod report;
 mod solver;
 mod surface;
@@ -69,6 +70,7 @@ use gather::{CornerViews, Gatherer};
 use hierarchy::{RadiosityPatch, normal_and_area};
 use refinement::{AssessedLink, refine};
 use shortest_edges::ShortestEdges;
+use shown::ShownPlaces;
 use solver::solve;
 use surface::SurfaceLight;
 use visibility::VisibilityTester;
@@ -133,9 +135,15 @@ impl Radiosity {
         let mut report = RadiosityReport { patches: elements.hierarchy.patches.len(), ..RadiosityReport::default() };
         let mut leaves = Vec::new();
         let mut at_corners = None;
+        let shown = ShownPlaces::new(&visibility, plan);
         for round in 0..ROUNDS {
             // What comes from other elements is not known at first: nothing is too dark then.
-            let bound = bound(elements.mean_irradiance(), if round == 0 { 1.0 } else { DIM });
+            let mean = elements.mean_irradiance();
+            let bound = match round {
+                0 => bound(mean, 1.0),
+                // A dim room beside a bright garden is as much to what it shows as to the scene.
+                _ => bound((mean * shown.irradiance(&visibility, &elements, DIM * mean).unwrap_or(mean)).sqrt(), DIM),
+            };
             if round > 0 {
                 elements.divide_where_light_varies(&visibility, bound, BENT);
             }

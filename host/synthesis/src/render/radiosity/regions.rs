@@ -34,13 +34,13 @@ impl FluxEstimate {
         if self.by_rays > 0.0 { self.variance.sqrt() / self.by_rays } else { 0.0 }
     }
 
-    /// Takes the variance as the mean of its own and of that of as much light of a larger part, each as certain as so many
-    /// rays: where few rays bring light, their variance is too small just where the light is.
+    /// Takes the variance as no less than the mean of its own and of that of as much light of a larger part, each as
+    /// certain as so many rays: where few rays bring light, their variance is too small just where the light is.
     fn pool_variance(&mut self, larger: &FluxEstimate) {
         let each = if larger.by_rays > 0.0 { larger.variance / larger.by_rays } else { 0.0 };
         let rays = self.rays as f64;
         let own = rays / (rays + RAYS_OF_LARGER);
-        self.variance = own * self.variance + (1.0 - own) * each * self.by_elements;
+        self.variance = self.variance.max(own * self.variance + (1.0 - own) * each * self.by_elements);
     }
 
     /// The standard error of the factor.
