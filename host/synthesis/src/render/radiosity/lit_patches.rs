@@ -24,6 +24,8 @@ const MOST_DIRECTIONS: u32 = 1024;
 const MOST_ERROR: f64 = 0.0004;
 /// Rays of all leaves at the most, unless the scene asks for more.
 const MOST_RAYS: usize = 1 << 22;
+/// A leaf has so many rays more for what it sends, or a multiple: by rounding errors, none has one more or less.
+const BY_POWER: f64 = 16.0;
 /// Rays of one leaf that are its for what it sends, at the most.
 const MOST_OF_BRIGHT: u32 = 1 << 16;
 
@@ -200,7 +202,7 @@ pub(super) fn leaf_visibility(
     let all: f64 = sent.iter().sum();
     let rays = 0.5 * f64::from(more) * leaves.len() as f64;
     let count = |sent: &f64| {
-        let by_power = if all > 0.0 { (rays * sent / all) as u32 } else { 0 };
+        let by_power = if all > 0.0 { (rays * sent / (all * BY_POWER)) as u32 * BY_POWER as u32 } else { 0 };
         more.div_ceil(2).max(directions) + by_power.min(MOST_OF_BRIGHT)
     };
     let counts: Vec<u32> = sent.iter().map(count).collect();

@@ -142,7 +142,10 @@ impl Radiosity {
             let bound = match round {
                 0 => bound(mean, 1.0),
                 // A dim room beside a bright garden is as much to what it shows as to the scene.
-                _ => bound((mean * shown.irradiance(&visibility, &elements, DIM * mean).unwrap_or(mean)).sqrt(), DIM),
+                _ => {
+                    let shown = shown.irradiance(&visibility, &elements, DIM * mean);
+                    bound(shown.map_or(mean, |shown| (mean * shown).sqrt()), DIM)
+                }
             };
             if round > 0 {
                 elements.divide_where_light_varies(&visibility, bound, BENT);

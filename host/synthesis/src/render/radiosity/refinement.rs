@@ -21,6 +21,8 @@ const FORM_FACTOR_ERROR: f64 = 1e-2;
 const PARTLY_VISIBLE: f64 = 0.5;
 const NOT_VISIBLE: f64 = 0.1;
 const ALL_VISIBLE: f64 = 0.02;
+/// Radii are the same if one is no less than this part of the other: rounding errors do not decide which node is divided.
+const ALIKE: f64 = 1.0 - 1e-9;
 /// Elements at the most; beyond them nothing is divided any more.
 const MOST_NODES: usize = 3_000_000;
 
@@ -214,7 +216,7 @@ impl RefinementOracle<'_, '_> {
     fn divide(&self, a: u32, b: u32, is_clear: bool) -> Option<RefinementStep> {
         let can = |node: &HierarchyNode| !node.is_leaf() || self.elements.may_divide(node);
         let (first, second) = (self.node(a), self.node(b));
-        let takes_first = can(first) && (first.radius >= second.radius || !can(second));
+        let takes_first = can(first) && (first.radius >= second.radius * ALIKE || !can(second));
         if takes_first {
             Some(RefinementStep::Divide { divided: a, other: b, is_clear })
         } else {
