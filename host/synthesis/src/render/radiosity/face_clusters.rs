@@ -6,8 +6,9 @@
 //! # Source
 //! Face clusters: Willmott, Heckbert and Garland 1999. Mutually best partners: Borůvka 1926.
 
-use super::hierarchy::{HierarchyNode, cluster, key};
+use super::hierarchy::{HierarchyNode, key};
 use super::shortest_edges::ShortestEdges;
+use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap as HashMap;
 
@@ -16,17 +17,34 @@ const FEWEST: usize = 4;
 /// The greatest angle of a normal of a face cluster to the mean one, radians.
 const FACING: f64 = 0.35;
 
+/// Sums over the patches of a piece: of their areas, and of areas times middles and unit normals.
+#[derive(Clone, Copy)]
+struct Sums {
+    area: f64,
+    moment: DVec3,
+    normal: DVec3,
+}
+
+impl Sums {
+    fn of(node: &HierarchyNode) -> Sums {
+        Sums { area: node.area, moment: node.middle * node.area, normal: node.normal * node.area }
+    }
+
+    fn of_both([a, b]: [Sums; 2]) -> Sums {
+        Sums { area: a.area + b.area, moment: a.moment + b.moment, normal: a.normal + b.normal }
+    }
+}
+
 /// A piece of surface.
 struct Piece {
     /// Its patches, and the pieces beside it; in order.
     members: Vec<u32>,
     beside: Vec<u32>,
+    sums: Sums,
     /// The piece that it became part of.
     merged_into: Option<u32>,
     /// The best piece to be one with, and the cost of that.
     best: Option<(f64, u32)>,
-    /// Whether the best piece is to be looked for again.
-    is_changed: bool,
 }
 
 /// Divides patches into face clusters and patches that are alone, in the order of their first patches.
@@ -38,17 +56,17 @@ pub(super) fn face_clusters(own: &[HierarchyNode], edges: &ShortestEdges) -> Vec
         .into_iter()
         .enumerate()
         .map(|(patch, beside)| {
-            let is_changed = !beside.is_empty();
-            Piece { members: vec![patch as u32], beside, merged_into: None, best: None, is_changed }
+            let sums = Sums::of(&own[patch]);
+            Piece { members: vec![patch as u32], beside, sums, merged_into: None, best: None }
         })
         .collect();
-    let mut changed: Vec<u32> = (0..pieces.len() as u32).filter(|piece| pieces[*piece as usize].is_changed).collect();
+    let mut changed: Vec<u32> =
+        (0..pieces.len() as u32).filter(|piece| !pieces[*piece as usize].beside.is_empty()).collect();
     while !changed.is_empty() {
         let best: Vec<Option<(f64, u32)>> =
             changed.par_iter().map(|piece| best_partner(&pieces, *piece, own, edges)).collect();
         for (piece, best) in changed.iter().zip(best) {
-            let piece = &mut pieces[*piece as usize];
-            (piece.best, piece.is_changed) = (best, false);
+            pieces[*piece as usize].best = best;
         }
         let partner = |piece: u32| pieces[piece as usize].best.map(|(_, partner)| partner);
         let pairs: Vec<[u32; 2]> = changed
@@ -107,10 +125,16 @@ fn neighbours(own: &[HierarchyNode], edges: &ShortestEdges) -> Vec<Vec<u32>> {
 fn best_partner(pieces: &[Piece], piece: u32, own: &[HierarchyNode], edges: &ShortestEdges) -> Option<(f64, u32)> {
     let cost = |other: &u32| {
         // In one order, so that both find the same cost.
-        let (first, second) = if piece < *other { (piece, *other) } else { (*other, piece) };
-        let of = |piece: u32| pieces[piece as usize].members.iter().copied();
-        let both = cluster(of(first).chain(of(second)), own);
-        let (size, bend) = (both.radius / edges.of(&both), both.spread / FACING);
+        let both = [piece.min(*other), piece.max(*other)].map(|piece| &pieces[piece as usize]);
+        let sum = Sums::of_both(both.map(|piece| piece.sums));
+        let (middle, normal) = (sum.moment / sum.area, sum.normal.normalize_or_zero());
+        let (mut farthest, mut cosine) = (0.0f64, 1.0f64);
+        for node in both.iter().flat_map(|piece| &piece.members).map(|patch| &own[*patch as usize]) {
+            cosine = cosine.min(node.normal.dot(normal));
+            farthest = node.corners.iter().fold(farthest, |most, corner| most.max(corner.distance_squared(middle)));
+        }
+        let radius = farthest.sqrt();
+        let (size, bend) = (radius / edges.at(middle, radius), cosine.clamp(-1.0, 1.0).acos() / FACING);
         (size <= 1.0 && bend <= 1.0).then_some((size * size + bend * bend, *other))
     };
     pieces[piece as usize].beside.iter().filter_map(cost).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))
@@ -118,8 +142,8 @@ fn best_partner(pieces: &[Piece], piece: u32, own: &[HierarchyNode], edges: &Sho
 
 /// Makes two pieces one. Tells which pieces are to look for a partner again.
 fn merge(pieces: &mut [Piece], kept: u32, gone: u32) -> Vec<u32> {
-    let Piece { members, beside, .. } = &mut pieces[gone as usize];
-    let (members, others) = (std::mem::take(members), std::mem::take(beside));
+    let Piece { members, beside, sums, .. } = &mut pieces[gone as usize];
+    let (members, others, sums) = (std::mem::take(members), std::mem::take(beside), *sums);
     pieces[gone as usize].merged_into = Some(kept);
     for other in others.iter().filter(|other| **other != kept) {
         let beside = &mut pieces[*other as usize].beside;
@@ -130,6 +154,7 @@ fn merge(pieces: &mut [Piece], kept: u32, gone: u32) -> Vec<u32> {
     }
     let piece = &mut pieces[kept as usize];
     piece.members.extend(members);
+    piece.sums = Sums::of_both([piece.sums, sums]);
     piece.members.sort_unstable();
     piece.beside.extend(others);
     piece.beside.retain(|other| *other != kept && *other != gone);

@@ -412,7 +412,7 @@ fn halve(part: &mut [u32], own: &[HierarchyNode], scale: f64) {
 }
 
 /// The node of a cluster of some patches, at least one.
-pub(super) fn cluster(part: impl Iterator<Item = u32> + Clone, own: &[HierarchyNode]) -> HierarchyNode {
+fn cluster(part: impl Iterator<Item = u32> + Clone, own: &[HierarchyNode]) -> HierarchyNode {
     let members = || part.clone().map(|member| &own[member as usize]);
     let area: f64 = members().map(|node| node.area).sum();
     let middle = members().map(|node| node.middle * node.area).sum::<DVec3>() / area;

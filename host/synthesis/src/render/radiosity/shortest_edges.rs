@@ -63,7 +63,12 @@ impl ShortestEdges {
 
     /// The shortest edges of a node.
     pub(super) fn of(&self, node: &HierarchyNode) -> f64 {
-        let of_views = self.views.iter().map(|view| view.shortest(node.middle, node.radius));
+        self.at(node.middle, node.radius)
+    }
+
+    /// The shortest edges within a radius of a place.
+    pub(super) fn at(&self, middle: DVec3, radius: f64) -> f64 {
+        let of_views = self.views.iter().map(|view| view.shortest(middle, radius));
         of_views.reduce(f64::min).map_or(self.everywhere, |edge| edge.max(self.everywhere))
     }
 }
