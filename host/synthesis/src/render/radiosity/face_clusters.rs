@@ -74,7 +74,7 @@ pub(super) fn face_clusters(own: &[HierarchyNode], edges: &ShortestEdges) -> Vec
             .filter_map(|one| {
                 let other = partner(*one)?;
                 // Of two that both changed, the lower tells of them.
-                let is_told = *one < other || !changed.binary_search(&other).is_ok();
+                let is_told = *one < other || changed.binary_search(&other).is_err();
                 (is_told && partner(other) == Some(*one)).then_some([*one.min(&other), *one.max(&other)])
             })
             .collect();
