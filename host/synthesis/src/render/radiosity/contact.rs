@@ -1,6 +1,6 @@
 //! Contacts: where surfaces touch or pass through each other, elements end, so that none is partly inside of something.
 
-use super::hierarchy::{Hierarchy, normal_and_area};
+use super::hierarchy::{Hierarchy, RadiosityPatch, normal_and_area};
 use super::shortest_edges::ShortestEdges;
 use super::visibility::VisibilityTester;
 use crate::numeric::bounds::Bounds;
@@ -94,6 +94,15 @@ impl Contacts {
     /// Whether a line leads through the inside of a convex polygon.
     pub(super) fn crosses(&self, line: &[DVec3; 2], polygon: &[DVec3], normal: DVec3) -> bool {
         crosses(line, polygon, normal, self.tolerance)
+    }
+
+    /// Whether a line leads through the inside of a patch.
+    pub(super) fn cross(&self, patch: &RadiosityPatch) -> bool {
+        let lines = self.on(patch.triangle);
+        !lines.is_empty() && {
+            let normal = normal_and_area(patch.corners).0;
+            lines.iter().any(|line| self.crosses(line, &patch.corners, normal))
+        }
     }
 
     /// Triangles of which a triangle consists that no line leads through.

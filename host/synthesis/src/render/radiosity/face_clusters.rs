@@ -51,8 +51,13 @@ struct Piece {
 ///
 /// - `own`: a node for each patch.
 /// - `edges`: of elements; the radius of a face cluster is no greater.
-pub(super) fn face_clusters(own: &[HierarchyNode], edges: &ShortestEdges) -> Vec<Vec<u32>> {
-    let mut pieces: Vec<Piece> = neighbours(own, edges)
+/// - `is_alone`: whether a patch is to be an element by itself.
+pub(super) fn face_clusters(
+    own: &[HierarchyNode],
+    edges: &ShortestEdges,
+    is_alone: impl Fn(u32) -> bool,
+) -> Vec<Vec<u32>> {
+    let mut pieces: Vec<Piece> = neighbours(own, |patch, node| node.radius <= edges.of(node) && !is_alone(patch))
         .into_iter()
         .enumerate()
         .map(|(patch, beside)| {
@@ -98,11 +103,11 @@ pub(super) fn face_clusters(own: &[HierarchyNode], edges: &ShortestEdges) -> Vec
     found
 }
 
-/// For each patch that is small enough, those that share an edge with it and are, too.
-fn neighbours(own: &[HierarchyNode], edges: &ShortestEdges) -> Vec<Vec<u32>> {
+/// For each patch that takes part, those that share an edge with it and do, too.
+fn neighbours(own: &[HierarchyNode], takes_part: impl Fn(u32, &HierarchyNode) -> bool) -> Vec<Vec<u32>> {
     let mut at_edge: HashMap<[[u64; 3]; 2], Vec<u32>> = HashMap::default();
     let mut beside: Vec<Vec<u32>> = vec![Vec::new(); own.len()];
-    for (patch, node) in (0..).zip(own).filter(|(_, node)| node.radius <= edges.of(node)) {
+    for (patch, node) in (0..).zip(own).filter(|(patch, node)| takes_part(*patch, node)) {
         for i in 0..3 {
             let mut edge = [key(node.corners[i]), key(node.corners[(i + 1) % 3])];
             edge.sort_unstable();

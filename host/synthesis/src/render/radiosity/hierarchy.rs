@@ -167,9 +167,14 @@ impl Hierarchy {
     /// Clusters over patches, each of which has an area.
     ///
     /// - `edges`: of elements; face clusters have no greater radius.
-    pub(super) fn new(patches: Vec<RadiosityPatch>, edges: &ShortestEdges) -> Hierarchy {
+    /// - `is_alone`: whether a patch is to be part of no face cluster.
+    pub(super) fn new(
+        patches: Vec<RadiosityPatch>,
+        edges: &ShortestEdges,
+        is_alone: impl Fn(&RadiosityPatch) -> bool,
+    ) -> Hierarchy {
         let own: Vec<HierarchyNode> = own_nodes(&patches);
-        let faces = face_clusters(&own, edges);
+        let faces = face_clusters(&own, edges, |patch| is_alone(&patches[patch as usize]));
         Hierarchy::of_faces(patches, &faces)
     }
 
@@ -466,7 +471,7 @@ mod tests {
         let slim = [at(0.0, 0.0, 0.0), at(0.0, 0.1, 0.0), at(-8.0, 0.0, 0.0)];
         let broad = [at(0.0, 0.0, 0.0), at(3.0, 0.0, 0.0), at(0.0, 3.0, 0.0)];
         for (corners, parts) in [(slim, 2), (broad, 4)] {
-            let mut hierarchy = Hierarchy::new(vec![patch(corners)], &ShortestEdges::everywhere(1e-9));
+            let mut hierarchy = Hierarchy::new(vec![patch(corners)], &ShortestEdges::everywhere(1e-9), |_| false);
             let sliver = hierarchy.nodes[0].sliver();
             hierarchy.divide(0);
             let children: Vec<HierarchyNode> = hierarchy.nodes[1..].to_vec();
@@ -499,7 +504,7 @@ mod tests {
             })
         };
         let leaves = |patches: Vec<RadiosityPatch>, finest: f64| {
-            Hierarchy::new(patches, &ShortestEdges::everywhere(finest)).leaves().len()
+            Hierarchy::new(patches, &ShortestEdges::everywhere(finest), |_| false).leaves().len()
         };
         assert_eq!(leaves(row(0.0, 0.0).collect(), 10.0), 1);
         // In two of four each, or alone.

@@ -43,7 +43,8 @@ pub(super) fn lit_hierarchy(
     shadows: bool,
     edges: &ShortestEdges,
 ) -> Hierarchy {
-    let mut all = Hierarchy::new(patches, edges);
+    // What a line leads through is partly inside of something: it is cut, and parts what is on either side.
+    let mut all = Hierarchy::new(patches, edges, |patch| contacts.cross(patch));
     all.cut(contacts, edges);
     let is_dark = dark(visibility, &all, exitance, through, shadows, COARSEST * edges.everywhere);
     all.darken(&is_dark);

@@ -12,6 +12,9 @@
 //! parts of the scene receive, and what elements have is multiplied to agree with that. Through openings that the scene
 //! tells of, lights and surfaces are looked for from points of the opening.
 //!
+//! What pictures do not show is left out: elements are no finer than a part of a pixel, and errors of links are bounded
+//! by the mean light of the scene and of what pictures show.
+//!
 //! What light cannot come to is left out first: rays join patches that see each other, and only what is joined to a lit
 //! one takes part. A closed dark room stays dark to the last bit.
 //!

@@ -161,7 +161,7 @@ mod tests {
             let at = DVec3::X * f64::from(triangle);
             RadiosityPatch { corners: [at, at + DVec3::X, at + DVec3::Y], triangle, outside: true }
         };
-        let hierarchy = Hierarchy::new((0..count).map(patch).collect(), &ShortestEdges::everywhere(1e-9));
+        let hierarchy = Hierarchy::new((0..count).map(patch).collect(), &ShortestEdges::everywhere(1e-9), |_| false);
         let leaves = hierarchy.leaves();
         (hierarchy, leaves)
     }

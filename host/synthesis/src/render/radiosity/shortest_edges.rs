@@ -84,8 +84,8 @@ mod tests {
     fn at_depth(depth: f64) -> HierarchyNode {
         let corner = |angle: f64| DVec3::new(1e-3 * angle.cos(), 1e-3 * angle.sin(), -depth);
         let corners = [0.0, 2.0, 4.0].map(corner);
-        Hierarchy::new(vec![RadiosityPatch { corners, triangle: 0, outside: true }], &ShortestEdges::everywhere(1e-9))
-            .nodes[0]
+        let patch = RadiosityPatch { corners, triangle: 0, outside: true };
+        Hierarchy::new(vec![patch], &ShortestEdges::everywhere(1e-9), |_| false).nodes[0]
     }
 
     #[test]

@@ -186,7 +186,7 @@ fn the_hierarchy_gives_what_a_full_matrix_gives() {
     let inside: Vec<RadiosityPatch> =
         patches(&room, &plan, &visibility).into_iter().filter(|patch| !patch.outside).collect();
     let edges = ShortestEdges::everywhere(0.3);
-    let mut elements = Elements::new(Hierarchy::new(inside, &edges), &visibility, None, &[], true, &edges);
+    let mut elements = Elements::new(Hierarchy::new(inside, &edges, |_| false), &visibility, None, &[], true, &edges);
     let bound = |error: f64, mean: f64| RefinementBound { error, mean, dimmest: 1.0 };
     // All as fine as they may be, so that links do not divide elements.
     loop {
@@ -475,7 +475,8 @@ fn flux_of_lights(room: &Prepared) -> f64 {
     let inner: Vec<RadiosityPatch> = patches(room, &plan, &visibility).into_iter().filter(is_inner).collect();
     let edges = ShortestEdges::everywhere(room.bounds.diagonal() / 200.0);
     let through = visibility.light_through_openings(true);
-    let mut elements = Elements::new(Hierarchy::new(inner, &edges), &visibility, None, &through, true, &edges);
+    let mut elements =
+        Elements::new(Hierarchy::new(inner, &edges, |_| false), &visibility, None, &through, true, &edges);
     let bound = RefinementBound { error: 0.005, mean: elements.mean_irradiance(), dimmest: 1.0 };
     elements.divide_where_light_varies(&visibility, bound, BENT);
     let leaves = elements.hierarchy.leaves();
