@@ -19,9 +19,9 @@
 //! one takes part. A closed dark room stays dark to the last bit.
 //!
 //! *Not modelled*: light that rough mirrors, glass that bends it and gloss pass on; what such surfaces take counts as
-//! escaped. Light through coloured surfaces loses as much in all bands as in the mean. What moves stands where it is in the middle of
-//! the time. Of spectra, eight bands are known, each 59 nm wide: within a band, light of other surfaces has the same
-//! strength everywhere.
+//! escaped. Light through coloured surfaces loses as much in all bands as in the mean. What moves stands where it is
+//! in the middle of the time. Of spectra, eight bands are known, each 59 nm wide: within a band, light of other
+//! surfaces has the same strength everywhere.
 
 mod bound;
 mod contact;
