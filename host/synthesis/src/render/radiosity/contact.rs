@@ -1,6 +1,8 @@
 //! Contacts: where surfaces touch or pass through each other, elements end, so that none is partly inside of something.
 
-use super::hierarchy::{Hierarchy, RadiosityPatch, normal_and_area};
+use super::hierarchy::Hierarchy;
+
+use super::node::{RadiosityPatch, normal_and_area};
 use super::shortest_edges::ShortestEdges;
 use super::visibility::VisibilityTester;
 use crate::numeric::bounds::Bounds;

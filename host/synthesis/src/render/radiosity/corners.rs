@@ -1,6 +1,8 @@
 //! Corners of elements: those that lie at the same place of a smooth surface are one.
 
-use super::hierarchy::{Hierarchy, NONE, key};
+use super::hierarchy::Hierarchy;
+
+use super::node::{NONE, key};
 use crate::scene::Prepared;
 use glam::DVec3;
 use std::collections::HashMap;

@@ -13,7 +13,8 @@
 //! Aggregation and disaggregation: Chatelin and Miranker 1982. The balance heuristic: Veach and Guibas 1995.
 
 use super::exchange::{ExchangeLink, LeafVisibility};
-use super::hierarchy::{Hierarchy, NONE};
+use super::hierarchy::Hierarchy;
+use super::node::NONE;
 use super::regions::{self, FluxEstimate, Regions};
 use crate::color::{Channels, LANES};
 use rustc_hash::FxHashMap as HashMap;

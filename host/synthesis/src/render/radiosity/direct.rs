@@ -1,6 +1,6 @@
 //! External light of elements: straight from lights, and by exitance from elsewhere.
 
-use super::hierarchy::{HierarchyNode, RadiosityPatch};
+use super::node::{HierarchyNode, RadiosityPatch};
 use super::visibility::VisibilityTester;
 use crate::color::Channels;
 use crate::illumination::light::LightSource;

@@ -3,7 +3,9 @@
 //! Light that a node sends is the mean over its leaves, and what it receives is spread evenly over them: with P the
 //! matrix that takes means and G that of the links, leaves exchange M = Pᵀ G P, symmetric whatever the links are.
 
-use super::hierarchy::{Hierarchy, HierarchyNode, NONE, Summable};
+use super::hierarchy::{Hierarchy, Summable};
+
+use super::node::{HierarchyNode, NONE};
 use crate::color::Channels;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};

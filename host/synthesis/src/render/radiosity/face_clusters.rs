@@ -6,7 +6,7 @@
 //! # Source
 //! Face clusters: Willmott, Heckbert and Garland 1999. Mutually best partners: Borůvka 1926.
 
-use super::hierarchy::{HierarchyNode, key};
+use super::node::{HierarchyNode, key};
 use super::shortest_edges::ShortestEdges;
 use glam::DVec3;
 use rayon::prelude::*;

@@ -2,7 +2,8 @@
 //! outline of one is seen.
 
 use super::corners::ElementCorners;
-use super::hierarchy::{Hierarchy, NONE, key, normal_and_area};
+use super::hierarchy::Hierarchy;
+use super::node::{NONE, key, normal_and_area};
 use crate::color::Channels;
 use glam::{DMat2, DVec2, DVec3};
 use rayon::prelude::*;

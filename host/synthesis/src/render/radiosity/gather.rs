@@ -10,7 +10,8 @@
 use super::bound::RefinementBound;
 use super::corners::{ElementCorner, ElementCorners};
 use super::form_factor::{from_point, kernel};
-use super::hierarchy::{Hierarchy, NONE, POINTS};
+use super::hierarchy::{Hierarchy, POINTS};
+use super::node::NONE;
 use super::refinement::AssessedLink;
 use super::visibility::VisibilityTester;
 use crate::color::Channels;

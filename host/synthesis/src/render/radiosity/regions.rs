@@ -150,7 +150,7 @@ impl Regions {
 
 #[cfg(test)]
 mod tests {
-    use super::super::hierarchy::RadiosityPatch;
+    use super::super::node::RadiosityPatch;
     use super::super::shortest_edges::ShortestEdges;
     use super::*;
     use glam::DVec3;

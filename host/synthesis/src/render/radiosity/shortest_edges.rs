@@ -1,6 +1,6 @@
 //! How short edges of elements may be: a part of the scene, but no less than a part of a pixel that shows them.
 
-use super::hierarchy::HierarchyNode;
+use super::node::HierarchyNode;
 use crate::plan::Plan;
 use crate::scene::{Prepared, RadiositySettings, View};
 use glam::{DVec3, DVec4};
@@ -55,7 +55,7 @@ impl ShortestEdges {
         ShortestEdges { everywhere, views: views.unwrap_or_default() }
     }
 
-    /// The same shortest edges everywhere.
+    /// Shortest edges that no picture makes longer.
     #[cfg(test)]
     pub(super) fn everywhere(everywhere: f64) -> ShortestEdges {
         ShortestEdges { everywhere, views: Vec::new() }
@@ -75,7 +75,6 @@ impl ShortestEdges {
 
 #[cfg(test)]
 mod tests {
-    use super::super::hierarchy::{Hierarchy, RadiosityPatch};
     use super::*;
     use crate::numeric::bounds::Bounds;
     use crate::scene::{Camera, Parallel, Scene};
@@ -84,8 +83,7 @@ mod tests {
     fn at_depth(depth: f64) -> HierarchyNode {
         let corner = |angle: f64| DVec3::new(1e-3 * angle.cos(), 1e-3 * angle.sin(), -depth);
         let corners = [0.0, 2.0, 4.0].map(corner);
-        let patch = RadiosityPatch { corners, triangle: 0, outside: true };
-        Hierarchy::new(vec![patch], &ShortestEdges::everywhere(1e-9), |_| false).nodes[0]
+        HierarchyNode::triangle(corners, 0)
     }
 
     #[test]

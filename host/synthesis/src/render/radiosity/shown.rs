@@ -1,7 +1,7 @@
 //! What pictures show: places by whose light the errors of radiosity are measured.
 
 use super::elements::Elements;
-use super::hierarchy::NONE;
+use super::node::NONE;
 use super::side_elements::SideElements;
 use super::visibility::{RayTarget, VisibilityTester};
 use crate::plan::Plan;

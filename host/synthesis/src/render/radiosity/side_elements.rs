@@ -1,6 +1,8 @@
 //! The elements of sides of triangles: which one a ray hits.
 
-use super::hierarchy::{Hierarchy, NONE};
+use super::hierarchy::Hierarchy;
+
+use super::node::NONE;
 use super::visibility::{RayTarget, VisibilityTester};
 
 /// Finds elements of a hierarchy.

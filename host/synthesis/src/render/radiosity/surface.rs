@@ -6,7 +6,8 @@
 use super::corners::ElementCorners;
 use super::elements::Elements;
 use super::faces;
-use super::hierarchy::{Hierarchy, NONE};
+use super::hierarchy::Hierarchy;
+use super::node::NONE;
 use crate::color::Channels;
 use crate::render::indirect::IrradiancePart;
 use crate::scene::Prepared;

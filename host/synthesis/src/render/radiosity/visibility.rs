@@ -1,6 +1,6 @@
 //! Visibility of elements by rays: whether something is between two points, and what is hit in all directions.
 
-use super::hierarchy::{HierarchyNode, RadiosityPatch};
+use super::node::{HierarchyNode, RadiosityPatch};
 use super::openings::Openings;
 use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::Ray;
