@@ -6,8 +6,9 @@
 //! one factor: with it, regions receive what rays tell that they receive of each other.
 //!
 //! A ray from leaf i to leaf j tells of the exchange of both: with n(i) rays from one and n(j) from the other, A F is
-//! estimated as the count of rays either way over n(i) / A(i) + n(j) / A(j), which is the balance heuristic. What then lacks in a row, or is too much,
-//! a leaf exchanges with itself, so that the exchange stays symmetric and no light is lost where nothing escapes.
+//! estimated as the count of rays either way over n(i) / A(i) + n(j) / A(j), which is the balance heuristic. What then
+//! lacks in a row, or is too much, a leaf exchanges with itself, so that the exchange stays symmetric and no light is
+//! lost where nothing escapes.
 //!
 //! # Source
 //! Aggregation and disaggregation: Chatelin and Miranker 1982. The balance heuristic: Veach and Guibas 1995.

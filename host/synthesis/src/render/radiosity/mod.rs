@@ -139,7 +139,7 @@ impl Radiosity {
         let mut report = RadiosityReport { patches: elements.hierarchy.patches.len(), ..RadiosityReport::default() };
         let mut leaves = Vec::new();
         let mut at_corners = None;
-        let shown = ShownPlaces::new(&visibility, plan);
+        let shown = ShownPlaces::new(&visibility, plan, settings);
         for round in 0..ROUNDS {
             // What comes from other elements is not known at first: nothing is too dark then.
             let mean = elements.mean_irradiance();

@@ -6,6 +6,7 @@ use super::side_elements::SideElements;
 use super::visibility::{RayTarget, VisibilityTester};
 use crate::plan::Plan;
 use crate::render::world::CameraRays;
+use crate::scene::RadiositySettings;
 
 /// Rays into each picture along its longer side, and views at the most that count.
 const ALONG: u32 = 32;
@@ -15,15 +16,16 @@ const MOST_VIEWS: usize = 8;
 pub(super) struct ShownPlaces(Vec<RayTarget>);
 
 impl ShownPlaces {
-    /// - `visibility`: traces rays through panes and, where light goes by mirrors, by mirrors, too.
-    pub(super) fn new(visibility: &VisibilityTester<'_>, plan: &Plan) -> ShownPlaces {
+    /// The first places that rays into the pictures hit, beyond panes; none where elements are to be the same for all
+    /// views.
+    pub(super) fn new(visibility: &VisibilityTester<'_>, plan: &Plan, settings: &RadiositySettings) -> ShownPlaces {
         let prepared = visibility.world.prepared();
         let image = &prepared.settings.image;
         let longer = image.width.max(image.height).max(1);
         let along = |side: u32| (u64::from(side) * u64::from(ALONG)).div_ceil(u64::from(longer)).max(1) as u32;
         let (width, height) = (along(image.width), along(image.height));
         let eyes: Vec<CameraRays> = match plan.views() {
-            views if views.len() <= MOST_VIEWS => {
+            views if views.len() <= MOST_VIEWS && settings.pixels > 0.0 => {
                 views.iter().filter_map(|view| CameraRays::new(view, width, height, &prepared.bounds)).collect()
             }
             _ => Vec::new(),

@@ -551,3 +551,20 @@ fn mirrors_show_elements_the_sky_and_each_other() {
     let light = mean(&room, &radiosity, 0, false, IrradiancePart::All);
     assert!((light / 2.5 - 1.0).abs() < 0.03, "{light} {:?}", radiosity.report);
 }
+
+#[test]
+fn small_pictures_have_fewer_elements_unless_light_is_to_be_the_same_in_all() {
+    let of = |width: u32, pixels: f64| {
+        let lit = lamp(DVec3::new(0.5, 2.0, 1.0));
+        let ground = object("ground", Shape::Ground { size: 4.0 }, 0.5);
+        let mut scene = prepared(vec![ground, sphere("ball", 0.5, 0.5)], vec![lit]);
+        (scene.settings.image.width, scene.settings.image.height) = (width, width);
+        let settings = RadiositySettings { error: 0.05, finest: 0.01, pixels, ..RadiositySettings::default() };
+        let radiosity = solved(&scene, &settings, None);
+        (radiosity.report.elements, mean(&scene, &radiosity, 0, true, IrradiancePart::All))
+    };
+    let ([large, light], [small, other]) = ([of(640, 0.5), of(640, 0.0)], [of(8, 0.5), of(8, 0.0)]);
+    assert!(4 * small.0 < 3 * large.0, "{small:?} {large:?}");
+    assert!((small.1 / large.1 - 1.0).abs() < 0.05, "{small:?} {large:?}");
+    assert_eq!(light, other);
+}
