@@ -151,6 +151,7 @@ fn rooms_with_openings_by_radiosity_are_as_bright_as_mitsuba_tells() {
     let text = std::fs::read_to_string(folder.join("rooms.json")).expect("the values");
     let kept: Value = serde_json::from_str(&text).expect("JSON");
     let rooms = if std::env::var_os("PERIS_LONG").is_some() { ROOMS.len() } else { 1 };
+    let mut problems: Vec<String> = Vec::new();
     for (name, most, most_of_parts) in &ROOMS[..rooms] {
         let room = &kept["rooms"][name];
         let (kind, width) = name.split_once(' ').expect("two words");
@@ -177,10 +178,15 @@ fn rooms_with_openings_by_radiosity_are_as_bright_as_mitsuba_tells() {
         let number = |key: &str| room[key].as_f64().expect("a number");
         let off = ours.iter().flatten().sum::<f64>() / number("whole") - 1.0;
         let sure = most + 3.0 * number("error") / number("whole");
-        assert!(off.abs() < sure, "{name}: the mean is {:.2} % off", 100.0 * off);
+        if off.abs() >= sure {
+            problems.push(format!("{name}: the mean is {:.2} % off", 100.0 * off));
+        }
         let parts = ours.iter().flatten().zip(theirs.iter().flatten()).filter(|(_, theirs)| **theirs > 0.0);
         let squares: Vec<f64> = parts.map(|(ours, theirs)| (ours / theirs - 1.0).powi(2)).collect();
         let rms = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
-        assert!(rms < *most_of_parts, "{name}: parts are off by {:.2} %", 100.0 * rms);
+        if rms >= *most_of_parts {
+            problems.push(format!("{name}: parts are off by {:.2} %", 100.0 * rms));
+        }
     }
+    assert!(problems.is_empty(), "{problems:?}");
 }
