@@ -26,7 +26,7 @@ impl LightPosition {
 pub(super) struct LampPoint {
     /// Index of the source that it is a point of.
     pub(super) source: usize,
-    /// Which of the scene's lights it is a point of; none of an object that emits.
+    /// The number of the scene's light that it is a point of; none of an object that emits.
     pub(super) light: Option<u32>,
     pub(super) point: LightPoint,
     pub(super) position: LightPosition,
