@@ -51,19 +51,35 @@ impl Display {
         }
         // Tests run beside each other. A server that looks for a free number by itself may take away the socket of
         // one that is only just starting; a server that is given its number fails if another one has locked it.
+        // A server that says that it is ready may still turn clients away: it is asked, and never starts over.
         for number in NEXT_DISPLAY.fetch_add(1, Ordering::Relaxed)..=LAST_DISPLAY {
             let mut server = Command::new("Xvfb");
-            server.args([&format!(":{number}"), "-displayfd", "1", "-screen", "0", "1280x860x24", "-nolisten", "tcp"]);
+            server.args([
+                &format!(":{number}"),
+                "-displayfd",
+                "1",
+                "-screen",
+                "0",
+                "1280x860x24",
+                "-nolisten",
+                "tcp",
+                "-noreset",
+            ]);
             let mut child = server.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().expect("Xvfb starts");
             let out = child.stdout.take().expect("piped");
             let display = Display { name: format!(":{number}"), _server: Running(child) };
             let mut line = String::new();
             BufReader::new(out).read_line(&mut line).expect("what Xvfb says is text");
-            if line.trim() == number.to_string() {
+            if line.trim() == number.to_string() && display.answers() {
                 return Some(display);
             }
         }
         panic!("no display from :{FIRST_DISPLAY} to :{LAST_DISPLAY} is free");
+    }
+
+    /// Whether clients reach the server.
+    fn answers(&self) -> bool {
+        self.command("xdotool").arg("getdisplaygeometry").output().expect("xdotool runs").status.success()
     }
 
     fn command(&self, program: &str) -> Command {

@@ -13,9 +13,14 @@ pub enum ConsoleError {
     NoDisplay,
     /// The display that is named cannot be reached.
     #[error(
-        "no window: the display {0} cannot be reached: nothing serves it, or not this user; without '--window' the machine needs no display"
+        "no window: the display {display} cannot be reached: nothing serves it, or not this user ({reason}); without '--window' the machine needs no display"
     )]
-    NoServer(String),
+    NoServer {
+        /// As the environment names it.
+        display: String,
+        /// In the window system's words.
+        reason: String,
+    },
     /// A library of the window system is missing.
     #[error("no window: the library {library} is missing; on Debian and Ubuntu: apt install {package}")]
     NoLibrary {

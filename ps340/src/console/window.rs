@@ -101,7 +101,9 @@ fn show(
     }));
     match started {
         Ok(Ok(())) => Ok(()),
-        Ok(Err(eframe::Error::WinitEventLoop(_))) => Err(ConsoleError::NoServer(libraries::display())),
+        Ok(Err(eframe::Error::WinitEventLoop(error))) => {
+            Err(ConsoleError::NoServer { display: libraries::display(), reason: error.to_string() })
+        }
         Ok(Err(error)) => Err(ConsoleError::Graphics(error.to_string())),
         // The window system's own code panics where a library or a display fails it; its message was printed.
         Err(panic) => {
