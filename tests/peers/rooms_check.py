@@ -2,10 +2,11 @@
 
     python3 tests/peers/rooms_check.py [--peris target/release/peris] [--rooms "sky 0.6"] [--write]
 
-Needs the packages mitsuba, numpy and OpenEXR, and LLVM's library for Mitsuba. `--write` lets Mitsuba work, some minutes a
-room, and keeps its values in rooms.json, where tests/tests/peers.rs looks for them. Each room is made of rectangles here; of
-the sky only what fills the outer rim of the window is there, which is all that comes in. Pixels in which the window, the
-lamp or what is next to them is in sight do not count.
+Needs the packages mitsuba, numpy and OpenEXR, and LLVM's library for Mitsuba. Mitsuba's numbers have 24 bits, and its rays
+start so far off surfaces that it shows in windows of 0.05: its rooms are enlarged about the window. `--write` lets Mitsuba
+work, some minutes a room, and keeps its values in rooms.json, where tests/tests/peers.rs looks for them. Each room is made
+of rectangles here; of the sky only what fills the outer rim of the window is there, which is all that comes in. Pixels in
+which the window, the lamp or what is next to them is in sight do not count.
 """
 import argparse
 import json
@@ -21,12 +22,18 @@ mi.set_variant("llvm_ad_rgb")
 HERE = os.path.dirname(os.path.abspath(__file__))
 KEPT = os.path.join(HERE, "rooms.json")
 COLUMNS, ROWS, PARTS = 64, 48, (6, 8)
-PASSES, SAMPLES = 16, 1024
+PASSES = 16
+# Of the light of a lamp or a spot, less comes to the window.
+SAMPLES = {"sky": 1024, "sun": 1024, "pane": 1024, "lantern": 1024, "lamp": 4096, "spot": 4096}
+# A small patch of sun is few pixels: with 256 samples, chance is half a percent of the picture.
+OUR_SAMPLES = 1024
 # A pixel with so many times the median shows a lamp or the sky.
 BRIGHT = 20
 ROOMS = [f"{kind} {width}" for kind in ("sky", "sun", "lamp", "spot") for width in ("0.05", "0.2", "0.6", "2")]
 ROOMS += ["pane 0.6", "lantern 0"]
 T = mi.ScalarTransform4f
+# Mitsuba's rays start some 1e-4 (1 + distance from the origin) off surfaces, in units of length.
+ENLARGED, ORIGIN = 1000, np.array([2.1, 0, 0])
 
 
 def grey(value):
@@ -136,7 +143,29 @@ def scene(name):
     sensor = {"type": "perspective", "fov": 80, "fov_axis": "y", "to_world": camera, "film": film}
     integrator = {"type": "ptracer", "max_depth": 31, "rr_depth": 100}
     shapes = {f"shape{number}": shape for number, shape in enumerate(walls)}
-    return mi.load_dict({"type": "scene", "integrator": integrator, "sensor": sensor, **shapes})
+    return mi.load_dict(enlarged({"type": "scene", "integrator": integrator, "sensor": sensor, **shapes}))
+
+
+def enlarged(made):
+    """A scene whose light is the same in its pictures, larger, and with its window at the origin."""
+    grown = {}
+    for key, value in made.items():
+        if isinstance(value, dict):
+            value = enlarged(value)
+        elif key == "to_world":
+            matrix = np.array(value.matrix, float)
+            matrix[:3, 3] = ENLARGED * (matrix[:3, 3] - ORIGIN)
+            if made["type"] == "rectangle":
+                matrix[:3, :3] *= ENLARGED
+            value = T(matrix.tolist())
+        elif key == "center":
+            value = (ENLARGED * (np.array(value) - ORIGIN)).tolist()
+        elif key == "radius":
+            value = ENLARGED * value
+        grown[key] = value
+    if made.get("type") == "spot":
+        grown["intensity"] = grey(made["intensity"]["value"][0] * ENLARGED**2)
+    return grown
 
 
 def parts(picture):
@@ -174,7 +203,7 @@ def ours(peris, name, folder):
 
     kind, width = name.split()
     path = os.path.join(folder, "room.exr")
-    words = ["-D", f"kind={kind}", "-D", f"width={float(width) or 0.6}", "--samples", "256", "-o", path]
+    words = ["-D", f"kind={kind}", "-D", f"width={float(width) or 0.6}", "--samples", str(OUR_SAMPLES), "-o", path]
     subprocess.run([peris, "render", os.path.join(HERE, "rooms.rhai"), *words], check=True, capture_output=True)
     channels = OpenEXR.File(path).channels()
     return next(iter(channels.values())).pixels[:, :, 1].astype(float)
@@ -191,8 +220,8 @@ def main():
     if options.write:
         for name in options.rooms:
             made = scene(name)
-            passes = [np.array(mi.render(made, spp=SAMPLES, seed=seed))[:, :, 1] for seed in range(PASSES)]
             kind, width = name.split()
+            passes = [np.array(mi.render(made, spp=SAMPLES[kind], seed=seed))[:, :, 1] for seed in range(PASSES)]
             passes = np.array(passes)
             # A window is where the sky is seen in it.
             left_out = bright(passes) if kind in ("sky", "lantern") else kept["rooms"][f"sky {width}"]["left_out"]

@@ -73,19 +73,21 @@ fn means_of_blocks_are_those_of_mitsuba_within_the_errors_of_both() {
 
 /// How far off the mean of a picture by radiosity may be, and the mean of any of its regions, as a part of it or of a
 /// fifth of the mean of all if that is more.
-const WHOLE: f64 = 0.01;
+const WHOLE: f64 = 0.005;
 const REGION: f64 = 0.03;
 /// Where the mean is more, the lamp is in sight; regions above, below and beside do not count, either.
 const LAMP: f64 = 1.0;
 
 #[test]
-fn the_cornell_box_by_radiosity_is_that_of_mitsuba_within_a_percent_and_each_region_within_three() {
+fn the_cornell_box_by_radiosity_is_that_of_mitsuba_within_half_a_percent_and_each_region_within_three() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(folder.join("peers/radiosity.json")).expect("the values");
     let kept: Value = serde_json::from_str(&text).expect("JSON");
     let theirs: Vec<Vec<[f64; 3]>> = serde_json::from_value(kept["regions"].clone()).expect("regions");
     let mut scene = load_file(&folder.join("../host/scenes/cornell.rhai"), &Inputs::default()).expect("the box").scene;
     (scene.settings.image.width, scene.settings.image.height) = (128, 128);
+    // Edges within a region are not to be told by chance.
+    scene.settings.image.samples = 64;
     scene.settings.light.interreflection.count();
     let prepared = Prepared::new(&scene).expect("a scene");
     let view = prepared.view();
@@ -121,28 +123,27 @@ fn the_cornell_box_by_radiosity_is_that_of_mitsuba_within_a_percent_and_each_reg
 }
 
 /// Rooms, and how far off the mean of the picture by ray tracing with radiosity may be beside three standard errors of the
-/// other renderer's, and the root of the mean square of its parts.
-///
-/// A tunnel that is four times as deep as it is wide passes on little, of which a few bounces are most.
+/// other renderer's, and the root of the mean square of its parts, of which chance in the other renderer's is most in small
+/// windows.
 const ROOMS: [(&str, f64, f64); 18] = [
-    ("sky 0.6", 0.005, 0.01),
-    ("sky 0.05", 0.01, 0.04),
-    ("sky 0.2", 0.005, 0.015),
+    ("sky 0.6", 0.005, 0.008),
+    ("sky 0.05", 0.005, 0.03),
+    ("sky 0.2", 0.005, 0.008),
     ("sky 2", 0.005, 0.006),
-    ("sun 0.05", 0.03, 0.05),
-    ("sun 0.2", 0.005, 0.015),
-    ("sun 0.6", 0.005, 0.015),
-    ("sun 2", 0.005, 0.01),
-    ("lamp 0.05", 0.01, 0.15),
+    ("sun 0.05", 0.005, 0.025),
+    ("sun 0.2", 0.005, 0.01),
+    ("sun 0.6", 0.005, 0.01),
+    ("sun 2", 0.005, 0.007),
+    ("lamp 0.05", 0.005, 0.1),
     ("lamp 0.2", 0.005, 0.03),
     ("lamp 0.6", 0.005, 0.01),
     ("lamp 2", 0.005, 0.006),
-    ("spot 0.05", 0.04, 0.2),
+    ("spot 0.05", 0.005, 0.2),
     ("spot 0.2", 0.005, 0.025),
     ("spot 0.6", 0.005, 0.012),
-    ("spot 2", 0.005, 0.008),
-    ("pane 0.6", 0.005, 0.01),
-    ("lantern 0", 0.005, 0.008),
+    ("spot 2", 0.005, 0.007),
+    ("pane 0.6", 0.005, 0.007),
+    ("lantern 0", 0.005, 0.006),
 ];
 
 #[test]
@@ -163,7 +164,7 @@ fn rooms_with_openings_by_radiosity_are_as_bright_as_mitsuba_tells() {
         let inputs = Inputs { definitions, ..Inputs::default() };
         let mut scene = load_file(&folder.join("rooms.rhai"), &inputs).unwrap_or_else(|error| panic!("{error}")).scene;
         // Of lamps through small windows, 64 samples of a pixel tell too little.
-        scene.settings.image.samples = if rooms > 1 { 256 } else { scene.settings.image.samples };
+        scene.settings.image.samples = if rooms > 1 { 1024 } else { scene.settings.image.samples };
         let prepared = Prepared::new(&scene).expect("a scene");
         let view = prepared.view();
         let plan = Plan::new(&prepared, &view);

@@ -13,7 +13,8 @@
 //! # Source
 //! Aggregation and disaggregation: Chatelin and Miranker 1982. The balance heuristic: Veach and Guibas 1995.
 
-use super::exchange::{ExchangeLink, LeafVisibility};
+use super::enclosures::EnclosureTree;
+use super::exchange::{LeafVisibility, OpeningExchange};
 use super::hierarchy::Hierarchy;
 use super::node::NONE;
 use super::regions::{self, FluxEstimate, Regions};
@@ -39,6 +40,9 @@ pub(super) struct LeafLight<'a> {
     pub(super) reflectance: &'a [Channels],
     /// Irradiance by other elements, W/m².
     pub(super) irradiance: &'a [Channels],
+    /// Of what leaves exchange through openings, how much more than in the mean each of the two sends where the ray ends;
+    /// empty where that is not known.
+    pub(super) brightness: &'a [[f64; 2]],
 }
 
 /// Factors by which rays correct the irradiance of leaves.
@@ -69,7 +73,8 @@ impl RegionCorrection {
         light: &LeafLight<'_>,
     ) -> RegionCorrection {
         let areas: Vec<f64> = leaves.iter().map(|leaf| hierarchy.nodes[*leaf as usize].area).collect();
-        let regions = Regions::new(hierarchy, leaves, &flux_estimates(&areas, visibility, light));
+        let tree = EnclosureTree::new(hierarchy, leaves, &visibility.enclosures);
+        let regions = Regions::new(&tree, leaves, &flux_estimates(&areas, visibility, light));
         let region = &regions.of_leaves;
         let mut system = RegionSystem {
             pairs: exchange(&areas, region, visibility, light),
@@ -90,7 +95,7 @@ impl RegionCorrection {
         let irradiance: Vec<Channels> =
             light.irradiance.iter().zip(factor.clone()).map(|(light, factor)| *light * factor).collect();
         let estimates = flux_estimates(&areas, visibility, &LeafLight { irradiance: &irradiance, ..*light });
-        let own = regions::factors(hierarchy, leaves, &estimates, CAUTION);
+        let own = regions::factors(&tree, leaves, &estimates, CAUTION);
         RegionCorrection {
             factor: factor.zip(own).map(|(factor, own)| factor * own).collect(),
             change: if all > 0.0 { change / all } else { 0.0 },
@@ -150,11 +155,18 @@ pub(super) fn mirrored_irradiance(
     irradiance.iter().any(|light| *light != Channels::ZERO).then_some(irradiance)
 }
 
-/// Calls a function with all exchange that rays found, both ways: the leaf that receives, that which sends, and A F.
-fn for_each_exchange(areas: &[f64], visibility: &LeafVisibility, mut f: impl FnMut(usize, usize, f64)) {
-    for ExchangeLink { a, b, exchange } in &visibility.through_openings {
-        f(*a as usize, *b as usize, *exchange);
-        f(*b as usize, *a as usize, *exchange);
+/// Calls a function with all exchange that rays found, both ways: the leaf that receives, that which sends, A F, and how
+/// much more than in the mean it sends there.
+fn for_each_exchange(
+    areas: &[f64],
+    visibility: &LeafVisibility,
+    brightness: &[[f64; 2]],
+    mut f: impl FnMut(usize, usize, f64, f64),
+) {
+    for (number, OpeningExchange { link, .. }) in visibility.through_openings.iter().enumerate() {
+        let [of_a, of_b] = brightness.get(number).copied().unwrap_or([1.0; 2]);
+        f(link.a as usize, link.b as usize, link.exchange, of_b);
+        f(link.b as usize, link.a as usize, link.exchange, of_a);
     }
     // Rays for each unit of area.
     let density: Vec<f64> = areas.iter().zip(&visibility.rays).map(|(area, rays)| rays.len() as f64 / area).collect();
@@ -162,8 +174,8 @@ fn for_each_exchange(areas: &[f64], visibility: &LeafVisibility, mut f: impl FnM
         for hit in visibility.hits_of(i).iter().filter(|hit| hit.leaf != NONE && !hit.through_opening) {
             let j = hit.leaf as usize;
             let exchange = f64::from(hit.transmittance) / (density[i] + density[j]);
-            f(i, j, exchange);
-            f(j, i, exchange);
+            f(i, j, exchange, 1.0);
+            f(j, i, exchange, 1.0);
         }
     }
 }
@@ -190,8 +202,8 @@ pub(super) fn flux_estimates(areas: &[f64], visibility: &LeafVisibility, light: 
         rays: 0,
     };
     let mut estimates: Vec<FluxEstimate> = (0..areas.len()).map(known).collect();
-    for_each_exchange(areas, visibility, |to, from, exchange| {
-        let flux = (sent[from] - mean[to]) * exchange;
+    for_each_exchange(areas, visibility, light.brightness, |to, from, exchange, brightness| {
+        let flux = (brightness * sent[from] - mean[to]) * exchange;
         estimates[to].by_rays += flux;
         estimates[to].variance += flux * flux;
         estimates[to].rays += 1;
@@ -213,23 +225,23 @@ fn exchange(
     let mut pairs: Vec<([usize; 2], RegionExchange)> = Vec::new();
     let mut place_of: HashMap<[usize; 2], usize> = HashMap::default();
     let mut row: Vec<f64> = areas.iter().enumerate().map(|(i, area)| area * visibility.part(i)).collect();
-    let mut add = |to: usize, from: usize, exchange: f64| {
+    let mut add = |to: usize, from: usize, exchange: f64, brightness: f64| {
         let key = [region[to], region[from]];
         let place = *place_of.entry(key).or_insert_with(|| {
             pairs.push((key, RegionExchange::default()));
             pairs.len() - 1
         });
         let pair = &mut pairs[place].1;
-        pair.first += light.first[from] * exchange;
-        pair.reflected += light.reflectance[from] * light.irradiance[from] * exchange;
+        pair.first += light.first[from] * (brightness * exchange);
+        pair.reflected += light.reflectance[from] * light.irradiance[from] * (brightness * exchange);
     };
-    for_each_exchange(areas, visibility, |to, from, exchange| {
+    for_each_exchange(areas, visibility, light.brightness, |to, from, exchange, brightness| {
         row[to] -= exchange;
-        add(to, from, exchange);
+        add(to, from, exchange, brightness);
     });
     // What rays found too little or too much.
     for (i, missing) in row.into_iter().enumerate().filter(|(i, _)| !visibility.is_dark[*i]) {
-        add(i, i, missing);
+        add(i, i, missing, 1.0);
     }
     pairs
 }

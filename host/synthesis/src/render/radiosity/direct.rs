@@ -8,7 +8,6 @@ use crate::numeric::ray::Ray;
 use crate::numeric::sequence::SobolSequence;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use std::ops::Range;
 
 /// Exitance from elsewhere at a point of a side of a triangle, W/m², in lanes that are means over all wavelength sets:
 /// light that surfaces send beside what they reflect of lights and of each other, such as the photons that two-way ray
@@ -54,7 +53,7 @@ pub(super) struct LightAtPoint {
     pub(super) irradiance: Channels,
     /// Towards the light, unit length, and how far it is; infinite for light from infinitely far away.
     pub(super) towards: DVec3,
-    distance: f64,
+    pub(super) distance: f64,
 }
 
 /// External light at the three corners of an element; of one that may be divided also at the middles of the edges from
@@ -96,16 +95,6 @@ pub(super) fn bend(around: &CornerLight) -> f64 {
         of(|lit| lit.direct).max(of(|lit| lit.extra))
     };
     middles.iter().enumerate().map(off).fold(0.0, f64::max)
-}
-
-/// The irradiance of a leaf by light samples at random points of it.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(super) struct RandomLight {
-    /// The mean, W/m².
-    pub(super) irradiance: Channels,
-    /// The variance of the mean in all lanes together.
-    pub(super) variance: f64,
-    pub(super) samples: u32,
 }
 
 impl VisibilityTester<'_> {
@@ -272,44 +261,5 @@ impl VisibilityTester<'_> {
             sum += if arriving.is_finite() { arriving } else { Channels::ZERO };
         }
         Some(LightAtPoint { irradiance: sum * (sets as f64).recip(), towards, distance })
-    }
-
-    /// The mean irradiance of a leaf by light samples at random points of it, without what comes through openings.
-    ///
-    /// - `place`: a point with its unit normal, told which one and a point of the unit square.
-    /// - `number`: of the leaf: each has samples of its own. `samples`: which of them.
-    pub(super) fn random_light(
-        &self,
-        place: impl Fn(u32, [f64; 2]) -> [DVec3; 2],
-        number: u64,
-        samples: Range<u32>,
-        shadows: bool,
-    ) -> RandomLight {
-        let sequence = SobolSequence::new(self.seed, number);
-        let sources = &self.world.appearance.sources;
-        let (mut sum, mut total, mut squares) = (Channels::ZERO, 0.0, 0.0);
-        let count = samples.len() as u32;
-        for sample in samples {
-            let place = place(sample, sequence.point(sample, 0));
-            let by = |index: usize| {
-                let uniform = sequence.point(sample, 1 + sources[index].0 as u64);
-                let crosses = |light: &LightAtPoint| {
-                    let ray = Ray { origin: place[0], direction: light.towards };
-                    self.openings.are_crossed(&ray, light.distance)
-                };
-                let light =
-                    self.sample_light(place, index, uniform, shadows).filter(|light| !shadows || !crosses(light));
-                light.map_or(Channels::ZERO, |light| light.irradiance)
-            };
-            let light = (0..sources.len()).map(by).fold(Channels::ZERO, |sum, light| sum + light);
-            let of_lanes: f64 = light.0.iter().sum();
-            sum += light;
-            total += of_lanes;
-            squares += of_lanes * of_lanes;
-        }
-        let all = f64::from(count);
-        let mean = total / all;
-        let variance = (squares / all - mean * mean).max(0.0) / (all - 1.0);
-        RandomLight { irradiance: sum * all.recip(), variance, samples: count }
     }
 }

@@ -2,10 +2,12 @@
 
 use super::bound::RefinementBound;
 use super::correction::{LeafLight, flux_estimates};
-use super::direct::{CornerLight, Exitance, ExternalLight, RandomLight, bend, of_parts};
+use super::direct::{CornerLight, Exitance, ExternalLight, bend, of_parts};
+use super::enclosures::EnclosureTree;
 use super::exchange::LeafVisibility;
 use super::hierarchy::Hierarchy;
 use super::node::{HierarchyNode, NONE, RadiosityPatch, normal_and_area};
+use super::random_light::random_light;
 use super::regions::{self, FluxEstimate};
 use super::shortest_edges::ShortestEdges;
 use super::side_elements::SideElements;
@@ -15,7 +17,6 @@ use crate::color::Channels;
 use crate::render::world::mean_diffuse_albedo;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use std::ops::Range;
 
 /// The longest edge of an element, in shortest ones.
 pub(super) const COARSEST: f64 = 16.0;
@@ -24,16 +25,8 @@ const MOST_ELEMENTS: usize = 2_000_000;
 /// Light through openings is more than corners tell if it is by so many standard errors.
 const SIGNIFICANT: f64 = 3.0;
 
-/// Light samples at random points of a leaf: at first, and at the most; and of all leaves that need more.
-const FEW_SAMPLES: u32 = 16;
-const MOST_SAMPLES: u32 = 512;
-const SAMPLES: usize = 1 << 21;
-/// The standard error of the irradiance of a leaf by light samples, as a part of it, that needs no more.
-const SAMPLED_ERROR: f64 = 0.03;
 /// So many times what chance explains of a difference is taken from it.
 const CAUTION: f64 = 1.0;
-/// Leaves that tell together how many light samples each of them needs.
-const NEIGHBOURS: f64 = 16.0;
 
 /// Nodes with what is known of them.
 pub(super) struct Elements<'a> {
@@ -256,88 +249,44 @@ impl<'a> Elements<'a> {
         of
     }
 
-    /// Corrects the light of lights by rays, to random points of all leaves and through openings: regions then receive
-    /// of lights what these tell.
+    /// Flux of lights to each leaf by rays, to random points of it and through openings. A leaf whose corners no light
+    /// comes to has the light that these tell: what is not there cannot be multiplied.
+    pub(super) fn sample_direct(&mut self, visibility: &VisibilityTester<'_>, leaves: &[u32]) -> Vec<FluxEstimate> {
+        let hierarchy = &self.hierarchy;
+        let random = random_light(visibility, hierarchy, leaves, self.shadows);
+        let through = self.flux_through_openings(visibility);
+        let mut estimates = Vec::with_capacity(leaves.len());
+        for (light, leaf) in random.iter().zip(leaves.iter().map(|leaf| *leaf as usize)) {
+            let (area, through) = (hierarchy.nodes[leaf].area, &through[leaf]);
+            let flux = light.irradiance * area + through.flux;
+            if self.direct[leaf] == Channels::ZERO {
+                self.direct[leaf] = flux * area.recip();
+                self.corner_light[leaf].iter_mut().for_each(|light| light.direct = self.direct[leaf]);
+            }
+            estimates.push(FluxEstimate {
+                by_elements: area * total(self.direct[leaf]),
+                by_rays: total(flux),
+                variance: area * area * light.variance + through.variance,
+                rays: u64::from(light.samples + through.rays),
+            });
+        }
+        self.pull();
+        estimates
+    }
+
+    /// Corrects the light of lights, so that regions receive of lights what rays tell.
     ///
     /// Light samples at the corners of elements are the same for all: light differs smoothly, but the errors are of one
     /// sign over all of a room, and what comes through small openings is between them.
-    pub(super) fn correct_direct(&mut self, visibility: &VisibilityTester<'_>, leaves: &[u32]) {
-        let hierarchy = &self.hierarchy;
-        let random = self.random_light(visibility, leaves);
-        let through = self.flux_through_openings(visibility);
-        let area = |leaf: u32| hierarchy.nodes[leaf as usize].area;
-        let by_rays: Vec<Channels> = leaves
-            .iter()
-            .zip(&random)
-            .map(|(leaf, light)| light.irradiance * area(*leaf) + through[*leaf as usize].flux)
-            .collect();
-        // What no corner sees is not there to be multiplied.
-        for (leaf, flux) in leaves.iter().map(|leaf| *leaf as usize).zip(&by_rays) {
-            if self.direct[leaf] == Channels::ZERO {
-                self.direct[leaf] = *flux * area(leaf as u32).recip();
-                self.corner_light[leaf].iter_mut().for_each(|light| light.direct = self.direct[leaf]);
-            }
-        }
-        let estimate = |((leaf, flux), light): ((&u32, &Channels), &RandomLight)| FluxEstimate {
-            by_elements: area(*leaf) * total(self.direct[*leaf as usize]),
-            by_rays: total(*flux),
-            variance: area(*leaf).powi(2) * light.variance + through[*leaf as usize].variance,
-            rays: u64::from(light.samples + through[*leaf as usize].rays),
-        };
-        let estimates: Vec<FluxEstimate> = leaves.iter().zip(&by_rays).zip(&random).map(estimate).collect();
-        for (leaf, factor) in leaves.iter().zip(regions::factors(hierarchy, leaves, &estimates, CAUTION)) {
+    ///
+    /// - `estimates`: as [`Self::sample_direct`] tells them. `enclosures`: of each leaf.
+    pub(super) fn correct_direct(&mut self, leaves: &[u32], estimates: &[FluxEstimate], enclosures: &[u32]) {
+        let tree = EnclosureTree::new(&self.hierarchy, leaves, enclosures);
+        for (leaf, factor) in leaves.iter().zip(regions::factors(&tree, leaves, estimates, CAUTION)) {
             self.direct[*leaf as usize] *= factor;
             self.corner_light[*leaf as usize].iter_mut().for_each(|light| light.direct *= factor);
         }
         self.pull();
-    }
-
-    /// The light of lights at random points of leaves, the more of them the less few tell.
-    fn random_light(&self, visibility: &VisibilityTester<'_>, leaves: &[u32]) -> Vec<RandomLight> {
-        let light = |number: usize, leaf: u32, samples: Range<u32>| {
-            // Beyond the numbers of what looks around.
-            let own = (1 << 41) + number as u64;
-            let place = |index: u32, uniform: [f64; 2]| self.hierarchy.place(leaf, index, uniform);
-            visibility.random_light(place, own, samples, self.shadows)
-        };
-        let few = visibility.map(leaves, |number, leaf| light(number, *leaf, 0..FEW_SAMPLES));
-        let needed = self.needed_samples(leaves, &few);
-        let unsure = needed.iter().filter(|needed| **needed > FEW_SAMPLES).count();
-        let sources = visibility.world.appearance.sources.len();
-        let most = (SAMPLES / (unsure * sources).max(1)).clamp(FEW_SAMPLES as usize, MOST_SAMPLES as usize) as u32;
-        visibility.map(leaves, |number, leaf| match needed[number].min(most) {
-            samples if samples > FEW_SAMPLES => light(number, *leaf, 0..samples),
-            _ => few[number],
-        })
-    }
-
-    /// How many light samples each leaf needs, as few of its neighbours tell: if its own told, those by chance too dark
-    /// would stay so.
-    fn needed_samples(&self, leaves: &[u32], few: &[RandomLight]) -> Vec<u32> {
-        let nodes = &self.hierarchy.nodes;
-        // Of each node: irradiances, variances of one sample, and how many leaves.
-        let mut sums = vec![[0.0; 3]; nodes.len()];
-        let own = |light: &RandomLight| [total(light.irradiance), light.variance * f64::from(light.samples), 1.0];
-        leaves.iter().zip(few).for_each(|(leaf, light)| sums[*leaf as usize] = own(light));
-        for place in (0..nodes.len()).rev() {
-            for child in nodes[place].children() {
-                let of_child = sums[child];
-                sums[place].iter_mut().zip(of_child).for_each(|(sum, value)| *sum += value);
-            }
-        }
-        let mut around: Vec<usize> = (0..nodes.len()).collect();
-        for place in 0..nodes.len() {
-            for child in nodes[place].children() {
-                around[child] = if sums[child][2] >= NEIGHBOURS { child } else { around[place] };
-            }
-        }
-        let of = |(leaf, light): (&u32, &RandomLight)| {
-            let (all, own) = (sums[around[*leaf as usize]], own(light));
-            let [irradiance, variance, count] = std::array::from_fn(|i| all[i] - own[i]);
-            let needed = variance * count / (irradiance * irradiance * SAMPLED_ERROR * SAMPLED_ERROR);
-            if needed.is_finite() { needed.ceil() as u32 } else { 0 }
-        };
-        leaves.iter().zip(few).map(of).collect()
     }
 
     /// The standard error of the mean over all leaves of what each receives as rays tell it, as a part of that: so dim
@@ -349,7 +298,7 @@ impl<'a> Elements<'a> {
             [&self.reflectance, &self.direct, &self.extra, &self.indirect].map(|values| of(values));
         let first: Vec<Channels> = (0..leaves.len()).map(|i| extra[i] + reflectance[i] * direct[i]).collect();
         let areas: Vec<f64> = leaves.iter().map(|leaf| self.hierarchy.nodes[*leaf as usize].area).collect();
-        let light = LeafLight { first: &first, reflectance: &reflectance, irradiance: &irradiance };
+        let light = LeafLight { first: &first, reflectance: &reflectance, irradiance: &irradiance, brightness: &[] };
         let all = |i: usize| areas[i] * total(direct[i] + irradiance[i]);
         let estimates = flux_estimates(&areas, visibility, &light);
         let of = |(i, estimate): (usize, &FluxEstimate)| match all(i) {

@@ -49,8 +49,10 @@ pub(super) struct LeafVisibility {
     pub(super) row: Vec<f64>,
     /// Whether no light can come to it.
     pub(super) is_dark: Vec<bool>,
+    /// The enclosure of each leaf, by its number; [`NONE`] of one that is dark.
+    pub(super) enclosures: Vec<u32>,
     /// Leaves that see each other through openings, by their numbers.
-    pub(super) through_openings: Vec<ExchangeLink>,
+    pub(super) through_openings: Vec<OpeningExchange>,
 }
 
 impl LeafVisibility {
@@ -117,6 +119,15 @@ pub(super) struct ExchangeLink {
     pub(super) b: u32,
     /// A F, square units.
     pub(super) exchange: f64,
+}
+
+/// What two leaves exchange through an opening along a ray.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct OpeningExchange {
+    /// The numbers of the leaves, and A F.
+    pub(super) link: ExchangeLink,
+    /// Where the ray ends on each of them: weights of its corners.
+    pub(super) at: [[f64; 3]; 2],
 }
 
 /// The operator.

@@ -12,9 +12,11 @@ use super::corners::{ElementCorner, ElementCorners};
 use super::form_factor::{from_point, kernel};
 use super::hierarchy::{Hierarchy, POINTS};
 use super::node::NONE;
+use super::opening_views::OpeningViews;
 use super::refinement::AssessedLink;
 use super::visibility::VisibilityTester;
 use crate::color::Channels;
+use crate::numeric::ray::Ray;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -35,7 +37,6 @@ pub(super) struct Gatherer<'g, 'a> {
 
 /// Corner views: what each corner of leaves sees of nodes.
 pub(super) struct CornerViews<'g> {
-    hierarchy: &'g Hierarchy,
     corners: &'g ElementCorners,
     /// For each corner, the nodes, and the part of all that it sees that each node is.
     of: Vec<Vec<(u32, f32)>>,
@@ -56,10 +57,16 @@ impl CornerViews<'_> {
     /// Irradiance of each corner by light of others, W/m².
     ///
     /// - `sent`: what each leaf sends, W/m². `is_closed`: of each, whether all that it sees exchanges light.
-    pub(super) fn irradiance(&self, leaves: &[u32], sent: &[Channels], is_closed: &[bool]) -> Vec<Channels> {
-        let mut values = vec![Channels::ZERO; self.hierarchy.nodes.len()];
+    pub(super) fn irradiance(
+        &self,
+        hierarchy: &Hierarchy,
+        leaves: &[u32],
+        sent: &[Channels],
+        is_closed: &[bool],
+    ) -> Vec<Channels> {
+        let mut values = vec![Channels::ZERO; hierarchy.nodes.len()];
         leaves.iter().zip(sent).for_each(|(leaf, sent)| values[*leaf as usize] = *sent);
-        self.hierarchy.pull(&mut values);
+        hierarchy.pull(&mut values);
         // Of each corner, what its leaves send, if they are all closed.
         let mut own = vec![(Channels::ZERO, 0.0); self.of.len()];
         for ((corners, sent), is_closed) in self.corners.of.iter().zip(sent).zip(is_closed) {
@@ -85,6 +92,16 @@ impl CornerViews<'_> {
         (0..self.of.len()).into_par_iter().map(of).collect()
     }
 
+    /// How much more than in the mean a leaf sends at a place of it: linear between its corners.
+    ///
+    /// - `leaf`: its number. `at`: weights of its corners. `sent`: what it sends at each of them, told their numbers.
+    pub(super) fn brightness(&self, leaf: usize, at: [f64; 3], sent: impl Fn([u32; 3]) -> [f64; 3]) -> f64 {
+        let sent = sent(self.corners.of[leaf]);
+        let mean = sent.iter().sum::<f64>() / 3.0;
+        let here: f64 = sent.iter().zip(at).map(|(sent, weight)| sent * weight).sum();
+        if mean > 0.0 { (here / mean).max(0.0) } else { 1.0 }
+    }
+
     /// The mean at each corner of what is known of its leaves.
     pub(super) fn at_corners(&self, of_leaves: &[Channels]) -> Vec<Channels> {
         let mut sums = vec![(Channels::ZERO, 0.0); self.of.len()];
@@ -108,11 +125,11 @@ impl CornerViews<'_> {
     }
 }
 
-impl<'g> Gatherer<'g, '_> {
+impl Gatherer<'_, '_> {
     /// Corner views of all corners, divided the more the more what is seen differs.
     ///
     /// - `sent`: about what each node sends, W/m².
-    pub(super) fn views(
+    pub(super) fn views<'g>(
         &self,
         links: &[AssessedLink],
         corners: &'g ElementCorners,
@@ -125,10 +142,12 @@ impl<'g> Gatherer<'g, '_> {
         }
         let (rows, entries) = by_node(nodes.len(), links);
         let apart = self.apart(sent);
+        let opening_views = OpeningViews::new(self.visibility, self.hierarchy, sent);
         let of = |number: usize, corner: &ElementCorner| {
             let from = corner.view();
-            let error = self.bound.of(self.least[corner.leaf as usize]);
-            let (mut found, mut pending) = (Vec::new(), Vec::new());
+            let least = self.least[corner.leaf as usize];
+            let error = self.bound.of(least);
+            let (mut found, mut pending) = (opening_views.seen(from, least), Vec::new());
             let mut at = corner.leaf;
             while at != NONE {
                 pending.extend(&entries[rows[at as usize]..rows[at as usize + 1]]);
@@ -150,7 +169,10 @@ impl<'g> Gatherer<'g, '_> {
                         continue;
                     }
                     let is_little = factor * sent[other as usize].max() < LITTLE * error;
-                    let seen = if is_clear { 1.0 } else { self.visible_part(number as u32, from, other, is_little) };
+                    let seen = match is_clear && self.visibility.openings.0.is_empty() {
+                        true => 1.0,
+                        false => self.visible_part(number as u32, from, other, is_clear, is_little),
+                    };
                     if seen > 0.0 {
                         found.push((other, (factor * seen) as f32));
                     }
@@ -161,7 +183,7 @@ impl<'g> Gatherer<'g, '_> {
             found
         };
         let of = self.visibility.map(&corners.all, of);
-        CornerViews { hierarchy: self.hierarchy, corners, of }
+        CornerViews { corners, of }
     }
 
     /// How far what parts of each node send is from what all of it does in the mean, W/m² at the most.
@@ -190,8 +212,16 @@ impl<'g> Gatherer<'g, '_> {
         }
     }
 
-    /// The part of a node that is seen from a corner.
-    fn visible_part(&self, number: u32, from: [DVec3; 2], other: u32, is_little: bool) -> f64 {
+    /// The part of a node that is seen from a corner, but through openings.
+    fn visible_part(&self, number: u32, from: [DVec3; 2], other: u32, is_clear: bool, is_little: bool) -> f64 {
+        let transmittance = |to: [DVec3; 2]| {
+            let ray = Ray { origin: from[0], direction: to[0] - from[0] };
+            match self.visibility.openings.are_crossed(&ray, 1.0) {
+                true => 0.0,
+                false if is_clear => 1.0,
+                false => self.visibility.transmittance(from, to),
+            }
+        };
         let points = self.hierarchy.points(other);
         let (mut seen, mut all) = (0.0, 0.0);
         // The point of it that is tested differs from pair to pair.
@@ -200,7 +230,7 @@ impl<'g> Gatherer<'g, '_> {
             let to = points[(i + shift) % POINTS];
             let weight = kernel(from, to);
             if weight > 0.0 && weight.is_finite() {
-                seen += weight * self.visibility.transmittance(from, to);
+                seen += weight * transmittance(to);
                 all += weight;
                 if is_little {
                     break;

@@ -4,7 +4,8 @@ use super::contact::Contacts;
 use super::direct::Exitance;
 use super::disjoint_sets::DisjointSets;
 use super::elements::{COARSEST, Elements};
-use super::exchange::{ExchangeLink, LeafHit, LeafVisibility, MirroredSky};
+use super::enclosures::enclosures;
+use super::exchange::{ExchangeLink, LeafHit, LeafVisibility, MirroredSky, OpeningExchange};
 use super::hierarchy::{Hierarchy, POINTS};
 use super::mirrors::MirroredTarget;
 use super::node::{NONE, RadiosityPatch};
@@ -251,24 +252,31 @@ fn traced(
     };
     let (seen, mirrored_sky): (Vec<Vec<LeafHit>>, Vec<MirroredSky>) =
         visibility.map(leaves, looked).into_iter().unzip();
-    let mut joined = DisjointSets::new(leaves.len());
-    for (number, seen) in (0..).zip(&seen) {
-        seen.iter().filter(|hit| hit.leaf != NONE).for_each(|hit| joined.join(number, hit.leaf));
-    }
+    let joined = |is_joined: fn(&LeafHit) -> bool| {
+        let mut joined = DisjointSets::new(leaves.len());
+        for (number, seen) in (0..).zip(&seen) {
+            let hits = seen.iter().filter(|hit| hit.leaf != NONE && is_joined(hit));
+            hits.for_each(|hit| joined.join(number, hit.leaf));
+        }
+        joined
+    };
     let sends = |leaf: u32| (elements.direct[leaf as usize] + elements.extra[leaf as usize]).max() > 0.0;
-    let alight = joined.joined_to_lit(|some| some.iter().map(|number| sends(leaves[*number as usize])).collect());
+    let alight =
+        joined(|_| true).joined_to_lit(|some| some.iter().map(|number| sends(leaves[*number as usize])).collect());
+    let is_dark: Vec<bool> = alight.iter().map(|alight| !alight).collect();
+    let enclosures = enclosures(joined(|hit| !hit.through_opening && !hit.is_mirrored), &is_dark);
     let part = |seen: &Vec<LeafHit>, is_mirrored: bool| {
         let hits = seen.iter().filter(|hit| hit.leaf != NONE && hit.is_mirrored == is_mirrored);
         hits.map(|hit| f64::from(hit.transmittance)).sum::<f64>() / seen.len() as f64
     };
     let parts = |is_mirrored: bool| seen.iter().map(|seen| part(seen, is_mirrored)).collect();
     let through = visibility.seen_through_openings();
-    let link = |SeenThroughOpening { sides, exchange }: SeenThroughOpening| {
-        let [a, b] = sides.map(|side| match elements_of_sides.find(side) {
-            NONE => NONE,
-            leaf => place[leaf as usize],
-        });
-        (a != NONE && b != NONE).then_some(ExchangeLink { a, b, exchange })
+    let link = |SeenThroughOpening { sides: [one, other], exchange }: SeenThroughOpening| {
+        let ((one, at_one), (other, at_other)) =
+            (elements_of_sides.find_place(one)?, elements_of_sides.find_place(other)?);
+        let [a, b] = [one, other].map(|leaf| place[leaf as usize]);
+        let link = ExchangeLink { a, b, exchange };
+        (a != NONE && b != NONE).then_some(OpeningExchange { link, at: [at_one, at_other] })
     };
     let through_openings = through.into_iter().filter_map(link).collect();
     let mut end = 0;
@@ -284,7 +292,8 @@ fn traced(
         mirrored_sky,
         hits: seen.concat(),
         row: row.to_vec(),
-        is_dark: alight.iter().map(|alight| !alight).collect(),
+        is_dark,
+        enclosures,
         through_openings,
     }
 }

@@ -30,14 +30,18 @@ mod openings;
 mod visibility;
 mod mirrors;
 mod direct;
+mod sample_guide;
 mod through_openings;
 mod side_elements;
+mod enclosures;
 mod regions;
+mod random_light;
 mod elements;
 mod corners;
 mod exchange;
 mod correction;
 mod refinement;
+mod opening_views;
 mod gather;
 mod faces;
 mod form_factor;
@@ -52,6 +56,8 @@ mod surface;
 mod lit_patches;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod opening_tests;
 
 pub use direct::Exitance;
 pub use report::RadiosityReport;
@@ -69,7 +75,7 @@ use contact::Contacts;
 use corners::ElementCorners;
 use correction::{LeafLight, RegionCorrection, mirrored_irradiance};
 use elements::Elements;
-use exchange::{Exchange, ExchangeLink, LeafVisibility};
+use exchange::{Exchange, ExchangeLink, LeafVisibility, OpeningExchange};
 use gather::{CornerViews, Gatherer};
 use node::{RadiosityPatch, normal_and_area};
 use refinement::{AssessedLink, refine};
@@ -87,6 +93,8 @@ const PASSES: usize = 4;
 const BENT: f64 = 4.0;
 /// What receives light counts as no dimmer than this part of the mean irradiance, where errors are bounded by it.
 const DIM: f64 = 1e-4;
+/// Errors are bounded by no more than so many times the mean irradiance of what pictures show, where the scene is brighter.
+const MOST_ABOVE_SHOWN: f64 = 64.0;
 
 /// The light of a scene, for all views.
 #[derive(Clone, Debug)]
@@ -148,7 +156,7 @@ impl Radiosity {
                 // A dim room beside a bright garden is as much to what it shows as to the scene.
                 _ => {
                     let shown = shown.irradiance(&visibility, &elements, DIM * mean);
-                    bound(shown.map_or(mean, |shown| (mean * shown).sqrt()), DIM)
+                    bound(shown.map_or(mean, |shown| (mean * shown).sqrt().min(MOST_ABOVE_SHOWN * shown)), DIM)
                 }
             };
             if round > 0 {
@@ -158,9 +166,7 @@ impl Radiosity {
             stage.progress((2 * round + 1) as f64);
             let is_last = round + 1 == ROUNDS || stopped();
             leaves = elements.hierarchy.leaves();
-            if is_last {
-                elements.correct_direct(&visibility, &leaves);
-            }
+            let sampled = is_last.then(|| elements.sample_direct(&visibility, &leaves));
             let gatherer =
                 Gatherer { visibility: &visibility, hierarchy: &elements.hierarchy, bound, least: &elements.least };
             let corners = is_last.then(|| ElementCorners::new(prepared, &elements.hierarchy, &leaves));
@@ -170,6 +176,9 @@ impl Radiosity {
                 lit_patches::leaf_visibility(&visibility, &elements, &leaves, &rows, settings.directions, &stopped)
             };
             let leaf_visibility = views.as_ref().map(of_views).transpose()?;
+            if let (Some(sampled), Some(leaf_visibility)) = (sampled, &leaf_visibility) {
+                elements.correct_direct(&leaves, &sampled, &leaf_visibility.enclosures);
+            }
             let tolerance = if is_last { settings.tolerance } else { 1e-2 };
             let last = leaf_visibility.as_ref().zip(views.as_ref());
             let (irradiance, light) = light(&elements, &links, last, tolerance, &stopped, &mut report)?;
@@ -259,7 +268,7 @@ fn light(
         for _ in 0..PASSES {
             let sent = |(i, light): (usize, &Channels)| extra[i] + reflectance[i] * (direct[i] + *light);
             let sent: Vec<Channels> = irradiance.iter().enumerate().map(sent).collect();
-            at_corners = views.irradiance(&leaves, &sent, &exchange.is_closed);
+            at_corners = views.irradiance(&elements.hierarchy, &leaves, &sent, &exchange.is_closed);
             irradiance = views.means(&at_corners);
             irradiance
                 .iter_mut()
@@ -268,7 +277,8 @@ fn light(
                 .for_each(|(light, _)| *light = Channels::ZERO);
         }
         let mirrored = {
-            let light = LeafLight { first: &first, reflectance: &reflectance, irradiance: &irradiance };
+            let light =
+                LeafLight { first: &first, reflectance: &reflectance, irradiance: &irradiance, brightness: &[] };
             mirrored_irradiance(&elements.hierarchy, &leaves, leaf_visibility, &light)
         };
         if let Some(mirrored) = mirrored {
@@ -276,7 +286,25 @@ fn light(
             let more = views.at_corners(&mirrored);
             at_corners.iter_mut().zip(&more).for_each(|(light, more)| *light += *more);
         }
-        let light = LeafLight { first: &first, reflectance: &reflectance, irradiance: &irradiance };
+        let brightness: Vec<[f64; 2]> = {
+            let of = |leaf: u32, at: [f64; 3]| {
+                let (number, node) = (leaf as usize, leaves[leaf as usize] as usize);
+                if elements.hierarchy.nodes[node].is_cluster() {
+                    return 1.0;
+                }
+                let corner_light = &elements.corner_light[node];
+                views.brightness(number, at, |corners| {
+                    std::array::from_fn(|i| {
+                        let irradiance = corner_light[i].direct + at_corners[corners[i] as usize];
+                        (corner_light[i].extra + reflectance[number] * irradiance).0.iter().sum()
+                    })
+                })
+            };
+            let through = leaf_visibility.through_openings.iter();
+            through.map(|OpeningExchange { link, at }| [of(link.a, at[0]), of(link.b, at[1])]).collect()
+        };
+        let light =
+            LeafLight { first: &first, reflectance: &reflectance, irradiance: &irradiance, brightness: &brightness };
         let correction = RegionCorrection::new(&elements.hierarchy, &leaves, leaf_visibility, &light);
         (report.correction, report.standard_error) = (correction.change, correction.standard_error);
         let factors = views.at_corners(&correction.factor);

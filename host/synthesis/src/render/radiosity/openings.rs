@@ -1,5 +1,6 @@
 //! Openings: rectangles through which light comes into rooms.
 
+use super::form_factor::Convex;
 use crate::illumination::light::LightShape;
 use crate::numeric::ray::Ray;
 use glam::DVec3;
@@ -34,6 +35,20 @@ impl Opening {
     /// - `uniform`: a point of the unit square.
     pub(super) fn point(&self, [u, v]: [f64; 2]) -> DVec3 {
         self.corner + self.across * u + self.up * v
+    }
+
+    pub(super) fn corner(&self) -> DVec3 {
+        self.corner
+    }
+
+    pub(super) fn polygon(&self) -> Convex {
+        Convex::new(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|uniform| self.point(uniform)))
+    }
+
+    /// The middles of its parts, if each side is divided into so many.
+    pub(super) fn grid(&self, side: u32) -> impl Iterator<Item = DVec3> {
+        let middle = move |i: u32| (f64::from(i) + 0.5) / f64::from(side);
+        (0..side * side).map(move |i| self.point([middle(i % side), middle(i / side)]))
     }
 
     /// Whether a triangle is part of its reveal: the sides of the hole in the wall.

@@ -1,12 +1,14 @@
 //! Regions: parts of a scene whose light rays know better than elements do.
 
-use super::hierarchy::Hierarchy;
+use super::enclosures::EnclosureTree;
 
 /// The standard error of the light of a region, as a part of it, at the most.
 const MOST_ERROR: f64 = 0.03;
 /// A part of a region is one of its own if its light is wrong by another factor, by so many standard errors and by no
 /// less than this.
 const SIGNIFICANT: f64 = 3.0;
+/// Where the standard error is no more than this, a difference by one is enough: elements seldom know better.
+const CERTAIN: f64 = 0.003;
 const LEAST_DIFFERENCE: f64 = 0.002;
 /// The variance of a larger part counts as much as so many rays of a smaller one.
 const RAYS_OF_LARGER: f64 = 64.0;
@@ -58,15 +60,14 @@ pub(super) struct Regions {
     pub(super) all: FluxEstimate,
 }
 
-/// Sums of estimates over all nodes, with pooled variances.
-fn sums(hierarchy: &Hierarchy, leaves: &[u32], estimates: &[FluxEstimate]) -> Vec<FluxEstimate> {
-    let nodes = &hierarchy.nodes;
-    let mut of = vec![FluxEstimate::default(); nodes.len()];
+/// Sums of estimates over all places of a tree, with pooled variances.
+fn sums(tree: &EnclosureTree<'_>, leaves: &[u32], estimates: &[FluxEstimate]) -> Vec<FluxEstimate> {
+    let mut of = vec![FluxEstimate::default(); tree.len()];
     for (leaf, estimate) in leaves.iter().zip(estimates) {
-        of[*leaf as usize] = *estimate;
+        of[tree.place_of(*leaf)] = *estimate;
     }
-    for place in (0..nodes.len()).rev() {
-        for child in nodes[place].children() {
+    for place in (0..tree.len()).rev() {
+        for child in tree.children(place) {
             let (child, sum) = (of[child], &mut of[place]);
             sum.by_elements += child.by_elements;
             sum.by_rays += child.by_rays;
@@ -74,70 +75,71 @@ fn sums(hierarchy: &Hierarchy, leaves: &[u32], estimates: &[FluxEstimate]) -> Ve
             sum.rays += child.rays;
         }
     }
-    for place in 0..nodes.len() {
+    for place in 0..tree.len() {
         let larger = of[place];
-        nodes[place].children().for_each(|child| of[child].pool_variance(&larger));
+        tree.children(place).for_each(|child| of[child].pool_variance(&larger));
     }
     of
 }
 
-/// For each leaf, by what its light is multiplied so that all nodes receive what rays tell, as far as that is certain.
+/// For each leaf, by what its light is multiplied so that all places of a tree receive what rays tell, as far as that is
+/// certain.
 ///
-/// From the root down, the factors of the children of a node differ as rays tell, times a part that is the nearer to 1
-/// the less chance explains the difference, and together the children receive what the node does.
+/// From each enclosure down, the factors of the children of a place differ as rays tell, times a part that is the nearer to 1
+/// the less chance explains the difference, and together the children receive what the place does.
 ///
 /// - `leaves`: their nodes. `estimates`: what each receives.
 /// - `caution`: so many times what chance explains of a difference is taken from it; the more, the better elements know.
 ///
 /// # Source
 /// The part: James and Stein 1961.
-pub(super) fn factors(hierarchy: &Hierarchy, leaves: &[u32], estimates: &[FluxEstimate], caution: f64) -> Vec<f64> {
-    let nodes = &hierarchy.nodes;
-    let of = sums(hierarchy, leaves, estimates);
-    let mut factor = vec![1.0; nodes.len()];
+pub(super) fn factors(tree: &EnclosureTree<'_>, leaves: &[u32], estimates: &[FluxEstimate], caution: f64) -> Vec<f64> {
+    let of = sums(tree, leaves, estimates);
+    let mut factor = vec![1.0; tree.len()];
     let certain = |parts: f64, surprise: f64| (1.0 - caution * parts / surprise).max(0.0);
-    if let Some(root) = of.first().filter(|root| root.by_elements > 0.0) {
-        let off = root.factor() - 1.0;
-        factor[0] = 1.0 + off * certain(1.0, (off / root.error()).powi(2));
+    for place in tree.roots().filter(|place| of[*place].by_elements > 0.0) {
+        let off = of[place].factor() - 1.0;
+        factor[place] = 1.0 + off * certain(1.0, (off / of[place].error()).powi(2));
     }
-    for place in 0..nodes.len() {
-        let lit = || nodes[place].children().filter(|child| of[*child].by_elements > 0.0);
-        // Off the node as rays tell it: what children receive together is then what the node does.
+    for place in tree.roots().next().unwrap_or(0)..tree.len() {
+        let lit = || tree.children(place).filter(|child| of[*child].by_elements > 0.0);
+        // Off the place as rays tell it: what children receive together is then what the place does.
         let off = |child: usize| of[child].factor() - of[place].factor();
         let surprise: f64 = lit().map(|child| (off(child) / of[child].error()).powi(2)).sum();
         let part = certain(lit().count() as f64 - 1.0, surprise);
         lit().for_each(|child| factor[child] = (factor[place] + off(child) * part).max(0.0));
     }
-    leaves.iter().map(|leaf| factor[*leaf as usize]).collect()
+    leaves.iter().map(|leaf| factor[tree.place_of(*leaf)]).collect()
 }
 
 impl Regions {
-    /// Divides the scene, from the root down, wherever rays tell with certainty that parts differ.
+    /// Divides the scene, from all of it down, into enclosures, and wherever rays tell with certainty that parts differ.
     ///
     /// - `leaves`: their nodes. `estimates`: what each receives.
-    pub(super) fn new(hierarchy: &Hierarchy, leaves: &[u32], estimates: &[FluxEstimate]) -> Regions {
-        let nodes = &hierarchy.nodes;
-        let of = sums(hierarchy, leaves, estimates);
-        // The region of a node, or that of its parent, whose light is wrong by another factor; at the root, by none.
-        let region_of = |node: usize, within: Option<usize>| {
+    pub(super) fn new(tree: &EnclosureTree<'_>, leaves: &[u32], estimates: &[FluxEstimate]) -> Regions {
+        let of = sums(tree, leaves, estimates);
+        // The region of a place, or that of its parent, whose light is wrong by another factor; of all, by none.
+        let region_of = |place: usize, within: Option<usize>| {
             let known = within.map_or(1.0, |region| of[region].factor());
-            let error = of[node].error();
-            let difference = (of[node].factor() - known).abs();
-            let is_apart = error <= MOST_ERROR && difference > (SIGNIFICANT * error).max(LEAST_DIFFERENCE);
-            if is_apart { Some(node) } else { within }
+            let error = of[place].error();
+            let difference = (of[place].factor() - known).abs();
+            let significant = if error <= CERTAIN { 1.0 } else { SIGNIFICANT };
+            let differs = || difference > (significant * error).max(LEAST_DIFFERENCE);
+            let is_apart = error <= MOST_ERROR && (tree.is_enclosure(place) || differs());
+            if is_apart { Some(place) } else { within }
         };
-        let mut region = vec![None; nodes.len()];
-        if !nodes.is_empty() {
+        let mut region = vec![None; tree.len()];
+        if !region.is_empty() {
             region[0] = region_of(0, None);
         }
-        for place in 0..nodes.len() {
-            for child in nodes[place].children() {
+        for place in 0..tree.len() {
+            for child in tree.children(place) {
                 region[child] = region_of(child, region[place]);
             }
         }
-        let (mut number, mut count) = (vec![usize::MAX; nodes.len()], 1);
+        let (mut number, mut count) = (vec![usize::MAX; tree.len()], 1);
         let mut of_leaf = |leaf: &u32| {
-            let Some(region) = region[*leaf as usize] else { return 0 };
+            let Some(region) = region[tree.place_of(*leaf)] else { return 0 };
             if number[region] == usize::MAX {
                 (number[region], count) = (count, count + 1);
             }
@@ -150,6 +152,7 @@ impl Regions {
 
 #[cfg(test)]
 mod tests {
+    use super::super::hierarchy::Hierarchy;
     use super::super::node::RadiosityPatch;
     use super::super::shortest_edges::ShortestEdges;
     use super::*;
@@ -169,6 +172,7 @@ mod tests {
     #[test]
     fn light_is_corrected_where_rays_are_certain_and_only_there() {
         let (hierarchy, leaves) = row(64);
+        let tree = EnclosureTree::new(&hierarchy, &leaves, &vec![0; leaves.len()]);
         let estimate =
             |by_rays: f64, error: f64| FluxEstimate { by_elements: 1.0, by_rays, variance: error * error, rays: 100 };
         let near = |leaf: u32| hierarchy.nodes[leaf as usize].middle.x < 32.0;
@@ -176,10 +180,10 @@ mod tests {
         let half = |error: f64| -> Vec<FluxEstimate> {
             leaves.iter().map(|leaf| estimate(if near(*leaf) { 1.2 } else { 1.0 }, error)).collect()
         };
-        let certain = factors(&hierarchy, &leaves, &half(0.01), 2.0);
+        let certain = factors(&tree, &leaves, &half(0.01), 2.0);
         let off = |(leaf, factor): (&u32, &f64)| (factor - if near(*leaf) { 1.2 } else { 1.0 }).abs();
         assert!(leaves.iter().zip(&certain).map(off).fold(0.0, f64::max) < 0.01, "{certain:?}");
-        let regions = Regions::new(&hierarchy, &leaves, &half(0.01));
+        let regions = Regions::new(&tree, &leaves, &half(0.01));
         let [one, other] = [true, false].map(|side| {
             let of: Vec<usize> = leaves
                 .iter()
@@ -191,12 +195,13 @@ mod tests {
             of[0]
         });
         assert!(one != other);
-        assert!(factors(&hierarchy, &leaves, &half(3.0), 2.0).iter().all(|factor| *factor == 1.0));
+        assert!(factors(&tree, &leaves, &half(3.0), 2.0).iter().all(|factor| *factor == 1.0));
     }
 
     #[test]
     fn corrected_leaves_receive_together_what_rays_tell() {
         let (hierarchy, leaves) = row(100);
+        let tree = EnclosureTree::new(&hierarchy, &leaves, &vec![0; leaves.len()]);
         let light = |i: usize| 1.0 + 0.9 * (i as f64 * 0.7).sin();
         let estimates: Vec<FluxEstimate> = (0..leaves.len())
             .map(|i| FluxEstimate {
@@ -206,11 +211,11 @@ mod tests {
                 rays: 100,
             })
             .collect();
-        let factors = factors(&hierarchy, &leaves, &estimates, 2.0);
+        let factors = factors(&tree, &leaves, &estimates, 2.0);
         let sum: f64 = factors.iter().zip(&estimates).map(|(factor, estimate)| factor * estimate.by_elements).sum();
         let rays: f64 = estimates.iter().map(|estimate| estimate.by_rays).sum();
         assert!((sum / rays - 1.0).abs() < 1e-3, "{sum} {rays}");
         let none = vec![FluxEstimate::default(); leaves.len()];
-        assert!(super::factors(&hierarchy, &leaves, &none, 2.0).iter().all(|factor| *factor == 1.0));
+        assert!(super::factors(&tree, &leaves, &none, 2.0).iter().all(|factor| *factor == 1.0));
     }
 }

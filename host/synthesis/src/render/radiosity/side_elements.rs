@@ -23,10 +23,16 @@ impl<'a> SideElements<'a> {
 
     /// The node of the element that is hit; [`NONE`] where there is none.
     pub(super) fn find(&self, target: RayTarget) -> u32 {
-        let RayTarget::Side { triangle, outside, weights, .. } = target else { return NONE };
+        self.find_place(target).map_or(NONE, |(node, _)| node)
+    }
+
+    /// The node of the element that is hit, and the weights of its corners there, or of the corners of the triangle if
+    /// the node is a face cluster; nothing where there is none.
+    pub(super) fn find_place(&self, target: RayTarget) -> Option<(u32, [f64; 3])> {
+        let RayTarget::Side { triangle, outside, weights, .. } = target else { return None };
         match self.patch_of[triangle as usize][usize::from(!outside)] {
-            NONE => NONE,
-            patch => self.hierarchy.leaf_at(patch, self.hierarchy.patches[patch as usize].weights(weights)).0,
+            NONE => None,
+            patch => Some(self.hierarchy.leaf_at(patch, self.hierarchy.patches[patch as usize].weights(weights))),
         }
     }
 }

@@ -3,7 +3,6 @@
 use super::hierarchy::Hierarchy;
 use super::*;
 use crate::color::Color;
-use crate::illumination::light::LightShape;
 use crate::illumination::material::Classic;
 use crate::illumination::{Light, Material, Paint};
 use crate::mesh::Mesh;
@@ -20,7 +19,7 @@ fn matt(reflectance: f64) -> Material {
     Classic { diffuse: Paint::grey(reflectance), ..Classic::default() }.into()
 }
 
-fn object(name: &str, shape: Shape, reflectance: f64) -> Object {
+pub(super) fn object(name: &str, shape: Shape, reflectance: f64) -> Object {
     let transform = DMat4::IDENTITY;
     Object { name: name.into(), shape, transform, material: Some(matt(reflectance)), tolerance: Some(0.05) }
 }
@@ -40,7 +39,7 @@ fn prepared(objects: Vec<Object>, lights: Vec<Light>) -> Prepared {
     Prepared::new(&scene).expect("a scene")
 }
 
-fn solved(prepared: &Prepared, settings: &RadiositySettings, exitance: Option<Exitance<'_>>) -> Radiosity {
+pub(super) fn solved(prepared: &Prepared, settings: &RadiositySettings, exitance: Option<Exitance<'_>>) -> Radiosity {
     let plan = Plan::new(prepared, &prepared.view());
     Radiosity::new(&World::new(prepared, &plan).expect("a world"), &plan, settings, exitance, &Watch::NOBODY)
         .expect("a solution")
@@ -427,86 +426,6 @@ fn a_ball_of_face_clusters_that_emits_inside_keeps_all_light() {
     for triangle in [0, 77, 400] {
         let found = 1.0 + 0.99 * middle(&radiosity, triangle, false, IrradiancePart::All);
         assert!((found / 100.0 - 1.0).abs() < 1e-6, "{triangle}: {found}");
-    }
-}
-
-/// The wall x = 1 of a room of 2 by 2 by 2 around the origin, a sheet with a square hole in its middle, and the other
-/// five walls.
-fn room_with_an_opening(width: f64, lights: Vec<Light>) -> Prepared {
-    let half = 0.5 * width;
-    let steps = [-1.0, -half, half, 1.0];
-    let at = |i: usize, j: usize| DVec3::new(1.0, steps[i], steps[j]);
-    let mut vertices: Vec<DVec3> = (0..16).map(|k| at(k / 4, k % 4)).collect();
-    let mut triangles = Vec::new();
-    for (i, j) in (0..9).map(|k| (k / 3, k % 3)).filter(|cell| *cell != (1, 1)) {
-        let [a, b, c, d] = [4 * i + j, 4 * i + j + 1, 4 * i + j + 5, 4 * i + j + 4].map(|k| k as u32);
-        triangles.extend([[a, b, c], [a, c, d]]);
-    }
-    let first = vertices.len() as u32;
-    vertices.extend((0..8).map(|k| {
-        let side = |bit: u32| if k >> bit & 1 == 0 { -1.0 } else { 1.0 };
-        DVec3::new(side(0), side(1), side(2))
-    }));
-    for [a, b, c, d] in [[0, 4, 6, 2], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]] {
-        triangles.extend([[a, b, c], [a, c, d]].map(|corners| corners.map(|k: u32| first + k)));
-    }
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("room.obj");
-    let lines = vertices.iter().map(|v| format!("v {} {} {}\n", v.x, v.y, v.z));
-    let faces = triangles.iter().map(|corners| {
-        let [a, b, c] = corners.map(|corner| corner + 1);
-        format!("f {a} {b} {c}\n")
-    });
-    std::fs::write(&path, lines.chain(faces).collect::<String>()).expect("a file");
-    let room = object("room", Shape::Mesh { path }, 0.5);
-    let mut scene = Scene { objects: vec![room], lights, ..Scene::default() };
-    scene.settings.light.interreflection = Interreflection::Followed;
-    let corner = DVec3::new(1.0, -half, -half);
-    scene.portals.push(LightShape::Rectangle { corner, across: DVec3::Z * width, up: DVec3::Y * width });
-    Prepared::new(&scene).expect("a scene")
-}
-
-/// Flux of lights that comes to the inner sides of the room, W.
-fn flux_of_lights(room: &Prepared) -> f64 {
-    let plan = Plan::new(room, &room.view());
-    let world = World::new(room, &plan).expect("a world");
-    let visibility = VisibilityTester::new(&world, None);
-    let is_inner = |patch: &RadiosityPatch| normal_and_area(patch.corners).0.dot(patch.corners[0]) < 0.0;
-    let inner: Vec<RadiosityPatch> = patches(room, &plan, &visibility).into_iter().filter(is_inner).collect();
-    let edges = ShortestEdges::everywhere(room.bounds.diagonal() / 200.0);
-    let through = visibility.light_through_openings(true);
-    let mut elements =
-        Elements::new(Hierarchy::new(inner, &edges, |_| false), &visibility, None, &through, true, &edges);
-    let bound = RefinementBound { error: 0.005, mean: elements.mean_irradiance(), dimmest: 1.0 };
-    elements.divide_where_light_varies(&visibility, bound, BENT);
-    let leaves = elements.hierarchy.leaves();
-    elements.correct_direct(&visibility, &leaves);
-    leaves.iter().map(|leaf| elements.direct[*leaf as usize].0[0] * elements.hierarchy.nodes[*leaf as usize].area).sum()
-}
-
-#[test]
-fn what_comes_through_an_opening_is_what_the_closed_form_tells() {
-    let grey = Color::grey;
-    for width in [0.05, 0.2, 0.6, 1.6] {
-        let area = width * width;
-        let lamp = DVec3::new(3.0, 0.4, -0.3);
-        let direction = DVec3::new(-1.0, -0.35, 0.2).normalize();
-        // Of a point, the solid angle of the opening, by its four rectangles from the foot of the perpendicular.
-        let corner = |y: f64, z: f64, h: f64| (y * z).atan2(h * (h * h + y * y + z * z).sqrt());
-        let angle = |at: DVec3| -> f64 {
-            let ends = |middle: f64| [-0.5 * width - middle, 0.5 * width - middle];
-            let ([y0, y1], [z0, z1], h) = (ends(at.y), ends(at.z), at.x - 1.0);
-            corner(y1, z1, h) - corner(y0, z1, h) - corner(y1, z0, h) + corner(y0, z0, h)
-        };
-        let sky = Light::Sky { map: None, radiance: grey(1.0), turned: 0.0 };
-        let sun = Light::Directional { direction, irradiance: grey(2.0) };
-        let point = Light::Point { at: lamp, intensity: grey(3.0) };
-        let lights = [(sky, PI * area), (sun, 2.0 * area * -direction.x), (point, 3.0 * angle(lamp))];
-        for (light, exact) in lights {
-            let room = room_with_an_opening(width, vec![light.clone()]);
-            let found = flux_of_lights(&room);
-            assert!((found / exact - 1.0).abs() < 0.005, "{width} {light:?}: {found} {exact}");
-        }
     }
 }
 

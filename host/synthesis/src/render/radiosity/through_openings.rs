@@ -5,6 +5,7 @@
 //! is counted once, wherever the openings are.
 
 use super::direct::LightAtPoint;
+use super::sample_guide::{GuidedSample, SampleGuide};
 use super::visibility::{RayTarget, VisibilityTester};
 use crate::color::Channels;
 use crate::numeric::ray::Ray;
@@ -17,9 +18,14 @@ const RAYS: u32 = 1 << 19;
 const FEWEST_RAYS: u32 = 1 << 10;
 /// Rays that are traced as one piece of work.
 const AT_ONCE: u32 = 1 << 10;
+/// One ray in so many tells where light comes from before the others are traced.
+const PILOT: u32 = 8;
+/// Cells of a light along a side.
+const SIDE: usize = 32;
 /// Numbers of what is sampled, beyond those of leaves.
 const OF_LIGHT: u64 = 1 << 42;
 const OF_EXCHANGE: u64 = 1 << 43;
+const OF_GUIDE: u64 = 1 << 44;
 
 /// Light that comes through an opening to a side of a triangle.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -51,47 +57,75 @@ impl VisibilityTester<'_> {
 
     /// All rays through all openings.
     fn rays_through(&self) -> Vec<RayBatch> {
-        let of = |opening: usize| {
-            (0..self.rays_through_each()).step_by(AT_ONCE as usize).map(move |first| RayBatch { opening, first })
-        };
-        (0..self.openings.0.len()).flat_map(of).collect()
+        (0..self.openings.0.len()).flat_map(|opening| self.batches(opening, self.rays_through_each())).collect()
+    }
+
+    /// So many rays through an opening, or the multiple of a batch next to that.
+    fn batches(&self, opening: usize, rays: u32) -> impl Iterator<Item = RayBatch> {
+        (0..rays).step_by(AT_ONCE as usize).map(move |first| RayBatch { opening, first })
     }
 
     /// Light of lights through openings, as far as the first surface behind them; none where lights throw no shadows,
     /// since openings count for nothing there.
     pub(super) fn light_through_openings(&self, shadows: bool) -> Vec<LightThroughOpening> {
-        let sources = self.world.appearance.sources.len() as u32;
-        if sources == 0 || !shadows {
+        let lights = self.world.appearance.sources.len();
+        if lights == 0 || !shadows {
             return Vec::new();
         }
-        // Each ray asks one light, all are as likely.
-        let weight = f64::from(sources) / f64::from(self.rays_through_each());
-        let batch = |_, RayBatch { opening: number, first }: &RayBatch| {
-            let opening = &self.openings.0[*number];
-            let sequence = SobolSequence::new(self.seed, OF_LIGHT + *number as u64);
-            let mut found = Vec::new();
-            for index in *first..*first + AT_ONCE {
-                let at = opening.point(sequence.point(index, 0));
-                let source = (sequence.number(index, 1) * f64::from(sources)) as u32;
-                let uniform = sequence.point(index, 2);
-                for outwards in [opening.normal, -opening.normal] {
-                    let Some(LightAtPoint { irradiance, towards, .. }) =
-                        self.sample_light([at, outwards], source as usize, uniform, true)
-                    else {
-                        continue;
-                    };
-                    let ray = Ray { origin: at, direction: -towards };
-                    let target = if irradiance == Channels::ZERO { RayTarget::Nothing } else { self.trace(&ray) };
-                    let RayTarget::Side { t, transmittance, .. } = target else { continue };
-                    if self.openings.others_crossed(*number, &ray, t) == 0 {
-                        let flux = irradiance * (opening.area * transmittance * weight);
-                        found.push(LightThroughOpening { at: target, flux });
-                    }
-                }
-            }
-            found
+        let even = SampleGuide::even(lights, SIDE);
+        let guides: Vec<SampleGuide> = (0..self.openings.0.len()).map(|opening| self.guide(opening, &even)).collect();
+        let weight = f64::from(self.rays_through_each()).recip();
+        let batch = |_, batch: &RayBatch| {
+            let found = self.light_of(batch, &guides[batch.opening], OF_LIGHT);
+            let weighted = |(sample, light): (GuidedSample, LightThroughOpening)| LightThroughOpening {
+                flux: light.flux * (sample.weight * weight),
+                ..light
+            };
+            found.into_iter().map(weighted).collect::<Vec<LightThroughOpening>>()
         };
         self.map(&self.rays_through(), batch).concat()
+    }
+
+    /// Which lights, and which parts of them, bring light through an opening.
+    fn guide(&self, opening: usize, even: &SampleGuide) -> SampleGuide {
+        let batches: Vec<RayBatch> = self.batches(opening, self.rays_through_each() / PILOT).collect();
+        let brought = |_, batch: &RayBatch| -> Vec<(GuidedSample, f64)> {
+            let found = self.light_of(batch, even, OF_GUIDE);
+            found.into_iter().map(|(sample, light)| (sample, light.flux.0.iter().sum())).collect()
+        };
+        even.guided(self.map(&batches, brought).into_iter().flatten())
+    }
+
+    /// What light samples bring through an opening, of which each stands for all its light: to be weighted.
+    fn light_of(
+        &self,
+        &RayBatch { opening: number, first }: &RayBatch,
+        guide: &SampleGuide,
+        of: u64,
+    ) -> Vec<(GuidedSample, LightThroughOpening)> {
+        let opening = &self.openings.0[number];
+        let sequence = SobolSequence::new(self.seed, of + number as u64);
+        let mut found = Vec::new();
+        for index in first..first + AT_ONCE {
+            let at = opening.point(sequence.point(index, 0));
+            let [u, v] = sequence.point(index, 2);
+            let sample = guide.sample([sequence.number(index, 1), u, v]);
+            for outwards in [opening.normal, -opening.normal] {
+                let Some(LightAtPoint { irradiance, towards, .. }) =
+                    self.sample_light([at, outwards], sample.light, sample.uniform, true)
+                else {
+                    continue;
+                };
+                let ray = Ray { origin: at, direction: -towards };
+                let target = if irradiance == Channels::ZERO { RayTarget::Nothing } else { self.trace(&ray) };
+                let RayTarget::Side { t, transmittance, .. } = target else { continue };
+                if self.openings.others_crossed(number, &ray, t) == 0 {
+                    let flux = irradiance * (opening.area * transmittance);
+                    found.push((sample, LightThroughOpening { at: target, flux }));
+                }
+            }
+        }
+        found
     }
 
     /// Sides of triangles that see each other through openings.
