@@ -16,11 +16,13 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 /// The first bytes of such a file; the last one is the version.
-const MAGIC: [u8; 8] = *b"PERISM\x00\x05";
+const MAGIC: [u8; 8] = *b"PERISM\x00\x06";
 /// Bytes before the first record.
 const HEAD: u64 = 12;
 /// Most bytes of a record; a length in it that says more is no length.
 const MOST: usize = 1 << 30;
+/// Parts into which items are divided for each thread.
+const PARTS: usize = 32;
 /// Results of a record: computed in about a tenth of a second, and enough for many threads.
 const CHUNK: usize = 8192;
 
@@ -80,15 +82,18 @@ impl Memo {
         items: &[T],
         f: impl Fn(usize, &T) -> R + Sync,
     ) -> Vec<R> {
-        let Some(memo) = memo else {
-            return items.par_iter().enumerate().map(|(number, item)| f(number, item)).collect();
+        let make = |first: usize, chunk: &[T]| -> Vec<R> {
+            // Some items take much longer than others: no thread is to have many of them left in the end.
+            let most = chunk.len().div_ceil(PARTS * rayon::current_num_threads());
+            let numbered = chunk.par_iter().enumerate().with_max_len(most.max(1));
+            numbered.map(|(number, item)| f(first + number, item)).collect()
         };
+        let Some(memo) = memo else { return make(0, items) };
         let mut results = Vec::with_capacity(items.len());
         for chunk in items.chunks(CHUNK) {
             let first = results.len();
-            let make = || chunk.par_iter().enumerate().map(|(number, item)| f(first + number, item)).collect();
             let has_all = |found: &Vec<R>| found.len() == chunk.len();
-            let Ok(found) = memo.record::<_, Infallible>(has_all, || Ok(make()));
+            let Ok(found) = memo.record::<_, Infallible>(has_all, || Ok(make(first, chunk)));
             results.extend(found);
         }
         results

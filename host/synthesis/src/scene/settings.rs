@@ -103,8 +103,8 @@ pub struct RadiositySettings {
     /// Patches are not divided below this length, as a part of the diagonal of the scene, above 0.
     pub finest: f64,
     /// Patches are not divided below so many pixels of a picture that shows them, 0 and more; it counts where that is more
-    /// than [`finest`](RadiositySettings::finest). By 0, pictures count nothing: not their pixels, nor how bright is what
-    /// they show, and light is the same for all views and pictures of any size.
+    /// than [`finest`](RadiositySettings::finest). By 0, pictures count nothing: not their pixels, nor what they show and
+    /// how bright that is, and light is the same for all views and pictures of any size.
     pub pixels: f64,
     /// Directions in which each patch looks around at the least, 1 and more.
     pub directions: u32,

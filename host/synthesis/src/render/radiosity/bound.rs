@@ -9,6 +9,8 @@ pub(super) struct RefinementBound {
     pub(super) mean: f64,
     /// What the irradiance of a receiver counts as at the least, as a part of the mean.
     pub(super) dimmest: f64,
+    /// The irradiance of what pictures show, W/m²: what no picture shows counts as no dimmer.
+    pub(super) shown: f64,
 }
 
 impl RefinementBound {
@@ -16,8 +18,9 @@ impl RefinementBound {
     /// irradiance and the mean one. A part of the mean alone would leave a dim room beside a bright garden without links,
     /// a part of its own alone would spend most links where little light is.
     ///
-    /// - `least`: the least irradiance of its leaves, W/m².
-    pub(super) fn of(&self, least: f64) -> f64 {
-        self.error * (self.mean * least.max(self.dimmest * self.mean)).sqrt()
+    /// - `least`: the least irradiance of its leaves, W/m². `importance`: the most of its leaves, 0..=1.
+    pub(super) fn of(&self, least: f64, importance: f64) -> f64 {
+        let least = least.max(self.dimmest * self.mean).max((1.0 - importance) * self.shown);
+        self.error / importance * (self.mean * least).sqrt()
     }
 }

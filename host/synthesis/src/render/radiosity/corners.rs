@@ -105,6 +105,17 @@ impl ElementCorners {
         })
     }
 
+    /// For each corner, the most of what its leaves have.
+    ///
+    /// - `of_leaves`: what each has.
+    pub(super) fn most_of(&self, of_leaves: impl Iterator<Item = f64>) -> Vec<f64> {
+        let mut most = vec![0.0f64; self.all.len()];
+        for (corners, value) in self.of.iter().zip(of_leaves) {
+            corners.iter().for_each(|corner| most[*corner as usize] = most[*corner as usize].max(value));
+        }
+        most
+    }
+
     /// Corners that lie on edges of larger elements, each with the ends of the edge or of a half of it in the middle of
     /// which it is, and the length of that; the longest first, since those within depend on them.
     pub(super) fn hanging(&self, hierarchy: &Hierarchy, leaves: &[u32]) -> Vec<(f64, [u32; 3])> {

@@ -25,6 +25,8 @@ const MOST_ELEMENTS: usize = 2_000_000;
 /// Light through openings is more than corners tell if it is by so many standard errors.
 const SIGNIFICANT: f64 = 3.0;
 
+/// One over the importance of what is worth as many rays as what is shown.
+const ALL_RAYS: f64 = 2.0;
 /// So many times what chance explains of a difference is taken from it.
 const CAUTION: f64 = 1.0;
 
@@ -40,6 +42,8 @@ pub(super) struct Elements<'a> {
     pub(super) sent: Vec<Channels>,
     /// The least irradiance of the leaves of each node that are not dark, in its brightest lane, W/m².
     pub(super) least: Vec<f64>,
+    /// The importance of each node: the most of its leaves that are not dark.
+    pub(super) importance: Vec<f64>,
     /// External light at places of each node.
     pub(super) corner_light: Vec<CornerLight>,
     /// How short edges may be; and, of each patch, how short beside openings.
@@ -90,6 +94,7 @@ impl<'a> Elements<'a> {
             extra: Vec::new(),
             sent: Vec::new(),
             least: Vec::new(),
+            importance: Vec::new(),
             corner_light: Vec::new(),
             edges,
             beside_openings,
@@ -111,12 +116,36 @@ impl<'a> Elements<'a> {
                 self.hierarchy.divide(node);
                 let sliver = self.hierarchy.nodes[node as usize].sliver();
                 known.extend(of_parts(&self.corner_light[node as usize], sliver));
-                let (indirect, least) = (self.indirect[node as usize], self.least[node as usize]);
-                self.indirect.resize(self.hierarchy.nodes.len(), indirect);
+                let [least, importance] = [self.least[node as usize], self.importance[node as usize]];
+                self.indirect.resize(self.hierarchy.nodes.len(), self.indirect[node as usize]);
                 self.least.resize(self.hierarchy.nodes.len(), least);
+                self.importance.resize(self.hierarchy.nodes.len(), importance);
             }
         }
         self.evaluate(visibility, first, &known);
+    }
+
+    /// Whether a leaf is beside an opening.
+    pub(super) fn is_beside_opening(&self, leaf: u32) -> bool {
+        let patch = self.hierarchy.nodes[leaf as usize].patch;
+        patch != NONE && self.beside_openings[patch as usize].is_finite()
+    }
+
+    /// The greatest error of the irradiance of a node by one link, W/m².
+    pub(super) fn bound_of(&self, node: u32, bound: RefinementBound) -> f64 {
+        bound.of(self.least[node as usize], self.importance[node as usize])
+    }
+
+    /// How many rays a leaf is worth, as a part of those of one that is shown, 0..=1. All light of what is shown may come
+    /// by few leaves that are not, so what they receive is to be known as well.
+    pub(super) fn importance_to_rays(&self, leaf: u32) -> f64 {
+        (self.importance[leaf as usize] * ALL_RAYS).min(1.0)
+    }
+
+    /// Takes up how important leaves are.
+    pub(super) fn take_importance(&mut self, leaves: &[u32], importance: &[f64]) {
+        leaves.iter().zip(importance).for_each(|(leaf, importance)| self.importance[*leaf as usize] = *importance);
+        self.hierarchy.pull_extreme(&mut self.importance, f64::max);
     }
 
     /// Whether an element is long enough to be divided.
@@ -144,7 +173,7 @@ impl<'a> Elements<'a> {
             let through = self.flux_through_openings(visibility);
             let varies = |node: &usize| {
                 let is_divisible = nodes[*node].is_leaf() && !nodes[*node].is_dark && self.may_divide(&nodes[*node]);
-                let bound = || times * bound.of(self.least[*node]);
+                let bound = || times * self.bound_of(*node as u32, bound);
                 let missed = || {
                     let FluxThroughOpenings { flux, variance, .. } = through[*node];
                     let excess = flux.max() - self.direct[*node].max() * nodes[*node].area;
@@ -177,6 +206,7 @@ impl<'a> Elements<'a> {
         let known: Vec<Known> = visibility.map(nodes, of);
         self.indirect.resize(self.hierarchy.nodes.len(), Channels::ZERO);
         self.least.resize(self.hierarchy.nodes.len(), 0.0);
+        self.importance.resize(self.hierarchy.nodes.len(), 1.0);
         for (Known { reflectance, mean: ExternalLight { direct, extra }, corner_light: around }, place) in
             known.into_iter().zip(first..)
         {
@@ -253,7 +283,7 @@ impl<'a> Elements<'a> {
     /// comes to has the light that these tell: what is not there cannot be multiplied.
     pub(super) fn sample_direct(&mut self, visibility: &VisibilityTester<'_>, leaves: &[u32]) -> Vec<FluxEstimate> {
         let hierarchy = &self.hierarchy;
-        let random = random_light(visibility, hierarchy, leaves, self.shadows);
+        let random = random_light(visibility, hierarchy, leaves, |leaf| self.importance_to_rays(leaf), self.shadows);
         let through = self.flux_through_openings(visibility);
         let mut estimates = Vec::with_capacity(leaves.len());
         for (light, leaf) in random.iter().zip(leaves.iter().map(|leaf| *leaf as usize)) {
@@ -289,9 +319,9 @@ impl<'a> Elements<'a> {
         self.pull();
     }
 
-    /// The standard error of the mean over all leaves of what each receives as rays tell it, as a part of that: so dim
-    /// leaves count as much as bright ones. That of one leaf is no more than all its light: few next to dark leaves would
-    /// tell of nothing but themselves.
+    /// The standard error of the mean over all leaves of what each receives as rays tell it, as a part of that: dim
+    /// leaves count as much as bright ones, each as much as it is important. That of one leaf is no more than all its
+    /// light: few next to dark leaves would tell of nothing but themselves.
     pub(super) fn error_by_chance(&self, leaves: &[u32], visibility: &LeafVisibility) -> f64 {
         let of = |values: &[Channels]| -> Vec<Channels> { leaves.iter().map(|leaf| values[*leaf as usize]).collect() };
         let [reflectance, direct, extra, irradiance] =
@@ -301,12 +331,14 @@ impl<'a> Elements<'a> {
         let light = LeafLight { first: &first, reflectance: &reflectance, irradiance: &irradiance, brightness: &[] };
         let all = |i: usize| areas[i] * total(direct[i] + irradiance[i]);
         let estimates = flux_estimates(&areas, visibility, &light);
+        let importance = |i: usize| self.importance_to_rays(leaves[i]);
         let of = |(i, estimate): (usize, &FluxEstimate)| match all(i) {
-            all if all > 0.0 => (estimate.variance / (all * all)).min(1.0),
+            all if all > 0.0 => (estimate.variance / (all * all)).min(1.0) * importance(i) * importance(i),
             _ => 0.0,
         };
         let sum: f64 = estimates.iter().enumerate().map(of).sum();
-        sum.sqrt() / leaves.len().max(1) as f64
+        let all_importance: f64 = (0..leaves.len()).map(importance).sum();
+        if all_importance > 0.0 { sum.sqrt() / all_importance } else { 0.0 }
     }
 
     /// The power that a node sends, in all lanes together: W.
@@ -322,7 +354,7 @@ impl<'a> Elements<'a> {
             sent[leaf] = extra[leaf] + reflectance[leaf] * irradiance;
             least[leaf] = irradiance.max();
         }
-        hierarchy.pull_least(least);
+        hierarchy.pull_extreme(least, f64::min);
         for values in [direct, indirect, extra, sent] {
             hierarchy.pull(values);
         }

@@ -128,15 +128,22 @@ fn neighbours(own: &[HierarchyNode], takes_part: impl Fn(u32, &HierarchyNode) ->
 
 /// The best piece that one can be one with, and the cost: how large both together are and how far they bend.
 fn best_partner(pieces: &[Piece], piece: u32, own: &[HierarchyNode], edges: &ShortestEdges) -> Option<(f64, u32)> {
+    // By rounding errors, none is left out that bends no farther.
+    let least_cosine = FACING.cos() - 1e-9;
     let cost = |other: &u32| {
         // In one order, so that both find the same cost.
         let both = [piece.min(*other), piece.max(*other)].map(|piece| &pieces[piece as usize]);
         let sum = Sums::of_both(both.map(|piece| piece.sums));
         let (middle, normal) = (sum.moment / sum.area, sum.normal.normalize_or_zero());
         let (mut farthest, mut cosine) = (0.0f64, 1.0f64);
+        // The shortest edges of what is larger are no longer.
+        let most = edges.at(middle, 0.0).powi(2);
         for node in both.iter().flat_map(|piece| &piece.members).map(|patch| &own[*patch as usize]) {
             cosine = cosine.min(node.normal.dot(normal));
             farthest = node.corners.iter().fold(farthest, |most, corner| most.max(corner.distance_squared(middle)));
+            if farthest > most || cosine < least_cosine {
+                return None;
+            }
         }
         let radius = farthest.sqrt();
         let (size, bend) = (radius / edges.at(middle, radius), cosine.clamp(-1.0, 1.0).acos() / FACING);

@@ -240,8 +240,10 @@ fn halved(value: &impl Fn(f64) -> f64, [from, to]: [f64; 2], whole: f64, toleran
 }
 
 /// The most that two areas can exchange.
-pub(super) fn limit(a_area: f64, b_area: f64, distance: f64) -> f64 {
-    let far = a_area * b_area / (PI * distance * distance);
+///
+/// - `cosines`: the most that the product of the cosines at both can be. `distance`: at the least.
+pub(super) fn limit(a_area: f64, b_area: f64, cosines: f64, distance: f64) -> f64 {
+    let far = a_area * b_area * cosines / (PI * distance * distance);
     a_area.min(b_area).min(if far.is_finite() { far } else { f64::INFINITY })
 }
 

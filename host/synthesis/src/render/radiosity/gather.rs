@@ -9,6 +9,7 @@
 
 use super::bound::RefinementBound;
 use super::corners::{ElementCorner, ElementCorners};
+use super::elements::Elements;
 use super::form_factor::{from_point, kernel};
 use super::hierarchy::{Hierarchy, POINTS};
 use super::node::NONE;
@@ -22,17 +23,18 @@ use rayon::prelude::*;
 
 /// Light below this part of the error of a link is sampled with one ray instead of some.
 const LITTLE: f64 = 1.0;
+/// Light below this part of the error of a link is sampled by chance: by no less than the least.
+const NEGLIGIBLE: f64 = 1.0 / 8.0;
+const LEAST_CHANCE: f64 = 1.0 / 16.0;
 /// The greatest difference of what parts of a node send, as a part of it.
 const UNEVEN: f64 = 0.1;
 
 /// Gathers light.
 pub(super) struct Gatherer<'g, 'a> {
     pub(super) visibility: &'g VisibilityTester<'a>,
-    pub(super) hierarchy: &'g Hierarchy,
+    pub(super) elements: &'g Elements<'a>,
     /// The bound of the error of the light of a link.
     pub(super) bound: RefinementBound,
-    /// The least irradiance of the leaves of each node, W/m².
-    pub(super) least: &'g [f64],
 }
 
 /// Corner views: what each corner of leaves sees of nodes.
@@ -128,25 +130,27 @@ impl CornerViews<'_> {
 impl Gatherer<'_, '_> {
     /// Corner views of all corners, divided the more the more what is seen differs.
     ///
-    /// - `sent`: about what each node sends, W/m².
+    /// - `leaves`: whose corners they are.
     pub(super) fn views<'g>(
         &self,
         links: &[AssessedLink],
         corners: &'g ElementCorners,
-        sent: &[Channels],
+        leaves: &[u32],
     ) -> CornerViews<'g> {
-        let nodes = &self.hierarchy.nodes;
+        let Elements { hierarchy, sent, least, importance, .. } = self.elements;
+        let nodes = &hierarchy.nodes;
         let mut parent = vec![NONE; nodes.len()];
         for (place, node) in (0..).zip(nodes) {
             node.children().for_each(|child| parent[child] = place);
         }
         let (rows, entries) = by_node(nodes.len(), links);
         let apart = self.apart(sent);
-        let opening_views = OpeningViews::new(self.visibility, self.hierarchy, sent);
+        let opening_views = OpeningViews::new(self.visibility, hierarchy, sent);
+        let importance = corners.most_of(leaves.iter().map(|leaf| importance[*leaf as usize]));
         let of = |number: usize, corner: &ElementCorner| {
             let from = corner.view();
-            let least = self.least[corner.leaf as usize];
-            let error = self.bound.of(least);
+            let least = least[corner.leaf as usize];
+            let error = self.bound.of(least, importance[number]);
             let (mut found, mut pending) = (opening_views.seen(from, least), Vec::new());
             let mut at = corner.leaf;
             while at != NONE {
@@ -157,8 +161,10 @@ impl Gatherer<'_, '_> {
                     let is_uneven = || factor * apart[other as usize] > UNEVEN * error;
                     // Points do not stand for a node that reaches below the horizon.
                     let sinks = || {
-                        let points = self.hierarchy.points(other);
-                        factor > 0.0 && !is_clear && points.iter().any(|[at, _]| (*at - from[0]).dot(from[1]) <= 0.0)
+                        let points = hierarchy.points(other);
+                        factor * sent[other as usize].max() > UNEVEN * error
+                            && !is_clear
+                            && points.iter().any(|[at, _]| (*at - from[0]).dot(from[1]) <= 0.0)
                     };
                     if !partner.is_leaf() && (is_uneven() || sinks()) {
                         let lit = partner.children().filter(|child| !nodes[*child].is_dark);
@@ -168,7 +174,15 @@ impl Gatherer<'_, '_> {
                     if factor <= 0.0 {
                         continue;
                     }
-                    let is_little = factor * sent[other as usize].max() < LITTLE * error;
+                    let light = factor * sent[other as usize].max();
+                    // What is next to nothing is asked now and then only, and counts the more.
+                    let chance = (factor * sent[other as usize].max().max(sent[0].max()) / (NEGLIGIBLE * error))
+                        .clamp(LEAST_CHANCE, 1.0);
+                    if chance < 1.0 && pair_number(number as u32, other) >= chance {
+                        continue;
+                    }
+                    let factor = factor / chance;
+                    let is_little = light < LITTLE * error;
                     let seen = match is_clear && self.visibility.openings.0.is_empty() {
                         true => 1.0,
                         false => self.visible_part(number as u32, from, other, is_clear, is_little),
@@ -188,7 +202,7 @@ impl Gatherer<'_, '_> {
 
     /// How far what parts of each node send is from what all of it does in the mean, W/m² at the most.
     fn apart(&self, values: &[Channels]) -> Vec<f64> {
-        let nodes = &self.hierarchy.nodes;
+        let nodes = &self.elements.hierarchy.nodes;
         let mut apart = vec![0.0f64; nodes.len()];
         for place in (0..nodes.len()).rev().filter(|place| !nodes[*place].is_dark) {
             let of = |child: usize| (values[child] - values[place]).map(f64::abs).max() + apart[child];
@@ -200,9 +214,9 @@ impl Gatherer<'_, '_> {
 
     /// The form factor from a point with its normal to a node, as if nothing was between them.
     fn factor(&self, from: [DVec3; 2], other: u32) -> f64 {
-        let partner = &self.hierarchy.nodes[other as usize];
+        let partner = &self.elements.hierarchy.nodes[other as usize];
         if partner.is_cluster() {
-            let points = self.hierarchy.points(other);
+            let points = self.elements.hierarchy.points(other);
             let sum: f64 = points.iter().map(|point| kernel(from, *point)).sum();
             (sum * partner.area / POINTS as f64).min(1.0)
         } else if (from[0] - partner.corners[0]).dot(partner.normal) > 0.0 {
@@ -222,10 +236,10 @@ impl Gatherer<'_, '_> {
                 false => self.visibility.transmittance(from, to),
             }
         };
-        let points = self.hierarchy.points(other);
+        let points = self.elements.hierarchy.points(other);
         let (mut seen, mut all) = (0.0, 0.0);
         // The point of it that is tested differs from pair to pair.
-        let shift = (number.wrapping_mul(0x9e37_79b9) ^ other.wrapping_mul(0x85eb_ca6b)) as usize >> 7;
+        let shift = pair_hash(number, other) as usize >> 7;
         for i in 0..POINTS {
             let to = points[(i + shift) % POINTS];
             let weight = kernel(from, to);
@@ -240,6 +254,17 @@ impl Gatherer<'_, '_> {
         // What is in sight of an element at the horizon is next to nothing, and near.
         if all > 0.0 { seen / all } else { 1.0 }
     }
+}
+
+/// A number for a corner and a node.
+fn pair_hash(corner: u32, node: u32) -> u32 {
+    corner.wrapping_mul(0x9e37_79b9) ^ node.wrapping_mul(0x85eb_ca6b)
+}
+
+/// A number in 0..1 for a corner and a node.
+fn pair_number(corner: u32, node: u32) -> f64 {
+    let mixed = (u64::from(pair_hash(corner, node)) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    (mixed >> 11) as f64 / (1u64 << 53) as f64
 }
 
 /// For each node its partners, and whether it is sure that nothing is between.

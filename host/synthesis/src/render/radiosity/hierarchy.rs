@@ -8,6 +8,7 @@ use super::face_clusters::face_clusters;
 use super::node::{HierarchyNode, NONE, RadiosityPatch};
 use super::shortest_edges::ShortestEdges;
 use crate::color::Channels;
+use crate::numeric::bounds::Bounds;
 use crate::numeric::triangle;
 use glam::DVec3;
 use std::ops::{Add, Mul, Range};
@@ -26,8 +27,9 @@ impl Summable for Channels {}
 #[derive(Clone, Debug, Default)]
 pub(super) struct Hierarchy {
     pub(super) nodes: Vec<HierarchyNode>,
-    /// Points and unit normals that stand for each cluster.
+    /// Points and unit normals that stand for each cluster, and its bounds.
     cluster_points: Vec<[[DVec3; 2]; POINTS]>,
+    cluster_bounds: Vec<Bounds>,
     pub(super) patches: Vec<RadiosityPatch>,
     /// The node of each patch: its own, or that of the face cluster of which it is.
     pub(super) node_of: Vec<u32>,
@@ -106,7 +108,9 @@ impl Hierarchy {
         let order = of_faces(&order);
         let ranges: Vec<Range<usize>> = ranges.iter().map(|range| first[range.start]..first[range.end]).collect();
         let points = |range: &Range<usize>| representatives(&order[range.clone()], &own);
+        let corners = |range: &Range<usize>| order[range.clone()].iter().flat_map(|patch| own[*patch as usize].corners);
         hierarchy.cluster_points = ranges.iter().map(points).collect();
+        hierarchy.cluster_bounds = ranges.iter().map(|range| Bounds::of(corners(range))).collect();
         (hierarchy.order, hierarchy.ranges) = (order, ranges);
         hierarchy
     }
@@ -124,6 +128,11 @@ impl Hierarchy {
             faces[*number as usize].push(patch);
         }
         faces
+    }
+
+    /// The bounds of a cluster.
+    pub(super) fn cluster_bounds(&self, cluster: u32) -> Bounds {
+        self.cluster_bounds[cluster as usize]
     }
 
     /// The point of a cluster that is the nearest to its middle.
@@ -255,12 +264,14 @@ impl Hierarchy {
         }
     }
 
-    /// The least value of the leaves of each node that are not dark.
-    pub(super) fn pull_least(&self, values: &mut [f64]) {
+    /// The least or the most of the leaves of each node that are not dark.
+    ///
+    /// - `of_two`: the less or the more of two.
+    pub(super) fn pull_extreme(&self, values: &mut [f64], of_two: fn(f64, f64) -> f64) {
         let is_inner = |node: &HierarchyNode| !node.is_leaf() && !node.is_dark;
         for place in (0..self.nodes.len()).rev().filter(|place| is_inner(&self.nodes[*place])) {
             let lit = self.nodes[place].children().filter(|child| !self.nodes[*child].is_dark);
-            values[place] = lit.map(|child| values[child]).fold(f64::INFINITY, f64::min);
+            values[place] = lit.map(|child| values[child]).reduce(of_two).unwrap_or(values[place]);
         }
     }
 }

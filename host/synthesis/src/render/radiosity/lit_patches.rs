@@ -167,7 +167,8 @@ fn is_any_lit(corners: [DVec3; 3], coarsest: f64, at: &impl Fn(DVec3) -> bool) -
 }
 
 /// Leaf visibility, by rays: so many that chance is a small part of what leaves receive. Half of them are from all leaves
-/// alike, half the more from a leaf the more it sends: rays to a small bright spot seldom hit it.
+/// alike, as far as they are important, half the more from a leaf the more it sends: rays to a small bright spot seldom
+/// hit it.
 ///
 /// - `row`: for each leaf, the part of all that it sees that exchanges light.
 /// - `directions`: rays of each leaf, at the least. `stopped`: whether these will do.
@@ -203,12 +204,14 @@ pub(super) fn leaf_visibility(
     drop(pilot);
     let sent: Vec<f64> = leaves.iter().zip(row).map(|(leaf, row)| elements.power(*leaf) * row).collect();
     let all: f64 = sent.iter().sum();
-    let rays = 0.5 * f64::from(more) * leaves.len() as f64;
-    let count = |sent: &f64| {
+    let importance: f64 = leaves.iter().map(|leaf| elements.importance_to_rays(*leaf)).sum();
+    let rays = 0.5 * f64::from(more) * importance;
+    let count = |(leaf, sent): (&u32, &f64)| {
+        let alike = (0.5 * f64::from(more) * elements.importance_to_rays(*leaf)).ceil() as u32;
         let by_power = if all > 0.0 { (rays * sent / (all * BY_POWER)) as u32 * BY_POWER as u32 } else { 0 };
-        more.div_ceil(2).max(directions) + by_power.min(MOST_OF_BRIGHT)
+        alike.max(directions) + by_power.min(MOST_OF_BRIGHT)
     };
-    let counts: Vec<u32> = sent.iter().map(count).collect();
+    let counts: Vec<u32> = leaves.iter().zip(&sent).map(count).collect();
     reserve(&counts)?;
     Ok(traced(visibility, elements, leaves, row, &counts))
 }

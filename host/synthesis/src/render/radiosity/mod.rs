@@ -12,8 +12,9 @@
 //! parts of the scene receive, and what elements have is multiplied to agree with that. Through openings that the scene
 //! tells of, lights and surfaces are looked for from points of the opening.
 //!
-//! What pictures do not show is left out: elements are no finer than a part of a pixel, and errors of links are bounded
-//! by the mean light of the scene and of what pictures show.
+//! What pictures do not show is left out: elements are no finer than a part of a pixel, errors of links are bounded by
+//! the mean light of the scene and of what pictures show, and may be the greater the less of an element's light comes to
+//! pictures.
 //!
 //! What light cannot come to is left out first: rays join patches that see each other, and only what is joined to a lit
 //! one takes part. A closed dark room stays dark to the last bit.
@@ -50,6 +51,7 @@ mod shortest_edges;
 mod face_clusters;
 mod hierarchy;
 mod shown;
+mod importance;
 mod report;
 mod solver;
 mod surface;
@@ -77,6 +79,7 @@ use correction::{LeafLight, RegionCorrection, mirrored_irradiance};
 use elements::Elements;
 use exchange::{Exchange, ExchangeLink, LeafVisibility, OpeningExchange};
 use gather::{CornerViews, Gatherer};
+use importance::importance;
 use node::{RadiosityPatch, normal_and_area};
 use refinement::{AssessedLink, refine};
 use shortest_edges::ShortestEdges;
@@ -141,24 +144,38 @@ impl Radiosity {
             return Ok(Radiosity { light: SurfaceLight::dark(prepared), report: RadiosityReport::default() });
         }
         let mut elements = Elements::new(hierarchy, &visibility, exitance, &through, shadows, &edges);
-        let bound = |mean: f64, dimmest: f64| RefinementBound { error: settings.error, mean, dimmest };
-        elements.divide_where_light_varies(&visibility, bound(elements.mean_irradiance(), 1.0), BENT);
+        let shown = ShownPlaces::new(&visibility, plan, settings);
+        let bound =
+            |mean: f64, dimmest: f64, shown: f64| RefinementBound { error: settings.error, mean, dimmest, shown };
+        elements.find_importance(&visibility, &shown);
+        elements.divide_where_light_varies(&visibility, bound(elements.mean_irradiance(), 1.0, 0.0), BENT);
         let mut links: Vec<AssessedLink> = Vec::new();
         let mut report = RadiosityReport { patches: elements.hierarchy.patches.len(), ..RadiosityReport::default() };
         let mut leaves = Vec::new();
         let mut at_corners = None;
-        let shown = ShownPlaces::new(&visibility, plan, settings);
+        {
+            let l = elements.hierarchy.leaves();
+            let mut h = [0; 6];
+            for x in &l {
+                h[(-elements.importance[*x as usize].log2()).round() as usize] += 1;
+            }
+            eprintln!("importance {h:?}");
+        }
         for round in 0..ROUNDS {
             // What comes from other elements is not known at first: nothing is too dark then.
             let mean = elements.mean_irradiance();
             let bound = match round {
-                0 => bound(mean, 1.0),
+                0 => bound(mean, 1.0, 0.0),
                 // A dim room beside a bright garden is as much to what it shows as to the scene.
                 _ => {
-                    let shown = shown.irradiance(&visibility, &elements, DIM * mean);
-                    bound(shown.map_or(mean, |shown| (mean * shown).sqrt().min(MOST_ABOVE_SHOWN * shown)), DIM)
+                    let shown = shown.irradiance(&visibility, &elements, DIM * mean).unwrap_or(mean);
+                    bound((mean * shown).sqrt().min(MOST_ABOVE_SHOWN * shown), DIM, shown)
                 }
             };
+            if round == 1 {
+                // Elements are smaller than at first.
+                elements.find_importance(&visibility, &shown);
+            }
             if round > 0 {
                 elements.divide_where_light_varies(&visibility, bound, BENT);
             }
@@ -167,10 +184,9 @@ impl Radiosity {
             let is_last = round + 1 == ROUNDS || stopped();
             leaves = elements.hierarchy.leaves();
             let sampled = is_last.then(|| elements.sample_direct(&visibility, &leaves));
-            let gatherer =
-                Gatherer { visibility: &visibility, hierarchy: &elements.hierarchy, bound, least: &elements.least };
+            let gatherer = Gatherer { visibility: &visibility, elements: &elements, bound };
             let corners = is_last.then(|| ElementCorners::new(prepared, &elements.hierarchy, &leaves));
-            let views = corners.as_ref().map(|corners| gatherer.views(&links, corners, &elements.sent));
+            let views = corners.as_ref().map(|corners| gatherer.views(&links, corners, &leaves));
             let of_views = |views: &CornerViews<'_>| {
                 let rows = views.rows();
                 lit_patches::leaf_visibility(&visibility, &elements, &leaves, &rows, settings.directions, &stopped)
@@ -318,6 +334,13 @@ impl Elements<'_> {
     /// The mean irradiance of all elements, or what they send if that is more: W/m².
     fn mean_irradiance(&self) -> f64 {
         (self.direct[0] + self.indirect[0]).max().max(self.extra[0].max())
+    }
+
+    /// Finds how important all elements are to what is shown.
+    fn find_importance(&mut self, visibility: &VisibilityTester<'_>, shown: &ShownPlaces) {
+        let leaves = self.hierarchy.leaves();
+        let importance = importance(visibility, self, shown, &leaves);
+        self.take_importance(&leaves, &importance);
     }
 
     /// Takes up a solution.

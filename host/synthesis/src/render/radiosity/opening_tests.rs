@@ -68,7 +68,7 @@ fn flux_of_lights(room: &Prepared) -> f64 {
     let through = visibility.light_through_openings(true);
     let mut elements =
         Elements::new(Hierarchy::new(inner, &edges, |_| false), &visibility, None, &through, true, &edges);
-    let bound = RefinementBound { error: 0.005, mean: elements.mean_irradiance(), dimmest: 1.0 };
+    let bound = RefinementBound { error: 0.005, mean: elements.mean_irradiance(), dimmest: 1.0, shown: 0.0 };
     elements.divide_where_light_varies(&visibility, bound, BENT);
     let leaves = elements.hierarchy.leaves();
     let sampled = elements.sample_direct(&visibility, &leaves);

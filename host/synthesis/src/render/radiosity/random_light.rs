@@ -14,7 +14,7 @@ const FEW_SAMPLES: u32 = 16;
 const MOST_SAMPLES: u32 = 512;
 const SAMPLES: usize = 1 << 21;
 /// The standard error of the irradiance of a leaf by light samples, as a part of it, that needs no more.
-const SAMPLED_ERROR: f64 = 0.03;
+const SAMPLED_ERROR: f64 = 0.05;
 /// A neighbourhood tells how many light samples each of its leaves needs, and where their light comes from. It has so many
 /// leaves and samples that brought light, or so many leaves at the most, of which light may come to none.
 const NEIGHBOURS: u32 = 16;
@@ -26,6 +26,39 @@ const SIDE: usize = 8;
 const OF_LIGHT: u64 = 1 << 41;
 const OF_PILOT: u64 = 1 << 45;
 const OF_GUIDED: u64 = 1 << 46;
+
+/// Sums over light samples, each of which stands for all light.
+#[derive(Clone, Copy, Default)]
+struct LightSums {
+    irradiance: Channels,
+    /// Of all lanes together, and of its square.
+    total: f64,
+    squares: f64,
+    samples: u32,
+    lit: u32,
+}
+
+impl LightSums {
+    fn with(mut self, samples: impl Iterator<Item = Channels>) -> LightSums {
+        for light in samples {
+            let of_lanes: f64 = light.0.iter().sum();
+            self.irradiance += light;
+            self.total += of_lanes;
+            self.squares += of_lanes * of_lanes;
+            self.lit += u32::from(of_lanes > 0.0);
+            self.samples += 1;
+        }
+        self
+    }
+
+    fn light(&self) -> RandomLight {
+        let LightSums { samples, lit, .. } = *self;
+        let all = f64::from(samples);
+        let mean = self.total / all;
+        let variance = (self.squares / all - mean * mean).max(0.0) / (all - 1.0);
+        RandomLight { irradiance: self.irradiance * all.recip(), variance, samples, lit }
+    }
+}
 
 /// The irradiance of a leaf by light samples at random points of it.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -40,23 +73,6 @@ pub(super) struct RandomLight {
 }
 
 impl RandomLight {
-    /// Of samples, each of which stands for all light.
-    fn of(samples: impl Iterator<Item = Channels>) -> RandomLight {
-        let (mut sum, mut total, mut squares, mut count, mut lit) = (Channels::ZERO, 0.0, 0.0, 0, 0);
-        for light in samples {
-            let of_lanes: f64 = light.0.iter().sum();
-            sum += light;
-            total += of_lanes;
-            squares += of_lanes * of_lanes;
-            lit += u32::from(of_lanes > 0.0);
-            count += 1;
-        }
-        let all = f64::from(count);
-        let mean = total / all;
-        let variance = (squares / all - mean * mean).max(0.0) / (all - 1.0);
-        RandomLight { irradiance: sum * all.recip(), variance, samples: count, lit }
-    }
-
     fn total(&self) -> f64 {
         self.irradiance.0.iter().sum()
     }
@@ -70,6 +86,7 @@ pub(super) fn random_light(
     visibility: &VisibilityTester<'_>,
     hierarchy: &Hierarchy,
     leaves: &[u32],
+    importance: impl Fn(u32) -> f64 + Sync,
     shadows: bool,
 ) -> Vec<RandomLight> {
     let sampler = LeafSampler { visibility, hierarchy, shadows };
@@ -85,24 +102,36 @@ pub(super) fn random_light(
             };
             (0..lights).map(by).fold(Channels::ZERO, |sum, light| sum + light)
         });
-        RandomLight::of(samples)
+        LightSums::default().with(samples).light()
     });
     let around = around(hierarchy, leaves, &light);
+    // What is of little importance may have larger errors.
+    let worth = |number: usize, samples: u32| (f64::from(samples) * importance(leaves[number]).powi(2)).ceil() as u32;
     let needed = needed_samples(hierarchy.nodes.len(), &around, &light);
-    let is_unsure = |number: &usize| needed[*number] > FEW_SAMPLES;
+    let is_unsure = |number: &usize| worth(*number, needed[*number]) > FEW_SAMPLES;
     let unsure = (0..leaves.len()).filter(is_unsure).count();
     let most = (SAMPLES / (unsure * lights).max(1)).clamp(FEW_SAMPLES as usize, MOST_SAMPLES as usize) as u32;
+    let lights = lights as u32;
     let mut neighbourhoods = vec![Vec::new(); hierarchy.nodes.len()];
     around.iter().enumerate().for_each(|(number, around)| neighbourhoods[*around].push(number));
     neighbourhoods.retain(|numbers| numbers.iter().any(&is_unsure));
     let guided = visibility.map(&neighbourhoods, |_, numbers| {
         let guide = sampler.guide(leaves, numbers);
-        let of = |number: &usize| {
-            let count = needed[*number].min(most) * lights as u32;
-            let samples = sampler.samples(&guide, leaves[*number], OF_GUIDED + *number as u64, 0..count);
-            (*number, RandomLight::of(samples.map(|(sample, light)| light * sample.weight)))
+        let with = |sums: LightSums, number: usize, range: Range<u32>| {
+            let samples = sampler.samples(&guide, leaves[number], OF_GUIDED + number as u64, range);
+            sums.with(samples.map(|(sample, light)| light * sample.weight))
         };
-        numbers.iter().filter(|number| is_unsure(number)).map(of).collect::<Vec<(usize, RandomLight)>>()
+        // A few guided samples tell how many of them are needed.
+        let few = FEW_SAMPLES * lights;
+        let sums: Vec<LightSums> = numbers.iter().map(|number| with(LightSums::default(), *number, 0..few)).collect();
+        let guided: Vec<RandomLight> = sums.iter().map(LightSums::light).collect();
+        let needed = needed_samples(1, &vec![0; numbers.len()], &guided);
+        let all = |((number, sums), needed): ((&usize, LightSums), u32)| {
+            let count = worth(*number, needed.min(most * lights)).max(few);
+            (*number, with(sums, *number, few..count).light())
+        };
+        let all = numbers.iter().zip(sums).zip(needed).map(all);
+        all.filter(|(number, _)| is_unsure(number)).collect::<Vec<(usize, RandomLight)>>()
     });
     for (number, guided) in guided.into_iter().flatten() {
         light[number] = guided;

@@ -12,6 +12,8 @@ use super::form_factor::{self, kernel};
 use super::hierarchy::POINTS;
 use super::node::HierarchyNode;
 use super::visibility::VisibilityTester;
+use crate::numeric::bounds::Bounds;
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -24,6 +26,8 @@ const NOT_VISIBLE: f64 = 0.1;
 const ALL_VISIBLE: f64 = 0.02;
 /// Radii are the same if one is no less than this part of the other: rounding errors do not decide which node is divided.
 const ALIKE: f64 = 1.0 - 1e-9;
+/// What reaches less above a plane, as a part of both sizes, does so by rounding errors.
+const FLAT: f64 = 1e-9;
 /// Elements at the most; beyond them nothing is divided any more.
 const MOST_NODES: usize = 3_000_000;
 
@@ -111,7 +115,7 @@ pub(super) fn refine(
 fn is_within(elements: &Elements<'_>, bound: RefinementBound, [a, b]: [u32; 2], exchange: f64) -> bool {
     let side = |to: u32, from: u32| {
         let error = elements.sent[from as usize].max() * exchange / elements.hierarchy.nodes[to as usize].area;
-        error <= bound.of(elements.least[to as usize])
+        error <= elements.bound_of(to, bound)
     };
     side(a, b) && side(b, a)
 }
@@ -139,13 +143,13 @@ impl RefinementOracle<'_, '_> {
         if a == b {
             return self.within(a, first);
         }
-        if is_behind(first, second) || is_behind(second, first) {
+        let Some(cosines) = self.most_cosine(a, b).and_then(|one| Some(one * self.most_cosine(b, a)?)) else {
             return RefinementStep::Drop;
-        }
+        };
         let distance = first.middle.distance(second.middle);
         let sizes = first.radius + second.radius;
         let are_elements = !first.is_cluster() && !second.is_cluster();
-        let most = form_factor::limit(first.area, second.area, (distance - sizes).max(0.0));
+        let most = form_factor::limit(first.area, second.area, cosines, (distance - sizes).max(0.0));
         // Light between two planes goes within the angle that their normals make, from both sides.
         let turn = first.normal.angle_between(second.normal) + first.spread + second.spread;
         let most = most.min(first.area.min(second.area) * within_turn(turn));
@@ -198,6 +202,43 @@ impl RefinementOracle<'_, '_> {
             0.0 => RefinementStep::Drop,
             _ => RefinementStep::Keep(AssessedLink { link, error_bound: 0.0, is_clear }),
         })
+    }
+
+    /// The most that the cosine between normals of a node and directions from it to another can be; none where all of the
+    /// other is behind it.
+    fn most_cosine(&self, node: u32, other: u32) -> Option<f64> {
+        let (from, to) = (self.node(node), self.node(other));
+        let offset = to.middle - from.middle;
+        let distance = offset.length();
+        let sizes = from.radius + to.radius;
+        let mut most = 1.0;
+        if !from.is_cluster() {
+            let above = |corner: DVec3| (corner - from.corners[0]).dot(from.normal);
+            let highest = match to.is_cluster() {
+                false => to.corners.iter().map(|corner| above(*corner)).fold(f64::NEG_INFINITY, f64::max),
+                true => {
+                    let Bounds { min, max } = self.elements.hierarchy.cluster_bounds(other);
+                    above(DVec3::select(from.normal.cmpge(DVec3::ZERO), max, min)) - FLAT * sizes
+                }
+            };
+            if highest <= 0.0 {
+                return None;
+            }
+            most = highest / (distance - sizes);
+        }
+        if distance <= sizes {
+            return Some(1.0);
+        }
+        if from.is_cluster() {
+            // The directions from one to the other are in a cone.
+            let cone = (sizes / distance).asin();
+            let angle = (offset.dot(from.normal) / distance).clamp(-1.0, 1.0).acos() - cone - from.spread;
+            if angle > FRAC_PI_2 {
+                return None;
+            }
+            most = angle.max(0.0).cos();
+        }
+        Some(most.min(1.0))
     }
 
     /// The refinement step of a node with itself: an element exchanges nothing, a cluster little if it is nearly flat or
@@ -278,18 +319,4 @@ fn none_yet([a, b]: [u32; 2], error_bound: f64, is_clear: bool) -> RefinementSte
 /// The greatest form factor between elements whose normals differ by an angle: that of all between their planes.
 fn within_turn(turn: f64) -> f64 {
     0.5 * (1.0 - turn.min(PI).cos())
-}
-
-/// Whether all of a node is behind all of another.
-fn is_behind(node: &HierarchyNode, other: &HierarchyNode) -> bool {
-    if !node.is_cluster() && !other.is_cluster() {
-        return node.corners.iter().all(|corner| (*corner - other.corners[0]).dot(other.normal) <= 0.0);
-    }
-    let offset = node.middle - other.middle;
-    let distance = offset.length();
-    let sizes = node.radius + other.radius;
-    // The directions from one to the other are in a cone.
-    let cone = if distance > sizes { (sizes / distance).asin() } else { return false };
-    let angle = (offset.dot(other.normal) / distance).clamp(-1.0, 1.0).acos();
-    angle - cone - other.spread > FRAC_PI_2
 }

@@ -9,10 +9,11 @@ use super::exchange::Exchange;
 use crate::color::{Channels, LANES};
 use crate::render::RadiosityError;
 
-/// Aggregates of the coarse level, and where a rough solution will do.
+/// Aggregates of the coarse level, and where a rough solution will do or as much of all light is lost at each reflection.
 const AGGREGATES: usize = 24;
 const FEW_AGGREGATES: usize = 4;
 const ROUGH: f64 = 1e-3;
+const LOSSY: f64 = 0.3;
 /// Steps at the most.
 pub(super) const MOST_STEPS: u32 = 400;
 
@@ -78,7 +79,7 @@ pub(super) fn solve(
         return Err(RadiosityError::NoLoss);
     }
     let least_loss = losses.into_iter().fold(1.0, f64::min).max(f64::EPSILON);
-    let count = if tolerance > ROUGH { FEW_AGGREGATES } else { AGGREGATES };
+    let count = if tolerance > ROUGH || least_loss > LOSSY { FEW_AGGREGATES } else { AGGREGATES };
     let aggregate = aggregates(exchange, count);
     let mut system = System { exchange, areas: areas.clone(), roots, aggregate, coarse: Vec::new() };
     system.coarse = system.coarse_matrices();

@@ -186,7 +186,7 @@ fn the_hierarchy_gives_what_a_full_matrix_gives() {
         patches(&room, &plan, &visibility).into_iter().filter(|patch| !patch.outside).collect();
     let edges = ShortestEdges::everywhere(0.3);
     let mut elements = Elements::new(Hierarchy::new(inside, &edges, |_| false), &visibility, None, &[], true, &edges);
-    let bound = |error: f64, mean: f64| RefinementBound { error, mean, dimmest: 1.0 };
+    let bound = |error: f64, mean: f64| RefinementBound { error, mean, dimmest: 1.0, shown: 0.0 };
     // All as fine as they may be, so that links do not divide elements.
     loop {
         let leaves = elements.hierarchy.leaves();
@@ -205,10 +205,9 @@ fn the_hierarchy_gives_what_a_full_matrix_gives() {
         refine(&visibility, &mut elements, &mut links, bound, &|| false);
         let leaves = elements.hierarchy.leaves();
         let mut report = RadiosityReport::default();
-        let gatherer =
-            Gatherer { visibility: &visibility, hierarchy: &elements.hierarchy, bound, least: &elements.least };
+        let gatherer = Gatherer { visibility: &visibility, elements: &elements, bound };
         let corners = ElementCorners::new(&room, &elements.hierarchy, &leaves);
-        let views = gatherer.views(&links, &corners, &elements.sent);
+        let views = gatherer.views(&links, &corners, &leaves);
         let seen = lit_patches::leaf_visibility(&visibility, &elements, &leaves, &views.rows(), 32, &|| false)
             .expect("memory");
         let last = Some((&seen, &views));
@@ -486,4 +485,49 @@ fn small_pictures_have_fewer_elements_unless_light_is_to_be_the_same_in_all() {
     assert!(4 * small.0 < 3 * large.0, "{small:?} {large:?}");
     assert!((small.1 / large.1 - 1.0).abs() < 0.05, "{small:?} {large:?}");
     assert_eq!(light, other);
+}
+
+#[test]
+fn what_no_picture_shows_is_of_little_importance_unless_mirrors_may_show_it() {
+    let inside_and_outside = || vec![lamp(DVec3::ZERO), lamp(DVec3::new(3.0, 4.0, 5.0))];
+    let found = |objects: Vec<Object>, pixels: f64| -> Vec<(bool, f64)> {
+        let mut scene = prepared(objects, inside_and_outside());
+        scene.settings.light.interreflection = Interreflection::Solved;
+        let plan = Plan::new(&scene, &scene.view());
+        let world = World::new(&scene, &plan).expect("a world");
+        let settings = RadiositySettings { pixels, ..coarse() };
+        let visibility = VisibilityTester::new(&world, None);
+        let edges = ShortestEdges::new(&scene, &plan, &settings);
+        let hierarchy = Hierarchy::new(patches(&scene, &plan, &visibility), &edges, |_| false);
+        let mut elements = Elements::new(hierarchy, &visibility, None, &[], true, &edges);
+        let bound = RefinementBound { error: 0.1, mean: 1.0, dimmest: 1.0, shown: 0.0 };
+        elements.divide_where_light_varies(&visibility, bound, BENT);
+        let leaves = elements.hierarchy.leaves();
+        let shown = ShownPlaces::new(&visibility, &plan, &settings);
+        let importance = importance(&visibility, &elements, &shown, &leaves);
+        let of = |(leaf, importance): (&u32, &f64)| {
+            let node = &elements.hierarchy.nodes[*leaf as usize];
+            let outside = elements.hierarchy.patches[node.patch as usize].outside;
+            let is_shown = outside && (scene.camera.from - node.middle).dot(node.normal) > 0.0;
+            (is_shown, *importance)
+        };
+        leaves.iter().zip(&importance).map(of).collect()
+    };
+    // The inner sides and those that face away see nothing that is shown.
+    let known = found(vec![cube("box", 2.0, 0.5)], 0.5);
+    let shown = known.iter().filter(|(is_shown, _)| *is_shown).count();
+    assert!(shown >= 6 && known.len() >= 3 * shown, "{shown} of {}", known.len());
+    for (is_shown, importance) in known {
+        assert_eq!(importance, if is_shown { 1.0 } else { 1.0 / 16.0 });
+    }
+    // What lights what is shown is half as important, as it reflects half of its light.
+    let ground = object("ground", Shape::Ground { size: 9.0 }, 0.5);
+    let ground = Object { transform: DMat4::from_translation(DVec3::NEG_Y), ..ground };
+    let mut beside_ground = found(vec![cube("box", 2.0, 0.5), ground], 0.5);
+    beside_ground.retain(|(is_shown, importance)| !is_shown && *importance == 0.5);
+    assert!(beside_ground.len() >= 4, "{beside_ground:?}");
+    let plate = || mirror(DVec3::new(3.0, 0.0, 0.0), DVec3::new(0.1, 2.0, 2.0));
+    for (objects, pixels) in [(vec![cube("box", 2.0, 0.5)], 0.0), (vec![cube("box", 2.0, 0.5), plate()], 0.5)] {
+        assert!(found(objects, pixels).iter().all(|(_, importance)| *importance == 1.0), "{pixels}");
+    }
 }

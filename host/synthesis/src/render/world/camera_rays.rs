@@ -83,6 +83,11 @@ impl CameraRays {
         }
     }
 
+    /// The place in the picture, in pixels from the left upper corner, of clip coordinates, divided by the fourth.
+    pub(in crate::render) fn pixel(&self, clip: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|i| (clip[i] - self.corner[i]) / self.step[i])
+    }
+
     /// Gives rays cones that are a part of a pixel wide.
     pub(in crate::render) fn with_cones(self, part: f64) -> CameraRays {
         CameraRays { part, ..self }
