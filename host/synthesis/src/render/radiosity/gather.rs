@@ -147,6 +147,8 @@ impl Gatherer<'_, '_> {
         let apart = self.apart(sent);
         let opening_views = OpeningViews::new(self.visibility, hierarchy, sent);
         let importance = corners.most_of(leaves.iter().map(|leaf| importance[*leaf as usize]));
+        // What sends little now may send as much as the mean once all light is known.
+        let mean_sent = sent[0].max();
         let of = |number: usize, corner: &ElementCorner| {
             let from = corner.view();
             let least = least[corner.leaf as usize];
@@ -174,21 +176,20 @@ impl Gatherer<'_, '_> {
                     if factor <= 0.0 {
                         continue;
                     }
-                    let light = factor * sent[other as usize].max();
+                    if is_clear && self.visibility.openings.0.is_empty() {
+                        found.push((other, factor as f32));
+                        continue;
+                    }
+                    let sent = sent[other as usize].max();
                     // What is next to nothing is asked now and then only, and counts the more.
-                    let chance = (factor * sent[other as usize].max().max(sent[0].max()) / (NEGLIGIBLE * error))
-                        .clamp(LEAST_CHANCE, 1.0);
+                    let chance = (factor * sent.max(mean_sent) / (NEGLIGIBLE * error)).clamp(LEAST_CHANCE, 1.0);
                     if chance < 1.0 && pair_number(number as u32, other) >= chance {
                         continue;
                     }
-                    let factor = factor / chance;
-                    let is_little = light < LITTLE * error;
-                    let seen = match is_clear && self.visibility.openings.0.is_empty() {
-                        true => 1.0,
-                        false => self.visible_part(number as u32, from, other, is_clear, is_little),
-                    };
+                    let is_little = factor * sent < LITTLE * error;
+                    let seen = self.visible_part(number as u32, from, other, is_clear, is_little);
                     if seen > 0.0 {
-                        found.push((other, (factor * seen) as f32));
+                        found.push((other, (factor * seen / chance) as f32));
                     }
                 }
                 at = parent[at as usize];
