@@ -97,6 +97,15 @@ pub(super) fn bend(around: &CornerLight) -> f64 {
     middles.iter().enumerate().map(off).fold(0.0, f64::max)
 }
 
+/// The greatest difference of external light between corners, W/m².
+pub(super) fn spread(around: &CornerLight) -> f64 {
+    let of = |part: fn(&ExternalLight) -> Channels| {
+        let corners = || around.iter().take(3).map(|lit| part(lit).max());
+        corners().fold(0.0, f64::max) - corners().reduce(f64::min).unwrap_or(0.0)
+    };
+    of(|lit| lit.direct).max(of(|lit| lit.extra))
+}
+
 impl VisibilityTester<'_> {
     /// External light of an element, and its mean, which is exact for what is quadratic over an element that may be
     /// divided, and for what is linear over a part of one. A small patch is sampled in its middle only.

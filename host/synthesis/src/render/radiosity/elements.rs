@@ -2,7 +2,7 @@
 
 use super::bound::RefinementBound;
 use super::correction::{LeafLight, flux_estimates};
-use super::direct::{CornerLight, Exitance, ExternalLight, bend, of_parts};
+use super::direct::{CornerLight, Exitance, ExternalLight, bend, of_parts, spread};
 use super::enclosures::EnclosureTree;
 use super::exchange::LeafVisibility;
 use super::hierarchy::Hierarchy;
@@ -22,6 +22,10 @@ use serde::{Deserialize, Serialize};
 pub(super) const COARSEST: f64 = 16.0;
 /// Elements at the most.
 const MOST_ELEMENTS: usize = 2_000_000;
+/// External light that differs by so many bounds over one of the shortest elements has a sharp edge there; its parts may
+/// be shorter by this factor. What is near a patch of sunlight in a room is bright by how far that is.
+const GLARING: f64 = 1000.0;
+const SHARP_EDGE: f64 = 0.25;
 /// Light through openings is more than corners tell if it is by so many standard errors.
 const SIGNIFICANT: f64 = 3.0;
 
@@ -155,7 +159,7 @@ impl<'a> Elements<'a> {
 
     /// How short edges of parts of a node may be.
     fn shortest_edge(&self, node: &HierarchyNode) -> f64 {
-        let shortest = self.edges.of(node);
+        let shortest = self.edges.of(node) * if node.is_sharp { SHARP_EDGE } else { 1.0 };
         if node.is_cluster() { shortest } else { shortest.min(self.beside_openings[node.patch as usize]) }
     }
 
@@ -167,6 +171,7 @@ impl<'a> Elements<'a> {
         bound: RefinementBound,
         times: f64,
     ) {
+        self.sharpen(visibility, bound);
         let mut from = 0;
         loop {
             let nodes = &self.hierarchy.nodes;
@@ -190,6 +195,30 @@ impl<'a> Elements<'a> {
                 break;
             }
             self.divide(visibility, divided);
+        }
+        self.pull();
+    }
+
+    /// Finds the shortest elements over which light differs by very many bounds: their parts may be shorter, and what is
+    /// known of them is found between their corners, too.
+    fn sharpen(&mut self, visibility: &VisibilityTester<'_>, bound: RefinementBound) {
+        let nodes = &self.hierarchy.nodes;
+        let is_sharp = |place: &usize| {
+            let node = &nodes[*place];
+            node.is_leaf()
+                && !(node.is_dark || node.is_cluster() || self.may_divide(node))
+                && spread(&self.corner_light[*place]) > GLARING * self.bound_of(*place as u32, bound)
+                && self.may_divide(&HierarchyNode { is_sharp: true, ..*node })
+        };
+        let sharp: Vec<usize> = (0..nodes.len()).filter(is_sharp).collect();
+        sharp.iter().for_each(|place| self.hierarchy.nodes[*place].is_sharp = true);
+        let known: Vec<Known> = visibility.map(&sharp, |_, place| {
+            let corners = self.corner_light[*place].first_chunk().copied();
+            self.known(visibility, &self.hierarchy.nodes[*place], corners)
+        });
+        for (place, Known { mean, corner_light, .. }) in sharp.into_iter().zip(known) {
+            (self.direct[place], self.extra[place]) = (mean.direct, mean.extra);
+            self.corner_light[place] = corner_light;
         }
         self.pull();
     }

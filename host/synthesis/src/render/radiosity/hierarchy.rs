@@ -185,9 +185,10 @@ impl Hierarchy {
         let child = self.nodes.len() as u32;
         let parent = &mut self.nodes[node as usize];
         (parent.child, parent.children) = (child, parts.len() as u32);
-        let HierarchyNode { patch, is_dark, .. } = *parent;
-        self.nodes
-            .extend(parts.iter().map(|corners| HierarchyNode { is_dark, ..HierarchyNode::triangle(*corners, patch) }));
+        let HierarchyNode { patch, is_dark, is_sharp, .. } = *parent;
+        let part =
+            |corners: &[DVec3; 3]| HierarchyNode { is_dark, is_sharp, ..HierarchyNode::triangle(*corners, patch) };
+        self.nodes.extend(parts.iter().map(part));
     }
 
     /// Leaves the dark out: what is left of nodes has the area of what is not dark.

@@ -42,6 +42,7 @@ mod corners;
 mod exchange;
 mod correction;
 mod refinement;
+mod curvature;
 mod opening_views;
 mod gather;
 mod faces;
@@ -76,6 +77,7 @@ use bound::RefinementBound;
 use contact::Contacts;
 use corners::ElementCorners;
 use correction::{LeafLight, RegionCorrection, mirrored_irradiance};
+use curvature::divide_where_light_curves;
 use elements::Elements;
 use exchange::{Exchange, ExchangeLink, LeafVisibility, OpeningExchange};
 use gather::{CornerViews, Gatherer};
@@ -94,6 +96,8 @@ const ROUNDS: u64 = 3;
 const PASSES: usize = 4;
 /// The light of lights may be so many errors from linear over an element.
 const BENT: f64 = 4.0;
+/// The light of other elements may be so many errors from linear over one.
+const CURVED: f64 = 1.0;
 /// What receives light counts as no dimmer than this part of the mean irradiance, where errors are bounded by it.
 const DIM: f64 = 1e-4;
 /// Errors are bounded by no more than so many times the mean irradiance of what pictures show, where the scene is brighter.
@@ -182,6 +186,9 @@ impl Radiosity {
             refine(&visibility, &mut elements, &mut links, bound, &stopped);
             stage.progress((2 * round + 1) as f64);
             let is_last = round + 1 == ROUNDS || stopped();
+            if is_last {
+                divide_where_light_curves(&visibility, &mut elements, &links, bound, CURVED);
+            }
             leaves = elements.hierarchy.leaves();
             let sampled = is_last.then(|| elements.sample_direct(&visibility, &leaves));
             let gatherer = Gatherer { visibility: &visibility, elements: &elements, bound };

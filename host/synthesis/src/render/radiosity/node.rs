@@ -46,6 +46,8 @@ pub(super) struct HierarchyNode {
     pub(super) patch: u32,
     /// Whether its children are halves, or what lines made of it, and not its quarters.
     pub(super) is_cut: bool,
+    /// Whether a sharp edge of bright light is on it, so that its parts may be shorter than others.
+    pub(super) is_sharp: bool,
     /// Whether no light can come to it.
     pub(super) is_dark: bool,
 }
@@ -66,6 +68,7 @@ impl HierarchyNode {
             children: 0,
             patch,
             is_cut: false,
+            is_sharp: false,
             is_dark: false,
         }
     }

@@ -10,6 +10,8 @@ const SIGNIFICANT: f64 = 3.0;
 /// Where the standard error is no more than this, a difference by one is enough: elements seldom know better.
 const CERTAIN: f64 = 0.003;
 const LEAST_DIFFERENCE: f64 = 0.002;
+/// The standard error of the light of a part that is corrected by itself, as a part of it, at the most.
+const MOST_PART_ERROR: f64 = 0.1;
 /// The variance of a larger part counts as much as so many rays of a smaller one.
 const RAYS_OF_LARGER: f64 = 64.0;
 
@@ -106,7 +108,8 @@ pub(super) fn factors(tree: &EnclosureTree<'_>, leaves: &[u32], estimates: &[Flu
         // Off the place as rays tell it: what children receive together is then what the place does.
         let off = |child: usize| of[child].factor() - of[place].factor();
         let surprise: f64 = lit().map(|child| (off(child) / of[child].error()).powi(2)).sum();
-        let part = certain(lit().count() as f64 - 1.0, surprise);
+        let is_known = lit().all(|child| of[child].relative_error() <= MOST_PART_ERROR);
+        let part = if is_known { certain(lit().count() as f64 - 1.0, surprise) } else { 0.0 };
         lit().for_each(|child| factor[child] = (factor[place] + off(child) * part).max(0.0));
     }
     leaves.iter().map(|leaf| factor[tree.place_of(*leaf)]).collect()
@@ -196,6 +199,20 @@ mod tests {
         });
         assert!(one != other);
         assert!(factors(&tree, &leaves, &half(3.0), 2.0).iter().all(|factor| *factor == 1.0));
+    }
+
+    #[test]
+    fn a_leaf_that_few_rays_found_bright_stays_as_it_is() {
+        let (hierarchy, leaves) = row(64);
+        let tree = EnclosureTree::new(&hierarchy, &leaves, &vec![0; leaves.len()]);
+        // Three rays of a bright place hit one leaf instead of the one in three that are expected.
+        let of = |i: usize| match i {
+            17 => FluxEstimate { by_elements: 1.0, by_rays: 9.0, variance: 27.0, rays: 100 },
+            _ => FluxEstimate { by_elements: 1.0, by_rays: 1.0, variance: 1e-4, rays: 100 },
+        };
+        let estimates: Vec<FluxEstimate> = (0..leaves.len()).map(of).collect();
+        let factors = factors(&tree, &leaves, &estimates, 2.0);
+        assert!(factors.iter().all(|factor| (factor - 1.0).abs() < 0.05), "{factors:?}");
     }
 
     #[test]

@@ -289,38 +289,35 @@ fn scenes_of_any_size_have_the_same_light() {
     }
 }
 
-#[test]
-fn a_patch_of_light_on_a_floor_lights_the_ceiling_as_the_closed_form_tells() {
+/// A patch of light on a floor, a square with a half side of 0.37, and the greatest error of what it brings to a ceiling at
+/// points near it, as a part of that.
+fn error_above_a_patch_of_light(height: f64, settings: &RadiositySettings, points: &[[f64; 2]]) -> f64 {
     let plate = |name: &str, y: f64| {
         let mut plate = object(name, Shape::from(Primitive::Box { size: DVec3::new(4.0, 0.2, 4.0) }), 0.001);
         plate.transform = DMat4::from_translation(DVec3::new(0.0, y, 0.0));
         plate
     };
-    let room = prepared(vec![plate("floor", -0.1), plate("ceiling", 1.1)], vec![]);
+    let room = prepared(vec![plate("floor", -0.1), plate("ceiling", height + 0.1)], vec![]);
     let half = 0.37;
     let sent = |_: u32, outside: bool, at: DVec3| {
         let is_in = outside && at.y.abs() < 1e-3 && at.x.abs() < half && at.z.abs() < half;
         Channels::splat(if is_in { 3.0 } else { 0.0 })
     };
-    let radiosity = solved(
-        &room,
-        &RadiositySettings { error: 0.002, finest: 1.0 / 400.0, ..RadiositySettings::default() },
-        Some(&sent),
-    );
+    let radiosity = solved(&room, settings, Some(&sent));
     // From a point at a distance of 1 above the corner of a rectangle of x by y.
     let corner = |x: f64, y: f64| {
         let part = |x: f64, y: f64| x / (1.0 + x * x).sqrt() * (y / (1.0 + x * x).sqrt()).atan();
         (part(x, y) + part(y, x)) / (2.0 * PI)
     };
-    for [x, z] in [[0.0, 0.0], [0.5, 0.2], [-1.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, -1.0], [1.0, 0.7], [-1.0, 0.7]] {
-        let [left, right, front, back] = [x + half, half - x, z + half, half - z];
+    let error = |[x, z]: &[f64; 2]| {
+        let [left, right, front, back] = [x + half, half - x, z + half, half - z].map(|side| side / height);
         let sign = |side: f64| side.signum();
         let pairs = [[left, front], [left, back], [right, front], [right, back]];
         let exact: f64 = 3.0 * pairs.map(|[a, b]| sign(a) * sign(b) * corner(a.abs(), b.abs())).iter().sum::<f64>();
-        let at = DVec3::new(x, 1.0, z);
+        let at = DVec3::new(*x, height, *z);
         let found = (0..room.triangles.len() as u32).find_map(|triangle| {
             let corners = room.corners(triangle);
-            let faces_down = normal_and_area(corners).0.y < -0.9 && corners[0].y > 0.5;
+            let faces_down = normal_and_area(corners).0.y < -0.9 && corners[0].y > 0.5 * height;
             let weights = crate::numeric::triangle::weights(corners, at);
             let [a, b, c] = corners;
             // Of what is off the triangle, weights are those of the nearest point.
@@ -329,8 +326,20 @@ fn a_patch_of_light_on_a_floor_lights_the_ceiling_as_the_closed_form_tells() {
                 .then(|| radiosity.irradiance(triangle, true, weights, IrradiancePart::Indirect).0[0])
         });
         let found = found.expect("a place on the ceiling");
-        assert!((found / exact - 1.0).abs() < 0.015, "{x} {z}: {found} {exact}");
-    }
+        (found / exact - 1.0).abs()
+    };
+    points.iter().map(error).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_patch_of_light_on_a_floor_lights_the_ceiling_as_the_closed_form_tells() {
+    let points = [[0.0, 0.0], [0.5, 0.2], [-1.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, -1.0], [1.0, 0.7], [-1.0, 0.7]];
+    let fine = RadiositySettings { error: 0.002, finest: 1.0 / 400.0, ..RadiositySettings::default() };
+    assert!(error_above_a_patch_of_light(1.0, &fine, &points) < 0.015);
+    // Near its edge, light changes within the length of an element.
+    let points = [[0.3, 0.0], [0.35, 0.1], [0.4, -0.2], [-0.45, 0.0], [0.0, 0.42], [0.38, 0.38], [-0.5, 0.3]];
+    let coarse = RadiositySettings { error: 0.03, finest: 1.0 / 100.0, ..RadiositySettings::default() };
+    assert!(error_above_a_patch_of_light(0.1, &coarse, &points) < 0.12);
 }
 
 #[test]
@@ -530,4 +539,35 @@ fn what_no_picture_shows_is_of_little_importance_unless_mirrors_may_show_it() {
     for (objects, pixels) in [(vec![cube("box", 2.0, 0.5)], 0.0), (vec![cube("box", 2.0, 0.5), plate()], 0.5)] {
         assert!(found(objects, pixels).iter().all(|(_, importance)| *importance == 1.0), "{pixels}");
     }
+}
+
+#[test]
+fn elements_are_shorter_where_the_light_of_others_changes_within_their_length() {
+    let room = prepared(vec![cube("room", 2.0, 0.5)], vec![]);
+    let plan = Plan::new(&room, &room.view());
+    let world = World::new(&room, &plan).expect("a world");
+    let visibility = VisibilityTester::new(&world, None);
+    let edges = ShortestEdges::everywhere(0.02);
+    // A bright place of the floor, beside a wall.
+    let sends = |_: u32, outside: bool, at: DVec3| {
+        Channels::splat(if !outside && at.y < -0.99 && at.x > 0.7 && at.z.abs() < 0.15 { 100.0 } else { 0.0 })
+    };
+    let hierarchy = Hierarchy::new(patches(&room, &plan, &visibility), &edges, |_| false);
+    let mut elements = Elements::new(hierarchy, &visibility, Some(&sends), &[], true, &edges);
+    let bound = |mean: f64| RefinementBound { error: 0.1, mean, dimmest: 1.0, shown: 0.0 };
+    elements.divide_where_light_varies(&visibility, bound(elements.mean_irradiance()), BENT);
+    let (bound, mut links) = (bound(elements.mean_irradiance()), Vec::new());
+    refine(&visibility, &mut elements, &mut links, bound, &|| false);
+    let longest = |elements: &Elements<'_>, from: DVec3| {
+        let near =
+            |node: &&node::HierarchyNode| node.is_leaf() && node.normal.x < -0.9 && node.middle.distance(from) < 0.3;
+        elements.hierarchy.nodes.iter().filter(near).map(|node| node.longest_edge()).fold(0.0, f64::max)
+    };
+    let [beside, far] = [DVec3::new(1.0, -0.8, 0.0), DVec3::new(1.0, 0.8, 0.8)];
+    let before = [beside, far].map(|from| longest(&elements, from));
+    divide_where_light_curves(&visibility, &mut elements, &links, bound, 1e9);
+    assert_eq!([beside, far].map(|from| longest(&elements, from)), before);
+    divide_where_light_curves(&visibility, &mut elements, &links, bound, 0.25);
+    let after = [beside, far].map(|from| longest(&elements, from));
+    assert!(after[0] < 0.6 * before[0] && after[1] == before[1], "{before:?} {after:?}");
 }

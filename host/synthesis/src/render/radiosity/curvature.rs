@@ -1,0 +1,63 @@
+//! Elements over which the light of others is far from linear.
+//!
+//! A link is kept where its own error is small, but of many near ones the errors add up: beside a patch of sunlight, each
+//! part of it brings little, and all together bring light that changes within the length of an element. What a point
+//! source at a distance d brings has second derivatives of about its light over d², so that is summed over all links of
+//! an element, and over those of what the element is part of.
+
+use super::bound::RefinementBound;
+use super::elements::Elements;
+use super::exchange::ExchangeLink;
+use super::refinement::AssessedLink;
+use super::visibility::VisibilityTester;
+
+/// Times that elements are divided at the most.
+const MOST_ROUNDS: u32 = 4;
+
+/// Divides leaves over which the light of others is farther from linear than so many bounds.
+pub(super) fn divide_where_light_curves(
+    visibility: &VisibilityTester<'_>,
+    elements: &mut Elements<'_>,
+    links: &[AssessedLink],
+    bound: RefinementBound,
+    times: f64,
+) {
+    for _ in 0..MOST_ROUNDS {
+        let second = second_derivatives(elements, links);
+        let nodes = &elements.hierarchy.nodes;
+        let curves = |place: &u32| {
+            let node = &nodes[*place as usize];
+            let is_divisible = !(node.is_dark || node.is_cluster()) && node.is_leaf() && elements.may_divide(node);
+            let bend = 0.5 * second[*place as usize] * node.radius * node.radius;
+            is_divisible && bend > times * elements.bound_of(*place, bound)
+        };
+        let divided: Vec<u32> = (0..nodes.len() as u32).filter(curves).collect();
+        if divided.is_empty() {
+            break;
+        }
+        elements.divide(visibility, divided);
+        elements.pull();
+    }
+}
+
+/// For each node, about the second derivative of the irradiance of its leaves by others, W/m⁴.
+fn second_derivatives(elements: &Elements<'_>, links: &[AssessedLink]) -> Vec<f64> {
+    let nodes = &elements.hierarchy.nodes;
+    let mut second = vec![0.0; nodes.len()];
+    for ExchangeLink { a, b, exchange } in links.iter().map(|assessed| assessed.link).filter(|link| link.exchange > 0.0)
+    {
+        let square = nodes[a as usize].middle.distance_squared(nodes[b as usize].middle);
+        for (to, from) in [(a, b), (b, a)] {
+            if square > 0.0 {
+                second[to as usize] +=
+                    elements.sent[from as usize].max() * exchange / (nodes[to as usize].area * square);
+            }
+        }
+    }
+    for place in 0..nodes.len() {
+        for child in nodes[place].children() {
+            second[child] += second[place];
+        }
+    }
+    second
+}
