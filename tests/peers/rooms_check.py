@@ -1,12 +1,14 @@
-"""Compares rooms by radiosity with Mitsuba's light tracer: the mean of the picture, and means of 8 x 6 parts of it.
+"""Compares rooms by radiosity with Mitsuba's light tracer: the mean of the picture, means of 8 x 6 parts of it, and pixels.
 
     python3 tests/peers/rooms_check.py [--peris target/release/peris] [--rooms "sky 0.6"] [--write]
 
 Needs the packages mitsuba, numpy and OpenEXR, and LLVM's library for Mitsuba. Mitsuba's numbers have 24 bits, and its rays
 start so far off surfaces that it shows in windows of 0.05: its rooms are enlarged about the window. `--write` lets Mitsuba
-work, some minutes a room, and keeps its values in rooms.json, where tests/tests/peers.rs looks for them. Each room is made
-of rectangles here; of the sky only what fills the outer rim of the window is there, which is all that comes in. Pixels in
-which the window, the lamp or what is next to them is in sight do not count.
+work, some minutes a room, and keeps its values in rooms.json and rooms.exr, where tests/tests/peers.rs looks for them. In
+the second, pictures of all rooms are one below the other, in the order of the first: red is the mean of a pixel, green the
+mean over it and those beside it of its standard error. A pixel is off by more than 5 % of what is there and three standard
+errors. Each room is made of rectangles here; of the sky only what fills the outer rim of the window is there, which is all
+that comes in. Pixels in which the window, the lamp or what is next to them is in sight do not count.
 """
 import argparse
 import json
@@ -16,17 +18,23 @@ import tempfile
 
 import mitsuba as mi
 import numpy as np
+import OpenEXR
 
 mi.set_variant("llvm_ad_rgb")
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 KEPT = os.path.join(HERE, "rooms.json")
+PIXELS = os.path.join(HERE, "rooms.exr")
 COLUMNS, ROWS, PARTS = 64, 48, (6, 8)
 PASSES = 16
-# Of the light of a lamp or a spot, less comes to the window.
+# Of the light of a lamp or a spot, less comes to the window; of a small window, less comes to the room.
 SAMPLES = {"sky": 1024, "sun": 1024, "pane": 1024, "lantern": 1024, "lamp": 4096, "spot": 4096}
-# A small patch of sun is few pixels: with 256 samples, chance is half a percent of the picture.
-OUR_SAMPLES = 1024
+SAMPLES |= {"sky 0.05": 4096, "sun 0.05": 4096}
+# Light by a small window is found by few samples.
+OUR_SAMPLES = {"0.05": 16384}
+MOST_SAMPLES = 4096
+# A pixel may be off by this part of what is there.
+OFF = 0.05
 # A pixel with so many times the median shows a lamp or the sky.
 BRIGHT = 20
 ROOMS = [f"{kind} {width}" for kind in ("sky", "sun", "lamp", "spot") for width in ("0.05", "0.2", "0.6", "2")]
@@ -198,12 +206,49 @@ def values(passes, left_out):
     }
 
 
+def around(picture):
+    """The mean over each pixel and those beside it; those that are left out are no numbers."""
+    rows, columns = picture.shape
+    near = lambda i, j: picture[max(0, i - 1):i + 2, max(0, j - 1):j + 2]
+    with np.errstate(all="ignore"):
+        return np.array([[np.nanmean(near(i, j)) for j in range(columns)] for i in range(rows)])
+
+
+def counted(picture, left_out):
+    picture = picture.astype(float)
+    picture.reshape(-1)[left_out] = np.nan
+    return picture
+
+
+def pixels(passes, left_out):
+    """Means and standard errors. The error of one pixel is taken over its neighbourhood: chance makes its own too small just
+    where it makes the pixel too dark."""
+    square = counted(passes.var(axis=0, ddof=1) / len(passes), left_out)
+    return np.stack([passes.mean(axis=0), np.nan_to_num(np.sqrt(around(square)))], axis=-1)
+
+
+def kept_pixels(rooms, new):
+    """Pictures of all rooms, of which some are new."""
+    old = {}
+    if os.path.exists(PIXELS):
+        known = OpenEXR.File(PIXELS).channels()["RGB"].pixels
+        names = sorted(json.load(open(KEPT))["rooms"])
+        old = {name: known[ROWS * i:ROWS * (i + 1), :, :2] for i, name in enumerate(names)}
+    return np.concatenate([new.get(name, old.get(name, np.zeros((ROWS, COLUMNS, 2)))) for name in sorted(rooms)])
+
+
+def write_pixels(values):
+    values = np.concatenate([values, np.zeros_like(values[:, :, :1])], axis=-1).astype(np.float32)
+    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    OpenEXR.File(header, {"RGB": values}).write(PIXELS + ".new.exr")
+    os.replace(PIXELS + ".new.exr", PIXELS)
+
+
 def ours(peris, name, folder):
-    import OpenEXR
 
     kind, width = name.split()
     path = os.path.join(folder, "room.exr")
-    words = ["-D", f"kind={kind}", "-D", f"width={float(width) or 0.6}", "--samples", str(OUR_SAMPLES), "-o", path]
+    words = ["-D", f"kind={kind}", "-D", f"width={float(width) or 0.6}", "--samples", str(OUR_SAMPLES.get(width, MOST_SAMPLES)), "-o", path]
     subprocess.run([peris, "render", os.path.join(HERE, "rooms.rhai"), *words], check=True, capture_output=True)
     channels = OpenEXR.File(path).channels()
     return next(iter(channels.values())).pixels[:, :, 1].astype(float)
@@ -221,11 +266,12 @@ def main():
         for name in options.rooms:
             made = scene(name)
             kind, width = name.split()
-            passes = [np.array(mi.render(made, spp=SAMPLES[kind], seed=seed))[:, :, 1] for seed in range(PASSES)]
+            passes = [np.array(mi.render(made, spp=SAMPLES.get(name, SAMPLES[kind]), seed=seed))[:, :, 1] for seed in range(PASSES)]
             passes = np.array(passes)
             # A window is where the sky is seen in it.
             left_out = bright(passes) if kind in ("sky", "lantern") else kept["rooms"][f"sky {width}"]["left_out"]
             kept["rooms"][name] = values(passes, left_out)
+            write_pixels(kept_pixels(kept["rooms"], {name: pixels(passes, left_out)}))
             with open(KEPT + ".new", "w") as file:
                 rooms = ",\n".join(f"{json.dumps(room)}: {json.dumps(of)}" for room, of in sorted(kept["rooms"].items()))
                 file.write(f'{{"source": {json.dumps(kept["source"])}, "rooms": {{\n{rooms}\n}}}}\n')
@@ -235,6 +281,11 @@ def main():
         for name in options.rooms:
             room = kept["rooms"][name]
             picture = ours(options.peris, name, folder)
+            row = ROWS * sorted(kept["rooms"]).index(name)
+            theirs, error = np.moveaxis(OpenEXR.File(PIXELS).channels()["RGB"].pixels[row:row + ROWS, :, :2], -1, 0)
+            theirs = counted(theirs, room["left_out"])
+            off = np.abs(picture - theirs) > OFF * around(theirs) + 3 * error
+            print(f"{name}: {np.count_nonzero(off)} pixels are off: {np.argwhere(off).tolist()[:8]}", flush=True)
             picture.reshape(-1)[room["left_out"]] = 0
             known = np.array(room["parts"])
             off = (parts(picture) / np.where(known > 0, known, 1) - 1)[known > 0]

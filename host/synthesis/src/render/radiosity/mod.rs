@@ -157,14 +157,6 @@ impl Radiosity {
         let mut report = RadiosityReport { patches: elements.hierarchy.patches.len(), ..RadiosityReport::default() };
         let mut leaves = Vec::new();
         let mut at_corners = None;
-        {
-            let l = elements.hierarchy.leaves();
-            let mut h = [0; 6];
-            for x in &l {
-                h[(-elements.importance[*x as usize].log2()).round() as usize] += 1;
-            }
-            eprintln!("importance {h:?}");
-        }
         for round in 0..ROUNDS {
             // What comes from other elements is not known at first: nothing is too dark then.
             let mean = elements.mean_irradiance();
