@@ -6,7 +6,7 @@
 //! an element, and over those of what the element is part of.
 
 use super::bound::RefinementBound;
-use super::elements::Elements;
+use super::elements::{Elements, MOST_ELEMENTS};
 use super::exchange::ExchangeLink;
 use super::refinement::AssessedLink;
 use super::visibility::VisibilityTester;
@@ -15,14 +15,20 @@ use super::visibility::VisibilityTester;
 const MOST_ROUNDS: u32 = 4;
 
 /// Divides leaves over which the light of others is farther from linear than so many bounds.
+///
+/// - `stopped`: asked before each time; then they stay as they are.
 pub(super) fn divide_where_light_curves(
     visibility: &VisibilityTester<'_>,
     elements: &mut Elements<'_>,
     links: &[AssessedLink],
     bound: RefinementBound,
     times: f64,
+    stopped: &dyn Fn() -> bool,
 ) {
     for _ in 0..MOST_ROUNDS {
+        if stopped() || elements.hierarchy.nodes.len() > MOST_ELEMENTS {
+            break;
+        }
         let second = second_derivatives(elements, links);
         let nodes = &elements.hierarchy.nodes;
         let curves = |place: &u32| {

@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 /// The longest edge of an element, in shortest ones.
 pub(super) const COARSEST: f64 = 16.0;
 /// Elements at the most.
-const MOST_ELEMENTS: usize = 2_000_000;
+pub(super) const MOST_ELEMENTS: usize = 2_000_000;
 /// External light that differs by so many bounds over one of the shortest elements has a sharp edge there; its parts may
 /// be shorter by this factor. What is near a patch of sunlight in a room is bright by how far that is.
 const GLARING: f64 = 1000.0;

@@ -179,7 +179,7 @@ impl Radiosity {
             stage.progress((2 * round + 1) as f64);
             let is_last = round + 1 == ROUNDS || stopped();
             if is_last {
-                divide_where_light_curves(&visibility, &mut elements, &links, bound, CURVED);
+                divide_where_light_curves(&visibility, &mut elements, &links, bound, CURVED, &stopped);
             }
             leaves = elements.hierarchy.leaves();
             let sampled = is_last.then(|| elements.sample_direct(&visibility, &leaves));

@@ -565,9 +565,9 @@ fn elements_are_shorter_where_the_light_of_others_changes_within_their_length() 
     };
     let [beside, far] = [DVec3::new(1.0, -0.8, 0.0), DVec3::new(1.0, 0.8, 0.8)];
     let before = [beside, far].map(|from| longest(&elements, from));
-    divide_where_light_curves(&visibility, &mut elements, &links, bound, 1e9);
+    divide_where_light_curves(&visibility, &mut elements, &links, bound, 1e9, &|| false);
     assert_eq!([beside, far].map(|from| longest(&elements, from)), before);
-    divide_where_light_curves(&visibility, &mut elements, &links, bound, 0.25);
+    divide_where_light_curves(&visibility, &mut elements, &links, bound, 0.25, &|| false);
     let after = [beside, far].map(|from| longest(&elements, from));
     assert!(after[0] < 0.6 * before[0] && after[1] == before[1], "{before:?} {after:?}");
 }
