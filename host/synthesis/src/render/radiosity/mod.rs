@@ -151,7 +151,6 @@ impl Radiosity {
         let shown = ShownPlaces::new(&visibility, plan, settings);
         let bound =
             |mean: f64, dimmest: f64, shown: f64| RefinementBound { error: settings.error, mean, dimmest, shown };
-        elements.find_importance(&visibility, &shown);
         elements.divide_where_light_varies(&visibility, bound(elements.mean_irradiance(), 1.0, 0.0), BENT);
         let mut links: Vec<AssessedLink> = Vec::new();
         let mut report = RadiosityReport { patches: elements.hierarchy.patches.len(), ..RadiosityReport::default() };
