@@ -7,7 +7,7 @@ use thiserror::Error;
 /// A set operation on two or more solids.
 struct Operation {
     name: &'static str,
-    /// As in scripts.
+    /// The sign that stands for it in scripts.
     sign: &'static str,
     /// Those with more are done first; as in scripts.
     binding: u8,

@@ -107,7 +107,7 @@ impl Literal {
 }
 
 impl fmt::Display for Literal {
-    /// As in commands, so far as commands can express it; in a string, characters that cannot be seen as escapes.
+    /// The text of a command, so far as commands can express it; in a string, characters that cannot be seen as escapes.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let list = |numbers: &[f64]| numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
         match *self {

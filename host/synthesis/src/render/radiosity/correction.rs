@@ -134,19 +134,8 @@ pub(super) fn mirrored_irradiance(
         }
         sums[*leaf as usize] = (flux, light.irradiance[i] * area, area, rays);
     }
-    for place in (0..nodes.len()).rev() {
-        for child in nodes[place].children() {
-            let (flux, straight, area, rays) = sums[child];
-            let sum = &mut sums[place];
-            *sum = (sum.0 + flux, sum.1 + straight, sum.2 + area, sum.3 + rays);
-        }
-    }
-    let mut around: Vec<usize> = (0..nodes.len()).collect();
-    for place in 0..nodes.len() {
-        for child in nodes[place].children() {
-            around[child] = if sums[child].3 >= MIRRORED_RAYS { child } else { around[place] };
-        }
-    }
+    hierarchy.add_up(&mut sums, |a, b| (a.0 + b.0, a.1 + b.1, a.2 + b.2, a.3 + b.3));
+    let around = hierarchy.neighbourhoods(|node| sums[node].3 >= MIRRORED_RAYS);
     let of = |(i, leaf): (usize, &u32)| match sums[around[*leaf as usize]] {
         (flux, straight, area, _) if flux.max() > straight.max() && !visibility.is_dark[i] => flux * area.recip(),
         _ => Channels::ZERO,

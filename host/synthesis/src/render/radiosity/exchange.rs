@@ -262,24 +262,13 @@ impl<'a> Exchange<'a> {
 
     /// The goals of the rows: 1 where no ray of many in the neighbourhood is lost, else what leaves see.
     fn goals(&mut self, leaf_visibility: &LeafVisibility) -> Vec<f64> {
-        let nodes = &self.hierarchy.nodes;
         // Of each node: rays, and whether one is lost.
-        let mut sums = vec![(0u64, false); nodes.len()];
+        let mut sums = vec![(0u64, false); self.nodes().len()];
         for (i, leaf) in self.leaves.iter().enumerate().filter(|(i, _)| !leaf_visibility.is_dark[*i]) {
             sums[*leaf as usize] = (leaf_visibility.rays[i].len() as u64, leaf_visibility.seen_part[i] < 1.0);
         }
-        for place in (0..nodes.len()).rev() {
-            for child in nodes[place].children() {
-                let (rays, lost) = sums[child];
-                sums[place] = (sums[place].0 + rays, sums[place].1 | lost);
-            }
-        }
-        let mut around: Vec<usize> = (0..nodes.len()).collect();
-        for place in 0..nodes.len() {
-            for child in nodes[place].children() {
-                around[child] = if sums[child].0 >= NEIGHBOURING_RAYS { child } else { around[place] };
-            }
-        }
+        self.hierarchy.add_up(&mut sums, |a, b| (a.0 + b.0, a.1 | b.1));
+        let around = self.hierarchy.neighbourhoods(|node| sums[node].0 >= NEIGHBOURING_RAYS);
         self.is_closed = self.leaves.iter().map(|leaf| !sums[around[*leaf as usize]].1).collect();
         let goal = |i: usize| match (leaf_visibility.is_dark[i], self.is_closed[i]) {
             (true, _) => 0.0,

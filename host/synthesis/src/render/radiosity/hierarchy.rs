@@ -265,6 +265,30 @@ impl Hierarchy {
         }
     }
 
+    /// Sums of what nodes have, from the leaves up to the root.
+    ///
+    /// - `add`: the sum of two.
+    pub(super) fn add_up<S: Copy>(&self, values: &mut [S], add: impl Fn(S, S) -> S) {
+        for place in (0..self.nodes.len()).rev() {
+            for child in self.nodes[place].children() {
+                values[place] = add(values[place], values[child]);
+            }
+        }
+    }
+
+    /// The neighbourhood of each node: itself if it is large enough, else the least node above it that is, or the root.
+    ///
+    /// - `is_enough`: whether a node is large enough.
+    pub(super) fn neighbourhoods(&self, is_enough: impl Fn(usize) -> bool) -> Vec<usize> {
+        let mut around: Vec<usize> = (0..self.nodes.len()).collect();
+        for place in 0..self.nodes.len() {
+            for child in self.nodes[place].children() {
+                around[child] = if is_enough(child) { child } else { around[place] };
+            }
+        }
+        around
+    }
+
     /// The least or the most of the leaves of each node that are not dark.
     ///
     /// - `of_two`: the less or the more of two.

@@ -168,7 +168,7 @@ impl Radiosity {
                 }
             };
             if round == 1 {
-                // Elements are smaller than at first.
+                // In the first round only lights send light: it is not known yet what brings how much to what is shown.
                 elements.find_importance(&visibility, &shown);
             }
             if round > 0 {
@@ -300,23 +300,7 @@ fn light(
             let more = views.at_corners(&mirrored);
             at_corners.iter_mut().zip(&more).for_each(|(light, more)| *light += *more);
         }
-        let brightness: Vec<[f64; 2]> = {
-            let of = |leaf: u32, at: [f64; 3]| {
-                let (number, node) = (leaf as usize, leaves[leaf as usize] as usize);
-                if elements.hierarchy.nodes[node].is_cluster() {
-                    return 1.0;
-                }
-                let corner_light = &elements.corner_light[node];
-                views.brightness(number, at, |corners| {
-                    std::array::from_fn(|i| {
-                        let irradiance = corner_light[i].direct + at_corners[corners[i] as usize];
-                        (corner_light[i].extra + reflectance[number] * irradiance).0.iter().sum()
-                    })
-                })
-            };
-            let through = leaf_visibility.through_openings.iter();
-            through.map(|OpeningExchange { link, at }| [of(link.a, at[0]), of(link.b, at[1])]).collect()
-        };
+        let brightness = elements.brightness_through_openings(&leaves, leaf_visibility, views, &at_corners);
         let light =
             LeafLight { first: &first, reflectance: &reflectance, irradiance: &irradiance, brightness: &brightness };
         let correction = RegionCorrection::new(&elements.hierarchy, &leaves, leaf_visibility, &light);
@@ -339,6 +323,33 @@ impl Elements<'_> {
         let leaves = self.hierarchy.leaves();
         let importance = importance(visibility, self, shown, &leaves);
         self.take_importance(&leaves, &importance);
+    }
+
+    /// Of what leaves exchange through openings, how much more than in the mean each of the two sends where the ray ends.
+    ///
+    /// - `at_corners`: irradiance of each corner by light of others, W/m².
+    fn brightness_through_openings(
+        &self,
+        leaves: &[u32],
+        leaf_visibility: &LeafVisibility,
+        views: &CornerViews<'_>,
+        at_corners: &[Channels],
+    ) -> Vec<[f64; 2]> {
+        let of = |leaf: u32, at: [f64; 3]| {
+            let (number, node) = (leaf as usize, leaves[leaf as usize] as usize);
+            if self.hierarchy.nodes[node].is_cluster() {
+                return 1.0;
+            }
+            let corner_light = &self.corner_light[node];
+            views.brightness(number, at, |corners| {
+                std::array::from_fn(|i| {
+                    let irradiance = corner_light[i].direct + at_corners[corners[i] as usize];
+                    (corner_light[i].extra + self.reflectance[node] * irradiance).0.iter().sum()
+                })
+            })
+        };
+        let through = leaf_visibility.through_openings.iter();
+        through.map(|OpeningExchange { link, at }| [of(link.a, at[0]), of(link.b, at[1])]).collect()
     }
 
     /// Takes up a solution.

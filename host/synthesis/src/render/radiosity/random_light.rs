@@ -81,7 +81,7 @@ impl RandomLight {
 /// The mean irradiance of each leaf by light samples at random points of it, without what comes through openings. The
 /// less a few samples tell, the more are taken, mostly where samples of neighbours found light.
 ///
-/// - `leaves`: their nodes.
+/// - `leaves`: their nodes. `importance`: how many samples each is worth, as a part of those of one that is shown, 0..=1.
 pub(super) fn random_light(
     visibility: &VisibilityTester<'_>,
     hierarchy: &Hierarchy,
@@ -193,24 +193,14 @@ impl LeafSampler<'_, '_> {
 
 /// For each leaf, the node that is its neighbourhood.
 fn around(hierarchy: &Hierarchy, leaves: &[u32], few: &[RandomLight]) -> Vec<usize> {
-    let nodes = &hierarchy.nodes;
     // Of each node: leaves, and samples that brought light.
-    let mut counts = vec![(0, 0); nodes.len()];
+    let mut counts = vec![(0, 0); hierarchy.nodes.len()];
     leaves.iter().zip(few).for_each(|(leaf, light)| counts[*leaf as usize] = (1, light.lit));
-    for place in (0..nodes.len()).rev() {
-        for child in nodes[place].children() {
-            let (leaves, lit) = counts[child];
-            counts[place] = (counts[place].0 + leaves, counts[place].1 + lit);
-        }
-    }
-    let are_enough =
-        |(leaves, lit): (u32, u32)| leaves >= MOST_NEIGHBOURS || (leaves >= NEIGHBOURS && lit >= LIT_SAMPLES);
-    let mut around: Vec<usize> = (0..nodes.len()).collect();
-    for place in 0..nodes.len() {
-        for child in nodes[place].children() {
-            around[child] = if are_enough(counts[child]) { child } else { around[place] };
-        }
-    }
+    hierarchy.add_up(&mut counts, |a, b| (a.0 + b.0, a.1 + b.1));
+    let around = hierarchy.neighbourhoods(|node| {
+        let (leaves, lit) = counts[node];
+        leaves >= MOST_NEIGHBOURS || (leaves >= NEIGHBOURS && lit >= LIT_SAMPLES)
+    });
     leaves.iter().map(|leaf| around[*leaf as usize]).collect()
 }
 

@@ -6,7 +6,7 @@ use crate::scene::{Prepared, RadiositySettings, View};
 use glam::{DVec3, DVec4};
 
 /// Of more views, none tells how short edges are.
-const MOST_VIEWS: usize = 8;
+pub(super) const MOST_VIEWS: usize = 8;
 
 /// The shortest edges of elements: an edge is divided if it is twice as long or longer.
 #[derive(Clone, Debug)]

@@ -2,6 +2,7 @@
 
 use super::elements::Elements;
 use super::node::NONE;
+use super::shortest_edges::MOST_VIEWS;
 use super::side_elements::SideElements;
 use super::visibility::{RayTarget, VisibilityTester};
 use crate::plan::{Plan, Stage};
@@ -9,9 +10,8 @@ use crate::render::world::{CameraRays, World};
 use crate::scene::{RadiositySettings, View};
 use glam::{DMat4, DVec3};
 
-/// Rays into each picture along its longer side, and views at the most that count.
+/// Rays into each picture along its longer side.
 const ALONG: u32 = 32;
-const MOST_VIEWS: usize = 8;
 
 /// Places of surfaces that the views of a plan show.
 pub(super) struct ShownPlaces {

@@ -86,7 +86,7 @@ impl VisibilityTester<'_> {
         self.map(&self.rays_through(), batch).concat()
     }
 
-    /// Which lights, and which parts of them, bring light through an opening.
+    /// A guide to the lights, and the parts of them, that bring light through an opening.
     fn guide(&self, opening: usize, even: &SampleGuide) -> SampleGuide {
         let batches: Vec<RayBatch> = self.batches(opening, self.rays_through_each() / PILOT).collect();
         let brought = |_, batch: &RayBatch| -> Vec<(GuidedSample, f64)> {
