@@ -11,7 +11,7 @@ use std::path::Path;
 /// What a state of a rendering begins with: name and version.
 const STATE: &[u8; 8] = b"PERISF\x00\x03";
 /// What a log of results begins with: name and version, and the fingerprint of what is computed.
-const MEMO: &[u8; 12] = b"PERISM\x00\x06\x07\0\0\0";
+const MEMO: &[u8; 12] = b"PERISM\x00\x07\x07\0\0\0";
 /// How many results are asked for.
 const RESULTS: usize = 4;
 

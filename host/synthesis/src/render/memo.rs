@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 /// The first bytes of such a file; the last one is the version.
-const MAGIC: [u8; 8] = *b"PERISM\x00\x06";
+const MAGIC: [u8; 8] = *b"PERISM\x00\x07";
 /// Bytes before the first record.
 const HEAD: u64 = 12;
 /// Most bytes of a record; a length in it that says more is no length.

@@ -6,6 +6,7 @@ use super::node::{NONE, key};
 use crate::scene::Prepared;
 use glam::DVec3;
 use std::collections::HashMap;
+use std::ops::{Add, Mul};
 
 /// Elements share a corner if the cosine between their normals is greater: of flat objects, and of curved ones.
 const FLAT: f64 = 0.985;
@@ -53,17 +54,23 @@ pub(super) struct ElementCorners {
     pub(super) all: Vec<ElementCorner>,
     /// The corners of each leaf.
     pub(super) of: Vec<[u32; 3]>,
+    /// For each leaf, a corner in its middle that is of it alone, or [`NONE`].
+    middle: Vec<u32>,
     /// For each leaf, how alike normals must be.
     like: Vec<f64>,
 }
 
 impl ElementCorners {
-    pub(super) fn new(prepared: &Prepared, hierarchy: &Hierarchy, leaves: &[u32]) -> ElementCorners {
+    /// - `curved`: leaves over which light is not linear, in ascending order: corners tell too little of their means.
+    pub(super) fn new(prepared: &Prepared, hierarchy: &Hierarchy, leaves: &[u32], curved: &[u32]) -> ElementCorners {
         let mut corners = ElementCorners::default();
         for leaf in leaves {
             let node = &hierarchy.nodes[*leaf as usize];
             if node.is_face_cluster() {
-                corners.put_faces(hierarchy, *leaf);
+                let corner = corners.put_alone(hierarchy.central(*leaf), *leaf);
+                corners.of.push([corner; 3]);
+                corners.like.push(f64::INFINITY);
+                corners.middle.push(NONE);
                 continue;
             }
             let triangle = hierarchy.patches[node.patch as usize].triangle;
@@ -78,16 +85,40 @@ impl ElementCorners {
             }
             corners.of.push(numbers);
             corners.like.push(like);
+            let middle = match curved.binary_search(leaf) {
+                Ok(_) => corners.put_alone([node.middle, node.normal], *leaf),
+                Err(_) => NONE,
+            };
+            corners.middle.push(middle);
         }
         corners
     }
 
-    /// Adds the corner of a face cluster: its central point, from which it looks out.
-    fn put_faces(&mut self, hierarchy: &Hierarchy, leaf: u32) {
-        let [at, normal] = hierarchy.central(leaf);
-        self.of.push([self.all.len() as u32; 3]);
-        self.like.push(f64::INFINITY);
+    /// Adds a corner that is of one leaf alone, which looks out from where it is, along a unit normal.
+    fn put_alone(&mut self, [at, normal]: [DVec3; 2], leaf: u32) -> u32 {
         self.all.push(ElementCorner { leaf, middles: at, normals: normal, count: 1.0, at });
+        self.all.len() as u32 - 1
+    }
+
+    /// All corners of a leaf, that in its middle, too.
+    ///
+    /// - `leaf`: its number.
+    pub(super) fn of_leaf(&self, leaf: usize) -> impl Iterator<Item = u32> + use<> {
+        let middle = Some(self.middle[leaf]).filter(|corner| *corner != NONE);
+        self.of[leaf].into_iter().chain(middle)
+    }
+
+    /// The mean over a leaf of what is known at its corners: of what is linear, or if there is a corner in its middle, of
+    /// what is quadratic.
+    ///
+    /// - `leaf`: its number. `value`: of a corner, told its number.
+    pub(super) fn mean<T: Add<Output = T> + Mul<f64, Output = T>>(&self, leaf: usize, value: impl Fn(u32) -> T) -> T {
+        let [a, b, c] = self.of[leaf].map(&value);
+        let linear = (a + b + c) * (1.0 / 3.0);
+        match self.middle[leaf] {
+            NONE => linear,
+            middle => linear * 0.25 + value(middle) * 0.75,
+        }
     }
 
     /// A corner at a place, with a normal that is like another.
@@ -110,8 +141,8 @@ impl ElementCorners {
     /// - `of_leaves`: what each has.
     pub(super) fn most_of(&self, of_leaves: impl Iterator<Item = f64>) -> Vec<f64> {
         let mut most = vec![0.0f64; self.all.len()];
-        for (corners, value) in self.of.iter().zip(of_leaves) {
-            corners.iter().for_each(|corner| most[*corner as usize] = most[*corner as usize].max(value));
+        for (leaf, value) in of_leaves.enumerate() {
+            self.of_leaf(leaf).for_each(|corner| most[corner as usize] = most[corner as usize].max(value));
         }
         most
     }

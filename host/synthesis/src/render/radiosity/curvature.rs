@@ -14,7 +14,8 @@ use super::visibility::VisibilityTester;
 /// Times that elements are divided at the most.
 const MOST_ROUNDS: u32 = 4;
 
-/// Divides leaves over which the light of others is farther from linear than so many bounds.
+/// Divides leaves over which the light of others is farther from linear than so many bounds. Tells those that are as small
+/// as they may be, in ascending order.
 ///
 /// - `stopped`: asked before each time; then they stay as they are.
 pub(super) fn divide_where_light_curves(
@@ -24,26 +25,26 @@ pub(super) fn divide_where_light_curves(
     bound: RefinementBound,
     times: f64,
     stopped: &dyn Fn() -> bool,
-) {
-    for _ in 0..MOST_ROUNDS {
-        if stopped() || elements.hierarchy.nodes.len() > MOST_ELEMENTS {
-            break;
-        }
+) -> Vec<u32> {
+    for round in 0.. {
         let second = second_derivatives(elements, links);
         let nodes = &elements.hierarchy.nodes;
         let curves = |place: &u32| {
             let node = &nodes[*place as usize];
-            let is_divisible = !(node.is_dark || node.is_cluster()) && node.is_leaf() && elements.may_divide(node);
-            let bend = 0.5 * second[*place as usize] * node.radius * node.radius;
-            is_divisible && bend > times * elements.bound_of(*place, bound)
+            let bend = || 0.5 * second[*place as usize] * node.radius * node.radius;
+            node.is_leaf() && !(node.is_dark || node.is_cluster()) && bend() > times * elements.bound_of(*place, bound)
         };
-        let divided: Vec<u32> = (0..nodes.len() as u32).filter(curves).collect();
+        let all = (0..nodes.len() as u32).filter(curves);
+        let may_divide = round < MOST_ROUNDS && !stopped() && nodes.len() <= MOST_ELEMENTS;
+        let (divided, kept): (Vec<u32>, Vec<u32>) =
+            all.partition(|place| may_divide && elements.may_divide(&nodes[*place as usize]));
         if divided.is_empty() {
-            break;
+            return kept;
         }
         elements.divide(visibility, divided);
         elements.pull();
     }
+    Vec::new()
 }
 
 /// For each node, about the second derivative of the irradiance of its leaves by others, W/m⁴.

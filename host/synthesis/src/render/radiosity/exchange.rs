@@ -122,12 +122,19 @@ pub(super) struct ExchangeLink {
 }
 
 /// What two leaves exchange through an opening along a ray.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct OpeningExchange {
     /// The numbers of the leaves, and A F.
     pub(super) link: ExchangeLink,
     /// Where the ray ends on each of them: weights of its corners.
     pub(super) at: [[f64; 3]; 2],
+}
+
+impl OpeningExchange {
+    /// So many times as much.
+    pub(super) fn times(self, factor: f64) -> OpeningExchange {
+        OpeningExchange { link: ExchangeLink { exchange: self.link.exchange * factor, ..self.link }, ..self }
+    }
 }
 
 /// The operator.

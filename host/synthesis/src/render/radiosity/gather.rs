@@ -49,11 +49,7 @@ impl CornerViews<'_> {
     pub(super) fn rows(&self) -> Vec<f64> {
         let row = |nodes: &Vec<(u32, f32)>| nodes.iter().map(|(_, part)| f64::from(*part)).sum::<f64>().min(1.0);
         let rows: Vec<f64> = self.of.par_iter().map(row).collect();
-        self.corners
-            .of
-            .iter()
-            .map(|corners| corners.map(|corner| rows[corner as usize]).iter().sum::<f64>() / 3.0)
-            .collect()
+        (0..self.corners.of.len()).map(|leaf| self.corners.mean(leaf, |corner| rows[corner as usize])).collect()
     }
 
     /// Irradiance of each corner by light of others, W/m².
@@ -71,9 +67,9 @@ impl CornerViews<'_> {
         hierarchy.pull(&mut values);
         // Of each corner, what its leaves send, if they are all closed.
         let mut own = vec![(Channels::ZERO, 0.0); self.of.len()];
-        for ((corners, sent), is_closed) in self.corners.of.iter().zip(sent).zip(is_closed) {
-            for corner in corners {
-                let (sum, count) = &mut own[*corner as usize];
+        for (leaf, (sent, is_closed)) in sent.iter().zip(is_closed).enumerate() {
+            for corner in self.corners.of_leaf(leaf) {
+                let (sum, count) = &mut own[corner as usize];
                 *sum += *sent;
                 *count += if *is_closed { 1.0 } else { f64::NEG_INFINITY };
             }
@@ -107,9 +103,9 @@ impl CornerViews<'_> {
     /// The mean at each corner of what is known of its leaves.
     pub(super) fn at_corners(&self, of_leaves: &[Channels]) -> Vec<Channels> {
         let mut sums = vec![(Channels::ZERO, 0.0); self.of.len()];
-        for (corners, value) in self.corners.of.iter().zip(of_leaves) {
-            for corner in corners {
-                let (sum, count) = &mut sums[*corner as usize];
+        for (leaf, value) in of_leaves.iter().enumerate() {
+            for corner in self.corners.of_leaf(leaf) {
+                let (sum, count) = &mut sums[corner as usize];
                 *sum += *value;
                 *count += 1.0;
             }
@@ -119,11 +115,7 @@ impl CornerViews<'_> {
 
     /// The mean over each leaf of what is known at its corners.
     pub(super) fn means(&self, values: &[Channels]) -> Vec<Channels> {
-        let mean = |corners: &[u32; 3]| {
-            let [a, b, c] = corners.map(|corner| values[corner as usize]);
-            (a + b + c) * (1.0 / 3.0)
-        };
-        self.corners.of.iter().map(mean).collect()
+        (0..self.corners.of.len()).map(|leaf| self.corners.mean(leaf, |corner| values[corner as usize])).collect()
     }
 }
 

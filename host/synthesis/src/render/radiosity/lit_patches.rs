@@ -5,13 +5,13 @@ use super::direct::Exitance;
 use super::disjoint_sets::DisjointSets;
 use super::elements::{COARSEST, Elements};
 use super::enclosures::enclosures;
-use super::exchange::{ExchangeLink, LeafHit, LeafVisibility, MirroredSky, OpeningExchange};
+use super::exchange::{LeafHit, LeafVisibility, MirroredSky, OpeningExchange};
 use super::hierarchy::{Hierarchy, POINTS};
 use super::mirrors::MirroredTarget;
 use super::node::{NONE, RadiosityPatch};
 use super::shortest_edges::ShortestEdges;
 use super::side_elements::SideElements;
-use super::through_openings::{LightThroughOpening, SeenThroughOpening};
+use super::through_openings::LightThroughOpening;
 use super::visibility::{RayTarget, VisibilityTester};
 use crate::color::Channels;
 use crate::memory::{self, MemoryExceeded};
@@ -193,7 +193,8 @@ pub(super) fn leaf_visibility(
     let directions = directions.max(1);
     let few = vec![directions; leaves.len()];
     reserve(&few)?;
-    let pilot = traced(visibility, elements, leaves, row, &few);
+    let mut pilot = traced(visibility, elements, leaves, row, &few);
+    pilot.through_openings = through_openings(visibility, elements, leaves)?;
     let error = elements.error_by_chance(leaves, &pilot);
     let most = (MOST_RAYS / leaves.len().max(1)).clamp(1, MOST_DIRECTIONS as usize) as f64;
     let needed = f64::from(directions) * (error / MOST_ERROR).powi(2);
@@ -201,6 +202,7 @@ pub(super) fn leaf_visibility(
     if more <= directions || stopped() {
         return Ok(pilot);
     }
+    let through_openings = std::mem::take(&mut pilot.through_openings);
     drop(pilot);
     let sent: Vec<f64> = leaves.iter().zip(row).map(|(leaf, row)| elements.power(*leaf) * row).collect();
     let all: f64 = sent.iter().sum();
@@ -213,7 +215,33 @@ pub(super) fn leaf_visibility(
     };
     let counts: Vec<u32> = leaves.iter().zip(&sent).map(count).collect();
     reserve(&counts)?;
-    Ok(traced(visibility, elements, leaves, row, &counts))
+    Ok(LeafVisibility { through_openings, ..traced(visibility, elements, leaves, row, &counts) })
+}
+
+/// What leaves exchange through openings.
+///
+/// # Errors
+/// [`MemoryExceeded`].
+fn through_openings(
+    visibility: &VisibilityTester<'_>,
+    elements: &Elements<'_>,
+    leaves: &[u32],
+) -> Result<Vec<OpeningExchange>, MemoryExceeded> {
+    let elements_of_sides = SideElements::new(visibility, &elements.hierarchy);
+    let place = numbers_of(&elements.hierarchy, leaves);
+    let find = |target: RayTarget| {
+        let (leaf, weights) = elements_of_sides.find_place(target)?;
+        Some((place[leaf as usize], weights)).filter(|(number, _)| *number != NONE)
+    };
+    let sent: Vec<f64> = leaves.iter().map(|leaf| elements.sent[*leaf as usize].0.iter().sum()).collect();
+    visibility.exchange_through_openings(&find, &sent)
+}
+
+/// For each node its number among the leaves, or [`NONE`].
+fn numbers_of(hierarchy: &Hierarchy, leaves: &[u32]) -> Vec<u32> {
+    let mut numbers = vec![NONE; hierarchy.nodes.len()];
+    (0..).zip(leaves).for_each(|(number, leaf)| numbers[*leaf as usize] = number);
+    numbers
 }
 
 /// What rays of each leaf hit.
@@ -228,8 +256,7 @@ fn traced(
 ) -> LeafVisibility {
     let hierarchy: &Hierarchy = &elements.hierarchy;
     let elements_of_sides = SideElements::new(visibility, hierarchy);
-    let mut place = vec![NONE; hierarchy.nodes.len()];
-    (0..).zip(leaves).for_each(|(number, leaf)| place[*leaf as usize] = number);
+    let place = numbers_of(hierarchy, leaves);
     let looked = |number: usize, leaf: &u32| {
         // Beyond the numbers of all patches.
         let own = (1 << 40) + number as u64;
@@ -273,15 +300,6 @@ fn traced(
         hits.map(|hit| f64::from(hit.transmittance)).sum::<f64>() / seen.len() as f64
     };
     let parts = |is_mirrored: bool| seen.iter().map(|seen| part(seen, is_mirrored)).collect();
-    let through = visibility.seen_through_openings();
-    let link = |SeenThroughOpening { sides: [one, other], exchange }: SeenThroughOpening| {
-        let ((one, at_one), (other, at_other)) =
-            (elements_of_sides.find_place(one)?, elements_of_sides.find_place(other)?);
-        let [a, b] = [one, other].map(|leaf| place[leaf as usize]);
-        let link = ExchangeLink { a, b, exchange };
-        (a != NONE && b != NONE).then_some(OpeningExchange { link, at: [at_one, at_other] })
-    };
-    let through_openings = through.into_iter().filter_map(link).collect();
     let mut end = 0;
     let range = |seen: &Vec<LeafHit>| {
         let first = end;
@@ -297,6 +315,6 @@ fn traced(
         row: row.to_vec(),
         is_dark,
         enclosures,
-        through_openings,
+        through_openings: Vec::new(),
     }
 }

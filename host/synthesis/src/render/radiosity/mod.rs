@@ -101,7 +101,7 @@ const CURVED: f64 = 1.0;
 /// What receives light counts as no dimmer than this part of the mean irradiance, where errors are bounded by it.
 const DIM: f64 = 1e-4;
 /// Errors are bounded by no more than so many times the mean irradiance of what pictures show, where the scene is brighter.
-const MOST_ABOVE_SHOWN: f64 = 64.0;
+const MOST_ABOVE_SHOWN: f64 = 16.0;
 
 /// The light of a scene, for all views.
 #[derive(Clone, Debug)]
@@ -177,13 +177,12 @@ impl Radiosity {
             refine(&visibility, &mut elements, &mut links, bound, &stopped);
             stage.progress((2 * round + 1) as f64);
             let is_last = round + 1 == ROUNDS || stopped();
-            if is_last {
-                divide_where_light_curves(&visibility, &mut elements, &links, bound, CURVED, &stopped);
-            }
+            let curved =
+                is_last.then(|| divide_where_light_curves(&visibility, &mut elements, &links, bound, CURVED, &stopped));
             leaves = elements.hierarchy.leaves();
             let sampled = is_last.then(|| elements.sample_direct(&visibility, &leaves));
             let gatherer = Gatherer { visibility: &visibility, elements: &elements, bound };
-            let corners = is_last.then(|| ElementCorners::new(prepared, &elements.hierarchy, &leaves));
+            let corners = curved.map(|curved| ElementCorners::new(prepared, &elements.hierarchy, &leaves, &curved));
             let views = corners.as_ref().map(|corners| gatherer.views(&links, corners, &leaves));
             let of_views = |views: &CornerViews<'_>| {
                 let rows = views.rows();

@@ -206,7 +206,7 @@ fn the_hierarchy_gives_what_a_full_matrix_gives() {
         let leaves = elements.hierarchy.leaves();
         let mut report = RadiosityReport::default();
         let gatherer = Gatherer { visibility: &visibility, elements: &elements, bound };
-        let corners = ElementCorners::new(&room, &elements.hierarchy, &leaves);
+        let corners = ElementCorners::new(&room, &elements.hierarchy, &leaves, &[]);
         let views = gatherer.views(&links, &corners, &leaves);
         let seen = lit_patches::leaf_visibility(&visibility, &elements, &leaves, &views.rows(), 32, &|| false)
             .expect("memory");
