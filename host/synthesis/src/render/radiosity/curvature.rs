@@ -26,7 +26,8 @@ pub(super) fn divide_where_light_curves(
     times: f64,
     stopped: &dyn Fn() -> bool,
 ) -> Vec<u32> {
-    for round in 0.. {
+    let mut rounds = 0..MOST_ROUNDS;
+    loop {
         let second = second_derivatives(elements, links);
         let nodes = &elements.hierarchy.nodes;
         let curves = |place: &u32| {
@@ -35,7 +36,7 @@ pub(super) fn divide_where_light_curves(
             node.is_leaf() && !(node.is_dark || node.is_cluster()) && bend() > times * elements.bound_of(*place, bound)
         };
         let all = (0..nodes.len() as u32).filter(curves);
-        let may_divide = round < MOST_ROUNDS && !stopped() && nodes.len() <= MOST_ELEMENTS;
+        let may_divide = rounds.next().is_some() && !stopped() && nodes.len() <= MOST_ELEMENTS;
         let (divided, kept): (Vec<u32>, Vec<u32>) =
             all.partition(|place| may_divide && elements.may_divide(&nodes[*place as usize]));
         if divided.is_empty() {
@@ -44,7 +45,6 @@ pub(super) fn divide_where_light_curves(
         elements.divide(visibility, divided);
         elements.pull();
     }
-    Vec::new()
 }
 
 /// For each node, about the second derivative of the irradiance of its leaves by others, W/m⁴.

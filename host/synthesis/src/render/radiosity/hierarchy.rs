@@ -224,6 +224,15 @@ impl Hierarchy {
         (0..self.nodes.len() as u32).filter(|node| is_leaf(&self.nodes[*node as usize])).collect()
     }
 
+    /// For each node its number among some leaves, or [`NONE`].
+    ///
+    /// - `leaves`: their nodes.
+    pub(super) fn numbers_of(&self, leaves: &[u32]) -> Vec<u32> {
+        let mut numbers = vec![NONE; self.nodes.len()];
+        (0..).zip(leaves).for_each(|(number, leaf)| numbers[*leaf as usize] = number);
+        numbers
+    }
+
     /// The leaf of a patch at a place of it, and the weights of the corners of the leaf there, or of those of the patch
     /// if that is part of a face cluster.
     pub(super) fn leaf_at(&self, patch: u32, mut weights: [f64; 3]) -> (u32, [f64; 3]) {

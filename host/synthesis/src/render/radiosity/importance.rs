@@ -39,8 +39,7 @@ pub(super) fn importance(
     }
     let hierarchy = &elements.hierarchy;
     let of_sides = SideElements::new(visibility, hierarchy);
-    let mut number_of = vec![NONE; hierarchy.nodes.len()];
-    (0..).zip(leaves).for_each(|(number, leaf)| number_of[*leaf as usize] = number);
+    let number_of = hierarchy.numbers_of(leaves);
     let find = |target| match of_sides.find(target) {
         NONE => NONE,
         leaf => number_of[leaf as usize],

@@ -193,8 +193,8 @@ pub(super) fn leaf_visibility(
     let directions = directions.max(1);
     let few = vec![directions; leaves.len()];
     reserve(&few)?;
-    let mut pilot = traced(visibility, elements, leaves, row, &few);
-    pilot.through_openings = through_openings(visibility, elements, leaves)?;
+    let through_openings = through_openings(visibility, elements, leaves, stopped)?;
+    let pilot = traced(visibility, elements, leaves, row, &few, through_openings);
     let error = elements.error_by_chance(leaves, &pilot);
     let most = (MOST_RAYS / leaves.len().max(1)).clamp(1, MOST_DIRECTIONS as usize) as f64;
     let needed = f64::from(directions) * (error / MOST_ERROR).powi(2);
@@ -202,8 +202,8 @@ pub(super) fn leaf_visibility(
     if more <= directions || stopped() {
         return Ok(pilot);
     }
-    let through_openings = std::mem::take(&mut pilot.through_openings);
-    drop(pilot);
+    let through_openings = pilot.through_openings;
+    drop(pilot.hits);
     let sent: Vec<f64> = leaves.iter().zip(row).map(|(leaf, row)| elements.power(*leaf) * row).collect();
     let all: f64 = sent.iter().sum();
     let importance: f64 = leaves.iter().map(|leaf| elements.importance_to_rays(*leaf)).sum();
@@ -215,10 +215,12 @@ pub(super) fn leaf_visibility(
     };
     let counts: Vec<u32> = leaves.iter().zip(&sent).map(count).collect();
     reserve(&counts)?;
-    Ok(LeafVisibility { through_openings, ..traced(visibility, elements, leaves, row, &counts) })
+    Ok(traced(visibility, elements, leaves, row, &counts, through_openings))
 }
 
 /// What leaves exchange through openings.
+///
+/// - `stopped`: whether few rays will do.
 ///
 /// # Errors
 /// [`MemoryExceeded`].
@@ -226,37 +228,32 @@ fn through_openings(
     visibility: &VisibilityTester<'_>,
     elements: &Elements<'_>,
     leaves: &[u32],
+    stopped: &dyn Fn() -> bool,
 ) -> Result<Vec<OpeningExchange>, MemoryExceeded> {
     let elements_of_sides = SideElements::new(visibility, &elements.hierarchy);
-    let place = numbers_of(&elements.hierarchy, leaves);
+    let place = elements.hierarchy.numbers_of(leaves);
     let find = |target: RayTarget| {
         let (leaf, weights) = elements_of_sides.find_place(target)?;
         Some((place[leaf as usize], weights)).filter(|(number, _)| *number != NONE)
     };
     let sent: Vec<f64> = leaves.iter().map(|leaf| elements.sent[*leaf as usize].0.iter().sum()).collect();
-    visibility.exchange_through_openings(&find, &sent)
-}
-
-/// For each node its number among the leaves, or [`NONE`].
-fn numbers_of(hierarchy: &Hierarchy, leaves: &[u32]) -> Vec<u32> {
-    let mut numbers = vec![NONE; hierarchy.nodes.len()];
-    (0..).zip(leaves).for_each(|(number, leaf)| numbers[*leaf as usize] = number);
-    numbers
+    visibility.exchange_through_openings(&find, &sent, stopped)
 }
 
 /// What rays of each leaf hit.
 ///
-/// - `counts`: of each leaf, how many rays.
+/// - `counts`: of each leaf, how many rays. `through_openings`: what leaves exchange through openings.
 fn traced(
     visibility: &VisibilityTester<'_>,
     elements: &Elements<'_>,
     leaves: &[u32],
     row: &[f64],
     counts: &[u32],
+    through_openings: Vec<OpeningExchange>,
 ) -> LeafVisibility {
     let hierarchy: &Hierarchy = &elements.hierarchy;
     let elements_of_sides = SideElements::new(visibility, hierarchy);
-    let place = numbers_of(hierarchy, leaves);
+    let place = hierarchy.numbers_of(leaves);
     let looked = |number: usize, leaf: &u32| {
         // Beyond the numbers of all patches.
         let own = (1 << 40) + number as u64;
@@ -315,6 +312,6 @@ fn traced(
         row: row.to_vec(),
         is_dark,
         enclosures,
-        through_openings: Vec::new(),
+        through_openings,
     }
 }

@@ -1,4 +1,5 @@
-//! Guiding of light samples: which lights, and which parts of them, bring light through an opening.
+//! Guiding of samples: which lights, and which parts of them, bring light through an opening, and from which directions
+//! other light comes through it.
 //!
 //! Of the sky that is above a point of a small window, hardly any is seen through it by the room behind. So a few samples
 //! tell first where the light comes from, and most of the others are taken there.

@@ -45,6 +45,9 @@ pub(super) struct LightThroughOpening {
     pub(super) flux: Channels,
 }
 
+/// Finds the number of the leaf where a ray ends, and the weights of its corners there; none where no leaf is.
+type FindLeaf<'f> = &'f (dyn Fn(RayTarget) -> Option<(u32, [f64; 3])> + Sync);
+
 /// Rays of an opening that are one piece of work.
 struct RayBatch {
     opening: usize,
@@ -129,15 +132,16 @@ impl VisibilityTester<'_> {
 
     /// What leaves exchange through openings: so many rays that chance is a small part of it.
     ///
-    /// - `find`: the number of the leaf where a ray ends, and the weights of its corners. `sent`: what each leaf sends, in
-    ///   any unit: where that is much, more rays are traced.
+    /// - `find`: finds the leaf where a ray ends. `sent`: what each leaf sends, in any unit: where that is much, more rays
+    ///   are traced. `stopped`: whether the first rays will do.
     ///
     /// # Errors
     /// [`MemoryExceeded`].
     pub(super) fn exchange_through_openings(
         &self,
-        find: &(dyn Fn(RayTarget) -> Option<(u32, [f64; 3])> + Sync),
+        find: FindLeaf<'_>,
         sent: &[f64],
+        stopped: &dyn Fn() -> bool,
     ) -> Result<Vec<OpeningExchange>, MemoryExceeded> {
         let even = SampleGuide::even(1, SIDE);
         let flux =
@@ -166,7 +170,8 @@ impl VisibilityTester<'_> {
             found.iter().map(flux).fold((0.0, 0.0), |(sum, squares), flux| (sum + flux, squares + flux * flux));
         // As if all of it was by chance: the rays are spread more evenly.
         let needed = if sum > 0.0 { squares / (sum * ENOUGH).powi(2) } else { 0.0 };
-        let all = self.of_each((needed * f64::from(FIRST_RAYS)).min(f64::from(MOST_RAYS)) as u32).max(first);
+        let most = if stopped() { first } else { self.of_each(MOST_RAYS) };
+        let all = ((needed * f64::from(first)).min(f64::from(most)) as u32).next_multiple_of(AT_ONCE).max(first);
         found.append(&mut traced(first..all)?);
         found.iter_mut().for_each(|seen| *seen = seen.times(f64::from(all).recip()));
         Ok(found)
@@ -174,12 +179,12 @@ impl VisibilityTester<'_> {
 
     /// What rays through an opening connect, each of which stands for all that goes through it: to be weighted.
     ///
-    /// - `find`: the number of the leaf where a ray ends, and the weights of its corners. `guide`: to directions, by the
-    ///   unit square. `of`: the number of the sequence of the first opening.
+    /// - `find`: finds the leaf where a ray ends. `guide`: to directions, by the unit square. `of`: the number of the
+    ///   sequence of the first opening.
     fn exchange_of(
         &self,
         &RayBatch { opening: number, first }: &RayBatch,
-        find: &(dyn Fn(RayTarget) -> Option<(u32, [f64; 3])> + Sync),
+        find: FindLeaf<'_>,
         guide: &SampleGuide,
         of: u64,
     ) -> Vec<(GuidedSample, OpeningExchange)> {
