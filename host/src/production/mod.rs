@@ -15,7 +15,7 @@ use crate::{
     picture::{Picture, display::DisplayTransform},
     plan::Plan,
     render::{RenderError, RenderOrder, Watch, World, radiosity::Radiosity, tiles::Tiling},
-    scene::{Camera, Prepared, Projection, Scene, View},
+    scene::{Camera, Interreflection, Prepared, Projection, Scene, View},
     workstation::{
         Drawing, InitialView, Session, StructureCommands, WorkstationError, network, raster, structure, tiles,
     },
@@ -287,7 +287,7 @@ impl Production {
 pub fn tiling(scene: &Scene, threads: Option<NonZeroUsize>, watch: &Watch<'_>) -> Result<Tiling, ProductionError> {
     let mut prepared = Prepared::new(scene)?;
     // Surfaces out of view send light, too, and come into view; near ones, too.
-    prepared.settings.light.interreflection.count();
+    prepared.settings.light.interreflection = Interreflection::Solved;
     prepared.settings.radiosity.pixels = 0.0;
     let plan = Plan::new(&prepared, &prepared.view());
     let workers = Workers::new(threads).map_err(RenderError::from)?;

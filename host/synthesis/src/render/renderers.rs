@@ -8,7 +8,7 @@ use super::two_way::PhotonStore;
 use super::world::World;
 use super::{RenderError, Renderer, Watch};
 use crate::plan::{Plan, Stage};
-use crate::scene::{Caustics, Prepared, Settings};
+use crate::scene::{Caustics, Interreflection, Prepared, Settings};
 use serde::Serialize;
 use std::sync::Arc;
 use std::time::Duration;
@@ -109,8 +109,8 @@ pub const RENDERERS: [RendererRow; 4] = [
         always_maps_photons: false,
         solves_radiosity: true,
         is_studied: false,
-        // Surfaces out of view send light, too.
-        require: |settings| settings.light.interreflection.count(),
+        // Diffuse surfaces show what is solved for: no path goes on from them.
+        require: |settings| settings.light.interreflection = Interreflection::Solved,
         prepare: |task| {
             let world = World::new(task.prepared, task.plan)?;
             let solution = Radiosity::new(&world, task.plan, &task.prepared.settings.radiosity, None, &task.watch)?;

@@ -6,7 +6,7 @@ use crate::color::Color;
 use crate::illumination::material::Classic;
 use crate::illumination::{Light, Material, Paint};
 use crate::mesh::Mesh;
-use crate::render::RadiosityError;
+use crate::render::{RadiosityError, Technique};
 use crate::scene::{Interreflection, Object, RadiositySettings, Scene, Shape};
 use crate::solid::Primitive;
 use crate::stages::{StageEvent, observed};
@@ -501,7 +501,7 @@ fn what_no_picture_shows_is_of_little_importance_unless_mirrors_may_show_it() {
     let inside_and_outside = || vec![lamp(DVec3::ZERO), lamp(DVec3::new(3.0, 4.0, 5.0))];
     let found = |objects: Vec<Object>, pixels: f64| -> Vec<(bool, f64)> {
         let mut scene = prepared(objects, inside_and_outside());
-        scene.settings.light.interreflection = Interreflection::Solved;
+        (Technique::Radiosity.row().require)(&mut scene.settings);
         let plan = Plan::new(&scene, &scene.view());
         let world = World::new(&scene, &plan).expect("a world");
         let settings = RadiositySettings { pixels, ..coarse() };
