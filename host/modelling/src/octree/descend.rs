@@ -5,74 +5,11 @@ use super::lanes::{Avx, AvxLanes};
 use super::lanes::{LANES, Lanes, ScalarLanes, prefetch};
 use super::packet::Packet;
 use super::prepared_ray::PreparedRay;
+use super::visit::{LeafVisitor, visit_leaves};
 use super::walk::Search;
-use super::wide_bvh::Child;
 use super::{Hit, Octree, Ray, WalkCount};
 use glam::DVec3;
-
-/// Entries of the stack that need no allocation.
-const STACK: usize = 32;
-
-/// A child that is still to be visited: where the ray enters it, as bits, above its reference. So the nearer is the
-/// lesser, since no length is negative.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Entry(u64);
-
-impl Entry {
-    #[inline(always)]
-    fn new(near: f32, child: Child) -> Self {
-        Self(u64::from(near.to_bits()) << 32 | u64::from(child.0))
-    }
-
-    #[inline(always)]
-    fn near(self) -> f32 {
-        f32::from_bits((self.0 >> 32) as u32)
-    }
-
-    #[inline(always)]
-    fn child(self) -> Child {
-        Child(self.0 as u32)
-    }
-}
-
-/// A stack that allocates only where trees are uncommonly deep.
-struct Stack {
-    fixed: [Entry; STACK],
-    top: usize,
-    spill: Vec<Entry>,
-}
-
-impl Stack {
-    #[inline(always)]
-    fn new() -> Self {
-        Self { fixed: [Entry(0); STACK], top: 0, spill: Vec::new() }
-    }
-
-    /// Inserts above `mark` so that the nearest comes on top.
-    #[inline(always)]
-    fn insert(&mut self, mark: usize, entry: Entry) {
-        if self.top >= STACK {
-            self.spill.push(entry);
-            return;
-        }
-        let mut at = self.top;
-        while at > mark && self.fixed[at - 1] < entry {
-            self.fixed[at] = self.fixed[at - 1];
-            at -= 1;
-        }
-        self.fixed[at] = entry;
-        self.top += 1;
-    }
-
-    #[inline(always)]
-    fn pop(&mut self) -> Option<Entry> {
-        if let Some(entry) = self.spill.pop() {
-            return Some(entry);
-        }
-        self.top = self.top.checked_sub(1)?;
-        Some(self.fixed[self.top])
-    }
-}
+use std::ops::Range;
 
 /// Finds the nearest hit with `t_min < t < t_max`, and counts the work, if there was any.
 #[inline]
@@ -239,6 +176,31 @@ fn is_any_in_by<L: Lanes>(proof: L::Proof, octree: &Octree, packets: &[Packet], 
     packets.iter().any(|packet| search.test::<L, true>(proof, packet, within))
 }
 
+/// Shows packets to a search.
+struct PacketVisitor<'v, 'a, F> {
+    search: &'v mut Search<'a>,
+    is_last: F,
+}
+
+impl<'a, F: FnMut(&mut Search<'a>, &Packet) -> bool> LeafVisitor for PacketVisitor<'_, 'a, F> {
+    #[inline(always)]
+    fn limit(&self) -> f32 {
+        self.search.limit
+    }
+
+    #[inline(always)]
+    fn count(&mut self) {
+        self.search.count.cells += 1;
+    }
+
+    #[inline(always)]
+    fn visit(&mut self, places: Range<usize>) -> bool {
+        let packets = &self.search.octree.index.packets[places];
+        packets.iter().for_each(prefetch);
+        packets.iter().any(|packet| (self.is_last)(self.search, packet))
+    }
+}
+
 impl Search<'_> {
     /// Goes down the index; returns whether it ended at a hit that is enough.
     #[inline(always)]
@@ -249,58 +211,9 @@ impl Search<'_> {
 
     /// Visits the packets along the ray, the nearer ones first, until one of them is the last.
     #[inline(always)]
-    fn visit<L: Lanes>(&mut self, proof: L::Proof, mut is_last: impl FnMut(&mut Self, &Packet) -> bool) -> bool {
-        let index = &self.octree.index;
-        if index.nodes.is_empty() {
-            return false;
-        }
-        let mut stack = Stack::new();
-        let mut child = Child(0);
-        loop {
-            self.count.cells += 1;
-            match child.place() {
-                Err(place) => {
-                    let node = &index.nodes[place];
-                    let (mut lanes, near) = node.meets::<L>(proof, &self.ray.single, self.limit);
-                    if lanes != 0 {
-                        let first = lanes.trailing_zeros() as usize & (LANES - 1);
-                        lanes &= lanes - 1;
-                        if lanes == 0 {
-                            child = node.children[first];
-                            continue;
-                        }
-                        let near = near.store().0;
-                        let mut nearest = Entry::new(near[first], node.children[first]);
-                        let mark = stack.top;
-                        while lanes != 0 {
-                            let lane = lanes.trailing_zeros() as usize & (LANES - 1);
-                            lanes &= lanes - 1;
-                            let entry = Entry::new(near[lane], node.children[lane]);
-                            stack.insert(mark, nearest.max(entry));
-                            nearest = nearest.min(entry);
-                        }
-                        child = nearest.child();
-                        continue;
-                    }
-                }
-                Ok(places) => {
-                    let packets = &index.packets[places];
-                    packets.iter().for_each(prefetch);
-                    for packet in packets {
-                        if is_last(self, packet) {
-                            return true;
-                        }
-                    }
-                }
-            }
-            loop {
-                let Some(entry) = stack.pop() else { return false };
-                if entry.near() <= self.limit {
-                    child = entry.child();
-                    break;
-                }
-            }
-        }
+    fn visit<L: Lanes>(&mut self, proof: L::Proof, is_last: impl FnMut(&mut Self, &Packet) -> bool) -> bool {
+        let (index, ray) = (&self.octree.index, &self.ray.single);
+        visit_leaves::<L>(proof, &index.nodes, ray, &mut PacketVisitor { search: self, is_last })
     }
 
     /// The corners of a triangle, world units.

@@ -40,8 +40,8 @@ impl Item {
     /// The box of nothing.
     pub const EMPTY: Self = Self { low: f32x4::new([f32::INFINITY; 4]), high: f32x4::new([f32::NEG_INFINITY; 4]) };
 
-    /// This box with other numbers.
-    fn numbered(self, number: u32, weight: u32) -> Self {
+    /// This box with other numbers, both below 2^28.
+    pub fn numbered(self, number: u32, weight: u32) -> Self {
         let with = |corner: f32x4, bits: u32| {
             let [x, y, z, _] = corner.to_array();
             f32x4::new([x, y, z, f32::from_bits(bits | NORMAL)])

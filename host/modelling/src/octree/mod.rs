@@ -29,10 +29,12 @@ mod inside;
 mod nearest;
 mod points;
 mod walk;
+mod visit;
 mod descend;
 mod trace;
 mod shaft;
 mod surface_points;
+mod instances;
 
 #[cfg(test)]
 mod tests;
@@ -43,6 +45,10 @@ pub use code::{LocationalCode, MAX_DEPTH};
 pub use error::{MAX_TRIANGLES, OctreeError};
 pub use file::{ENDING, FileError, MAX_BYTES};
 pub use inside::Containment;
+pub use instances::{
+    Instance, InstanceCosts, InstanceError, InstanceHit, InstanceOctree, InstancePath, MOST_INSTANCES, MOST_LEVELS,
+    MOST_PROTOTYPES, PlacementForm, Prototype,
+};
 pub use nearest::{Nearest, hausdorff};
 pub use points::{NearbyPoints, SortedPoints};
 pub use prepared_ray::MAX_DISTANCE;

@@ -64,6 +64,35 @@ pub fn divide(items: &mut [Item], part: &ItemGroup) -> [ItemGroup; 2] {
     })
 }
 
+/// Divides the largest part of some items again and again until a node is full; those of few are not divided.
+///
+/// - `leaf`: how many are few, by weight.
+pub fn shares<'a>(mut items: &'a mut [Item], part: &ItemGroup, leaf: usize) -> Vec<(&'a mut [Item], ItemGroup)> {
+    let mut parts = Vec::with_capacity(LANES);
+    parts.push(*part);
+    while parts.len() < LANES {
+        let mut largest = (0.0, None);
+        let mut first = 0;
+        for (slot, part) in parts.iter().enumerate() {
+            let area = part.around.half_area();
+            if part.weight > leaf && part.items > 1 && area >= largest.0 {
+                largest = (area, Some((slot, first)));
+            }
+            first += part.items;
+        }
+        let Some((slot, first)) = largest.1 else { break };
+        let [left, right] = divide(&mut items[first..first + parts[slot].items], &parts[slot]);
+        parts[slot] = left;
+        parts.insert(slot + 1, right);
+    }
+    let share = |part: ItemGroup| {
+        let (share, rest) = std::mem::take(&mut items).split_at_mut(part.items);
+        items = rest;
+        (share, part)
+    };
+    parts.into_iter().map(share).collect()
+}
+
 /// Items of each bin, by axis.
 struct Bins<const N: usize> {
     around: [[Item; N]; 3],

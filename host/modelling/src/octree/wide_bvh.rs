@@ -11,7 +11,7 @@ use super::build::OctreeBuilder;
 use super::items::{self, Item};
 use super::lanes::{Eight, LANES, Lanes};
 use super::packet::Packet;
-use super::partition::{ItemGroup, divide};
+use super::partition::{ItemGroup, shares};
 use super::prepared_ray::SinglePrecisionRay;
 use crate::memory::prefer_large_pages;
 use crate::numeric::bounds::Bounds;
@@ -22,42 +22,43 @@ const FEW_CELLS: usize = 64;
 /// Items of so many triangles or fewer are not divided.
 const LEAF: usize = 12;
 
-/// Set where a child is not a node.
-const PACKETS: u32 = 1 << 31;
+/// Set where a child is a leaf.
+const IS_LEAF: u32 = 1 << 31;
 
-/// Behind that, the number of packets less one; then the place.
+/// Behind that, the number of things less one; then the place.
 const PLACE_BITS: u32 = 28;
 
-/// A child of a box: a node, or a few successive packets, by its place.
+/// A child of a box: a node, or a leaf of a few successive things, by its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Child(pub u32);
 
 impl Child {
-    fn packets(places: Range<usize>) -> Self {
-        Self(PACKETS | (places.len() as u32 - 1) << PLACE_BITS | places.start as u32)
+    /// A leaf: one to eight things in successive places below 2^28.
+    pub fn leaf(places: Range<usize>) -> Self {
+        Self(IS_LEAF | (places.len() as u32 - 1) << PLACE_BITS | places.start as u32)
     }
 
-    /// The places of packets, or else that of a node.
+    /// The places of a leaf, or else that of a node.
     #[inline(always)]
     pub fn place(self) -> Result<Range<usize>, usize> {
-        if self.0 & PACKETS == 0 {
+        if self.0 & IS_LEAF == 0 {
             return Err(self.0 as usize);
         }
         let first = (self.0 & ((1 << PLACE_BITS) - 1)) as usize;
-        Ok(first..first + ((self.0 & !PACKETS) >> PLACE_BITS) as usize + 1)
+        Ok(first..first + ((self.0 & !IS_LEAF) >> PLACE_BITS) as usize + 1)
     }
 
-    /// This reference when so many nodes and packets come before; what is the top, or nothing, stays.
-    fn moved(self, nodes: usize, packets: usize) -> Self {
+    /// This reference when so many nodes and things come before; what is the top, or nothing, stays.
+    pub fn moved(self, nodes: usize, things: usize) -> Self {
         match self.0 {
             0 => self,
-            bits if bits & PACKETS != 0 => Self(bits + packets as u32),
+            bits if bits & IS_LEAF != 0 => Self(bits + things as u32),
             bits => Self(bits + nodes as u32),
         }
     }
 }
 
-/// Up to eight boxes, each of a node or of packets.
+/// Up to eight boxes, each of a node or of a leaf.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub struct BvhNode {
@@ -68,12 +69,14 @@ pub struct BvhNode {
 }
 
 impl BvhNode {
-    const EMPTY: Self = Self {
+    /// No box.
+    pub const EMPTY: Self = Self {
         bounds: [[Eight([f32::INFINITY; LANES]), Eight([f32::NEG_INFINITY; LANES])]; 3],
         children: [Child(0); LANES],
     };
 
-    fn set(&mut self, lane: usize, around: &Item, child: Child) {
+    /// Puts a box in a lane.
+    pub fn set(&mut self, lane: usize, around: &Item, child: Child) {
         let (low, high) = (around.low.to_array(), around.high.to_array());
         for axis in 0..3 {
             self.bounds[axis][0].0[lane] = low[axis];
@@ -140,18 +143,18 @@ impl WideBvh {
             Builder { vertices: division.vertices, triangles: division.triangles, local: &local, items: &items };
         let mut groups = Vec::new();
         let part = ItemGroup::of(&cells);
-        index.of_cells(&mut cells, &part, &mut groups);
+        divide_cells(&mut cells, &part, LEAF, &mut index.nodes, &mut groups);
         let build = |cells: &[Item], index: &mut Self| builder.of_group(cells, index);
         if current_num_threads() == 1 {
             index.reserve(items.len() / 24, items.len() / 4);
-            for (cells, place) in groups {
+            for CellGroup { cells, place } in groups {
                 let child = build(cells, &mut index);
                 index.attach(child, place);
             }
         } else {
             let made: Vec<Self> = groups
                 .par_iter()
-                .map(|(cells, _)| {
+                .map(|CellGroup { cells, .. }| {
                     let mut made = Self::default();
                     build(cells, &mut made);
                     made
@@ -159,7 +162,7 @@ impl WideBvh {
                 .collect();
             let sum = |of: fn(&Self) -> usize| made.iter().map(of).sum();
             index.reserve(sum(|made| made.nodes.len()), sum(|made| made.packets.len()));
-            for (made, (_, place)) in made.iter().zip(groups) {
+            for (made, CellGroup { place, .. }) in made.iter().zip(groups) {
                 let child = index.append(made);
                 index.attach(child, place);
             }
@@ -167,32 +170,10 @@ impl WideBvh {
         index
     }
 
-    /// Adds the nodes of many cells, and collects groups of few with the places that wait for their nodes.
-    fn of_cells<'a>(&mut self, cells: &'a mut [Item], part: &ItemGroup, groups: &mut Vec<Group<'a>>) -> Child {
-        let is_few = |part: &ItemGroup| part.items <= FEW_CELLS;
-        if is_few(part) {
-            groups.push((cells, None));
-            return Child(0);
-        }
-        let node = Child(self.nodes.len() as u32);
-        self.nodes.push(BvhNode::EMPTY);
-        for (lane, (share, part)) in shares(cells, part).into_iter().enumerate() {
-            let place = (node.0 as usize, lane);
-            self.nodes[place.0].set(lane, &part.around, Child(0));
-            if is_few(&part) {
-                groups.push((share, Some(place)));
-            } else {
-                let child = self.of_cells(share, &part, groups);
-                self.attach(child, Some(place));
-            }
-        }
-        node
-    }
-
     /// Puts a child in its place.
-    fn attach(&mut self, child: Child, place: Option<(usize, usize)>) {
-        if let Some((node, lane)) = place {
-            self.nodes[node].children[lane] = child;
+    fn attach(&mut self, child: Child, place: Option<NodeLane>) {
+        if let Some(place) = place {
+            place.attach(&mut self.nodes, child);
         }
     }
 
@@ -216,34 +197,54 @@ impl WideBvh {
     }
 }
 
-/// Some cells, and the lane of the node that they are below.
-type Group<'a> = (&'a mut [Item], Option<(usize, usize)>);
+/// A few cells that wait for their nodes.
+pub struct CellGroup<'a> {
+    /// The cells.
+    pub cells: &'a mut [Item],
+    /// What they are below; nothing if they are all there are.
+    pub place: Option<NodeLane>,
+}
 
-/// Divides the largest part of some items again and again until a node is full.
-fn shares<'a>(mut items: &'a mut [Item], part: &ItemGroup) -> Vec<(&'a mut [Item], ItemGroup)> {
-    let mut parts = Vec::with_capacity(LANES);
-    parts.push(*part);
-    while parts.len() < LANES {
-        let mut largest = (0.0, None);
-        let mut first = 0;
-        for (slot, part) in parts.iter().enumerate() {
-            let area = part.around.half_area();
-            if part.weight > LEAF && part.items > 1 && area >= largest.0 {
-                largest = (area, Some((slot, first)));
-            }
-            first += part.items;
-        }
-        let Some((slot, first)) = largest.1 else { break };
-        let [left, right] = divide(&mut items[first..first + parts[slot].items], &parts[slot]);
-        parts[slot] = left;
-        parts.insert(slot + 1, right);
+/// A lane of a node.
+#[derive(Clone, Copy)]
+pub struct NodeLane {
+    node: usize,
+    lane: usize,
+}
+
+impl NodeLane {
+    /// Puts a child there.
+    pub fn attach(self, nodes: &mut [BvhNode], child: Child) {
+        nodes[self.node].children[self.lane] = child;
     }
-    let share = |part: ItemGroup| {
-        let (share, rest) = std::mem::take(&mut items).split_at_mut(part.items);
-        items = rest;
-        (share, part)
-    };
-    parts.into_iter().map(share).collect()
+}
+
+/// Adds the nodes above many cells, and collects groups of few.
+///
+/// - `leaf`: how many of the things in cells are a leaf.
+pub fn divide_cells<'a>(
+    cells: &'a mut [Item],
+    all: &ItemGroup,
+    leaf: usize,
+    nodes: &mut Vec<BvhNode>,
+    groups: &mut Vec<CellGroup<'a>>,
+) {
+    if all.items <= FEW_CELLS {
+        groups.push(CellGroup { cells, place: None });
+        return;
+    }
+    let node = nodes.len();
+    nodes.push(BvhNode::EMPTY);
+    for (lane, (share, part)) in shares(cells, all, leaf).into_iter().enumerate() {
+        if part.items <= FEW_CELLS {
+            nodes[node].set(lane, &part.around, Child(0));
+            groups.push(CellGroup { cells: share, place: Some(NodeLane { node, lane }) });
+        } else {
+            let child = Child(nodes.len() as u32);
+            nodes[node].set(lane, &part.around, child);
+            divide_cells(share, &part, leaf, nodes, groups);
+        }
+    }
 }
 
 /// Builder of the nodes, with the items of which they are made.
@@ -269,7 +270,7 @@ impl Builder<'_> {
     fn node(&self, items: &mut [Item], part: &ItemGroup, index: &mut WideBvh) -> Child {
         let node = index.nodes.len();
         index.nodes.push(BvhNode::EMPTY);
-        for (lane, (share, part)) in shares(items, part).into_iter().enumerate() {
+        for (lane, (share, part)) in shares(items, part, LEAF).into_iter().enumerate() {
             let child = if part.items > LEAF { self.node(share, &part, index) } else { self.packets(share, index) };
             index.nodes[node].set(lane, &part.around, child);
         }
@@ -284,6 +285,6 @@ impl Builder<'_> {
         let packet = |items: &[Item]| Packet::new(items.iter().map(Item::number), self.vertices, self.triangles, place);
         let first = index.packets.len();
         index.packets.extend(items.chunks(LANES).map(packet));
-        Child::packets(first..index.packets.len())
+        Child::leaf(first..index.packets.len())
     }
 }

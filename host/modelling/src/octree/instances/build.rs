@@ -1,0 +1,445 @@
+//! Instances and the index above them.
+
+use super::super::bvh::{DIGITS, radix_sorted};
+use super::super::cube::Cube;
+use super::super::items::Item;
+use super::super::lanes::LANES;
+use super::super::partition::ItemGroup;
+use super::super::wide_bvh::{BvhNode, CellGroup, Child, divide_cells};
+use super::super::{LocationalCode, MAX_DEPTH, Octree};
+use super::error::{InstanceError, MOST_INSTANCES, MOST_LEVELS, MOST_PROTOTYPES};
+use super::path::InstancePath;
+use super::placement::{Instance, PlacementForm, Placements, rounded};
+use crate::memory;
+use crate::numeric::bounds::Bounds;
+use glam::{DAffine3, DVec3};
+use rayon::prelude::*;
+use std::sync::Arc;
+use wide::f32x4;
+
+/// So many instances or fewer are a leaf.
+const LEAF: usize = 8;
+/// Of neighbours in the order of their codes, at least so many are in a cell in the mean.
+const CELL: usize = 16;
+/// Groups of cells that are divided at once: more would take more memory.
+const BATCH: usize = 64;
+/// Bytes of nodes for each instance, at the most.
+const NODE_BYTES: usize = 16;
+/// A placement flattens if the volume of a unit cube becomes this part of the cube of its longest edge.
+const FLAT: f64 = 1e-12;
+/// Edges of a cube that is rotated and scaled are as long and as upright to each other as this.
+const SIMILAR: f64 = 1e-6;
+
+/// What instances place.
+#[derive(Clone, Debug)]
+pub struct Prototype {
+    pub(super) content: Content,
+    bounds: Bounds,
+    /// No point of it is farther from its origin.
+    pub(super) radius: f64,
+    /// How many times over it is made of instances.
+    levels: usize,
+}
+
+#[derive(Clone, Debug)]
+pub(super) enum Content {
+    Surface(Arc<Octree>),
+    Instances(Arc<InstanceOctree>),
+}
+
+impl Prototype {
+    /// A surface.
+    pub fn surface(octree: Arc<Octree>) -> Prototype {
+        let bounds = Bounds::of(octree.triangles.iter().flatten().map(|vertex| octree.vertices[*vertex as usize]));
+        Prototype::new(Content::Surface(octree), bounds, 0)
+    }
+
+    /// Instances.
+    pub fn instances(instances: Arc<InstanceOctree>) -> Prototype {
+        let (bounds, levels) = (instances.bounds, instances.levels);
+        Prototype::new(Content::Instances(instances), bounds, levels)
+    }
+
+    fn new(content: Content, bounds: Bounds, levels: usize) -> Prototype {
+        let radius = bounds.min.abs().max(bounds.max.abs()).length();
+        Prototype { content, bounds, radius, levels }
+    }
+
+    /// The box around it, in its own coordinates; empty without triangles.
+    pub fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+}
+
+/// An octree over instances. Threads share it freely.
+#[derive(Clone, Debug)]
+pub struct InstanceOctree {
+    pub(super) prototypes: Vec<Prototype>,
+    /// Around all positions.
+    pub(super) positions: Cube,
+    pub(super) placements: Placements,
+    /// Around all instances.
+    pub(super) cube: Cube,
+    pub(super) nodes: Vec<BvhNode>,
+    bounds: Bounds,
+    /// How many times over instances are placed by instances.
+    levels: usize,
+}
+
+/// What an instance octree says of itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct InstanceCosts {
+    /// Instances that it holds, each of which may place many more.
+    pub instances: usize,
+    /// Bytes of their placements and of the index, without the prototypes.
+    pub bytes: usize,
+}
+
+impl InstanceOctree {
+    /// Places instances.
+    ///
+    /// Instances of empty prototypes are left out. The result is the same for any number of threads. Cost: as
+    /// n log n; beside the result, 16 bytes each for a while.
+    ///
+    /// - `count`: of instances. `instance`: tells them by number; it is asked several times for the same, and may not
+    ///   change its mind.
+    ///
+    /// # Errors
+    /// [`InstanceError`], of the first instance that has one.
+    pub fn new(
+        prototypes: Vec<Prototype>,
+        form: PlacementForm,
+        count: usize,
+        instance: impl Fn(usize) -> Instance + Sync,
+    ) -> Result<InstanceOctree, InstanceError> {
+        if prototypes.len() > MOST_PROTOTYPES {
+            return Err(InstanceError::TooManyPrototypes { prototypes: prototypes.len() });
+        }
+        if count > MOST_INSTANCES {
+            return Err(InstanceError::TooManyInstances { instances: count });
+        }
+        let levels = 1 + prototypes.iter().map(|prototype| prototype.levels).max().unwrap_or(0);
+        if levels > MOST_LEVELS {
+            return Err(InstanceError::TooManyLevels { levels });
+        }
+        let bytes = count * (form.bytes() + NODE_BYTES + 2 * size_of::<u64>());
+        memory::reserve(bytes as u64, || format!("placing {count} instances"))?;
+        let mut builder = Builder {
+            prototypes: &prototypes,
+            form,
+            positions: EMPTY,
+            cube: EMPTY,
+            instance: &instance,
+            keys: Vec::new(),
+        };
+        let instances = 0..count;
+        if let Some(error) = instances.clone().into_par_iter().find_map_first(|number| builder.check(number).err()) {
+            return Err(error);
+        }
+        let position = |number| Bounds::of([instance(number).placement.translation]);
+        builder.positions = around(instances.clone().into_par_iter().map(position));
+        if let Some(error) = instances.clone().into_par_iter().find_map_first(|number| builder.check_rounded(number)) {
+            return Err(error);
+        }
+        let bounds =
+            instances.into_par_iter().map(|number| builder.bounds(number)).reduce(|| Bounds::EMPTY, Bounds::union);
+        builder.cube = around([bounds].into_par_iter());
+        builder.sort(count);
+        let (nodes, placements) = builder.index();
+        let (positions, cube) = (builder.positions, builder.cube);
+        Ok(InstanceOctree { prototypes, positions, placements, cube, nodes, bounds, levels })
+    }
+
+    /// The box around all instances; empty without any.
+    pub fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    /// Number of instances, those of empty prototypes left out.
+    pub fn count(&self) -> usize {
+        self.placements.len()
+    }
+
+    /// An instance as it is kept; the number is that of an [`InstancePath`].
+    ///
+    /// # Panics
+    /// If there is none of this number.
+    #[inline]
+    pub fn instance(&self, number: usize) -> Instance {
+        self.placements.get(&self.positions, number)
+    }
+
+    /// The instance at the end of a path: from coordinates of its prototype to those of this octree.
+    ///
+    /// # Panics
+    /// If the path is not of this octree.
+    pub fn innermost(&self, path: &InstancePath) -> Instance {
+        let mut octree = self;
+        let mut innermost = Instance { prototype: 0, variation: 0, placement: DAffine3::IDENTITY };
+        for number in path.numbers() {
+            let instance = octree.instance(*number as usize);
+            innermost = Instance { placement: innermost.placement * instance.placement, ..instance };
+            if let Content::Instances(inner) = &octree.prototypes[usize::from(instance.prototype)].content {
+                octree = inner;
+            }
+        }
+        innermost
+    }
+
+    /// What it costs.
+    pub fn costs(&self) -> InstanceCosts {
+        let placements = match &self.placements {
+            Placements::Similar(all) => size_of_val(all.as_slice()),
+            Placements::Affine(all) => size_of_val(all.as_slice()),
+        };
+        InstanceCosts { instances: self.count(), bytes: placements + size_of_val(self.nodes.as_slice()) }
+    }
+}
+
+const EMPTY: Cube = Cube { origin: DVec3::ZERO, side: 1.0 };
+
+/// The cube around some boxes.
+fn around(boxes: impl ParallelIterator<Item = Bounds>) -> Cube {
+    let all = boxes.reduce(|| Bounds::EMPTY, Bounds::union);
+    if all.is_empty() { EMPTY } else { Cube::around(all.min, all.max) }
+}
+
+struct Builder<'b, F> {
+    prototypes: &'b [Prototype],
+    form: PlacementForm,
+    positions: Cube,
+    cube: Cube,
+    instance: &'b F,
+    /// In the upper halves the codes of the middles of instances, in the lower ones their numbers.
+    keys: Vec<u64>,
+}
+
+impl<F: Fn(usize) -> Instance + Sync> Builder<'_, F> {
+    fn check(&self, number: usize) -> Result<(), InstanceError> {
+        let Instance { prototype, placement, .. } = (self.instance)(number);
+        if usize::from(prototype) >= self.prototypes.len() {
+            let prototypes = self.prototypes.len();
+            return Err(InstanceError::UnknownPrototype { instance: number, prototype, prototypes });
+        }
+        if !placement.is_finite() {
+            return Err(InstanceError::NotFinite { instance: number });
+        }
+        let [x, y, z] = [placement.matrix3.x_axis, placement.matrix3.y_axis, placement.matrix3.z_axis];
+        let longest = x.length().max(y.length()).max(z.length());
+        // Divided first, so that no product is too small or too large.
+        let [x, y, z] = [x, y, z].map(|axis| axis / longest);
+        let volume = x.dot(y.cross(z)).abs();
+        // Written so that what is not a number is flat.
+        let is_solid = volume > FLAT;
+        if !is_solid {
+            return Err(InstanceError::Flat { instance: number });
+        }
+        if self.form == PlacementForm::Similar {
+            let is_even = [x, y, z].iter().all(|axis| axis.length() > 1.0 - SIMILAR);
+            let is_upright = [x.dot(y), y.dot(z), z.dot(x)].iter().all(|cosine| cosine.abs() < SIMILAR);
+            let is_within = longest.log2().abs() <= super::placement::MOST_OCTAVES;
+            if !(is_even && is_upright && is_within) {
+                return Err(InstanceError::NotSimilar { instance: number });
+            }
+        }
+        Ok(())
+    }
+
+    /// What rounding makes of an instance may be too large or too small.
+    fn check_rounded(&self, number: usize) -> Option<InstanceError> {
+        let rounded = self.rounded(number).placement;
+        let determinant = rounded.matrix3.determinant();
+        let bounds = self.bounds(number);
+        let is_finite = rounded.is_finite() && (bounds.is_empty() || bounds.min.is_finite() && bounds.max.is_finite());
+        match () {
+            () if !is_finite => Some(InstanceError::NotFinite { instance: number }),
+            () if !(determinant.abs() > 0.0 && rounded.inverse().is_finite()) => {
+                Some(InstanceError::Flat { instance: number })
+            }
+            () => None,
+        }
+    }
+
+    fn rounded(&self, number: usize) -> Instance {
+        rounded(self.form, &self.positions, &(self.instance)(number))
+    }
+
+    /// The box around an instance.
+    fn bounds(&self, number: usize) -> Bounds {
+        let Instance { prototype, placement, .. } = self.rounded(number);
+        match self.prototypes[usize::from(prototype)].bounds {
+            own if own.is_empty() => own,
+            own => Bounds::of(own.corners().map(|corner| placement.transform_point3(corner))),
+        }
+    }
+
+    /// Sorts the instances that have a box.
+    fn sort(&mut self, count: usize) {
+        let key = |number: usize| {
+            let bounds = self.bounds(number);
+            let voxel = self.cube.voxel(bounds.center()).unwrap_or([(1 << MAX_DEPTH) - 1; 3]);
+            let code = LocationalCode::containing(voxel, DIGITS).bits() >> (64 - 3 * DIGITS);
+            (!bounds.is_empty()).then_some(code << 32 | number as u64)
+        };
+        self.keys = radix_sorted((0..count).into_par_iter().filter_map(key).collect());
+    }
+
+    fn item(&self, key: u64) -> Item {
+        let number = key as u32;
+        let bounds = self.bounds(number as usize);
+        let corner = |at: DVec3| {
+            let [x, y, z] = self.cube.local(at).as_vec3().to_array();
+            f32x4::new([x, y, z, 0.0])
+        };
+        Item { low: corner(bounds.min), high: corner(bounds.max) }.numbered(number, 1)
+    }
+
+    /// Runs of instances in one cell each, as large as there may be many of; each with its first place as its number.
+    fn cells(&self) -> Vec<Item> {
+        // At each level, in how many cells the instances lie.
+        let mut cells = [0_usize; DIGITS as usize + 1];
+        let digits = |pair: &[u64]| {
+            let apart = (pair[0] ^ pair[1]) >> 32;
+            (apart.leading_zeros() - (64 - 3 * DIGITS)) / 3
+        };
+        self.keys.windows(2).for_each(|pair| cells[digits(pair).min(DIGITS) as usize] += 1);
+        let mut count = 1;
+        let of_level = |level: usize| {
+            count += cells[level];
+            count
+        };
+        let counts: Vec<usize> = (0..DIGITS as usize).map(of_level).collect();
+        let level = 1 + counts.iter().rposition(|count| *count <= self.keys.len() / CELL).unwrap_or(0) as u32;
+        let cell = |key: &u64| key >> 32 >> (3 * (DIGITS - level));
+        let mut runs: Vec<(usize, usize)> = Vec::with_capacity(counts[level as usize - 1]);
+        let mut first = 0;
+        for run in self.keys.chunk_by(|one, other| cell(one) == cell(other)) {
+            runs.push((first, run.len()));
+            first += run.len();
+        }
+        let around = |&(first, count): &(usize, usize)| {
+            let keys = &self.keys[first..first + count];
+            let around = keys.iter().fold(Item::EMPTY, |all, key| all.union(&self.item(*key)));
+            around.numbered(first as u32, count as u32)
+        };
+        runs.par_iter().map(around).collect()
+    }
+
+    fn index(&self) -> (Vec<BvhNode>, Placements) {
+        let mut nodes = Vec::new();
+        let mut placements = Placements::with_capacity(self.form, self.keys.len());
+        if self.keys.is_empty() {
+            return (nodes, placements);
+        }
+        let mut cells = self.cells();
+        let mut groups = Vec::new();
+        let all = ItemGroup::of(&cells);
+        divide_cells(&mut cells, &all, LEAF, &mut nodes, &mut groups);
+        for batch in groups.chunks(BATCH) {
+            let below = |CellGroup { cells, .. }: &CellGroup<'_>| {
+                let numbers = cells.iter().flat_map(|cell| {
+                    let first = cell.number() as usize;
+                    &self.keys[first..first + cell.weight()]
+                });
+                let mut items: Vec<Item> = numbers.map(|key| self.item(*key)).collect();
+                let mut index = GroupIndex::default();
+                divide_items(&mut items, &mut index);
+                index
+            };
+            let made: Vec<GroupIndex> = batch.par_iter().map(below).collect();
+            for (made, CellGroup { place, .. }) in made.into_iter().zip(batch) {
+                let (above, before) = (nodes.len(), placements.len());
+                nodes.extend(made.nodes.into_iter().map(|mut node| {
+                    node.children = node.children.map(|child| child.moved(above, before));
+                    node
+                }));
+                made.numbers.iter().for_each(|n| placements.push(&self.positions, &(self.instance)(*n as usize)));
+                if let Some(place) = place {
+                    place.attach(&mut nodes, Child(above as u32));
+                }
+            }
+        }
+        nodes.shrink_to_fit();
+        (nodes, placements)
+    }
+}
+
+/// The nodes of some instances, and the numbers of these leaf by leaf.
+#[derive(Default)]
+struct GroupIndex {
+    nodes: Vec<BvhNode>,
+    numbers: Vec<u32>,
+}
+
+/// Adds the nodes of some instances.
+fn divide_items(items: &mut [Item], index: &mut GroupIndex) {
+    let node = index.nodes.len();
+    index.nodes.push(BvhNode::EMPTY);
+    for (lane, share) in full_shares(items).into_iter().enumerate() {
+        let around = share.iter().fold(Item::EMPTY, |all, item| all.union(item));
+        let child = if share.len() > LEAF {
+            let child = Child(index.nodes.len() as u32);
+            divide_items(share, index);
+            child
+        } else {
+            let first = index.numbers.len();
+            index.numbers.extend(share.iter().map(Item::number));
+            Child::leaf(first..index.numbers.len())
+        };
+        index.nodes[node].set(lane, &around, child);
+    }
+}
+
+/// Divides items for the lanes of a node, so that nearly all leaves and nodes below are full.
+///
+/// A full tree of eight lanes a node holds [`LEAF`] times a power of eight. The largest part is divided again and again,
+/// always behind a multiple of the largest such number that is less than all items.
+fn full_shares(items: &mut [Item]) -> Vec<&mut [Item]> {
+    let mut unit = LEAF;
+    while unit * LANES < items.len() {
+        unit *= LANES;
+    }
+    let mut parts = vec![items];
+    while parts.len() < LANES {
+        let area = |part: &&mut [Item]| part.iter().fold(Item::EMPTY, |all, item| all.union(item)).half_area();
+        let large = parts.iter().enumerate().filter(|(_, part)| part.len() > unit);
+        let Some((largest, _)) = large.max_by(|(_, one), (_, other)| area(one).total_cmp(&area(other))) else { break };
+        let part = std::mem::take(&mut parts[largest]);
+        let first = divided(part, unit);
+        let (first, second) = part.split_at_mut(first);
+        parts[largest] = first;
+        parts.insert(largest + 1, second);
+    }
+    parts
+}
+
+/// Sorts items along an axis and tells where to divide them: behind a multiple of a number, where the sum of the areas
+/// of both boxes, each times the items in it, is least.
+fn divided(items: &mut [Item], unit: usize) -> usize {
+    let along = |axis: usize| {
+        move |one: &Item, other: &Item| {
+            let [one_at, other_at] = [one, other].map(|item| item.centre().as_array()[axis]);
+            one_at.total_cmp(&other_at).then(one.number().cmp(&other.number()))
+        }
+    };
+    let mut best = (f32::INFINITY, 0, unit);
+    for axis in 0..3 {
+        items.sort_unstable_by(along(axis));
+        let mut prices = vec![0.0; items.len()];
+        let mut after = Item::EMPTY;
+        for place in (1..items.len()).rev() {
+            after = after.union(&items[place]);
+            prices[place] = after.half_area() * (items.len() - place) as f32;
+        }
+        let mut before = Item::EMPTY;
+        for place in 1..items.len() {
+            before = before.union(&items[place - 1]);
+            let price = before.half_area() * place as f32 + prices[place];
+            if place % unit == 0 && price < best.0 {
+                best = (price, axis, place);
+            }
+        }
+    }
+    items.sort_unstable_by(along(best.1));
+    best.2
+}

@@ -1,0 +1,67 @@
+//! Errors of placing instances.
+
+use super::placement::MOST_OCTAVES;
+use crate::memory::MemoryExceeded;
+
+/// Most instances of one instance octree; one of them may place another octree as large.
+pub const MOST_INSTANCES: usize = 1 << 28;
+/// Most prototypes of one instance octree.
+pub const MOST_PROTOTYPES: usize = 1 << 16;
+/// Instances may be placed by instances so many times over.
+pub const MOST_LEVELS: usize = 8;
+
+/// A reason for which instances cannot be placed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum InstanceError {
+    /// More instances than [`MOST_INSTANCES`].
+    #[error("{instances} instances are more than the {MOST_INSTANCES} of one level; place groups of them")]
+    TooManyInstances {
+        /// Number of instances.
+        instances: usize,
+    },
+    /// More prototypes than [`MOST_PROTOTYPES`].
+    #[error("{prototypes} prototypes are more than the {MOST_PROTOTYPES} of one level")]
+    TooManyPrototypes {
+        /// Number of prototypes.
+        prototypes: usize,
+    },
+    /// Instances of instances, more than [`MOST_LEVELS`] times over.
+    #[error("instances are nested {levels} times, more than {MOST_LEVELS}")]
+    TooManyLevels {
+        /// How many times.
+        levels: usize,
+    },
+    /// An instance names a prototype that does not exist.
+    #[error("instance {instance} places prototype {prototype}, but there are only {prototypes}")]
+    UnknownPrototype {
+        /// Number of the instance.
+        instance: usize,
+        /// The prototype that it names.
+        prototype: u16,
+        /// Number of prototypes.
+        prototypes: usize,
+    },
+    /// A placement is infinite or not a number, or comes to be by rounding.
+    #[error("the placement of instance {instance} is not finite")]
+    NotFinite {
+        /// Number of the instance.
+        instance: usize,
+    },
+    /// A placement flattens what it places, or comes close to that.
+    #[error("the placement of instance {instance} flattens it")]
+    Flat {
+        /// Number of the instance.
+        instance: usize,
+    },
+    /// A placement that is no rotation with a scale, where others are not kept.
+    #[error(
+        "the placement of instance {instance} is no rotation with a scale between 2^-{MOST_OCTAVES} and 2^{MOST_OCTAVES}"
+    )]
+    NotSimilar {
+        /// Number of the instance.
+        instance: usize,
+    },
+    /// More memory than is left.
+    #[error(transparent)]
+    Memory(#[from] MemoryExceeded),
+}

@@ -1,0 +1,21 @@
+//! The octree of instances: things that are stored once, their prototypes, and placed many times.
+//!
+//! A prototype is the [`Octree`](super::Octree) of a surface, or again instances. The octree of instances is a wide BVH
+//! over their boxes, in the order of the codes of their middles, as it is over triangles. Where a ray comes to one of its
+//! leaves it is taken into the coordinates of each prototype that is placed there, and goes on in the prototype's own
+//! index. That is the seam between the two: a leaf of the upper index hands the ray over with the lengths between which
+//! hits count, which are the same on both sides, and knows nothing else of what is below it.
+
+mod error;
+mod placement;
+mod path;
+mod build;
+mod walk;
+
+#[cfg(test)]
+mod tests;
+
+pub use build::{InstanceCosts, InstanceOctree, Prototype};
+pub use error::{InstanceError, MOST_INSTANCES, MOST_LEVELS, MOST_PROTOTYPES};
+pub use path::{InstanceHit, InstancePath};
+pub use placement::{Instance, PlacementForm};

@@ -1,0 +1,36 @@
+//! What a ray hits of nested instances, and by which of them.
+
+use super::error::MOST_LEVELS;
+use crate::numeric::ray::Hit;
+
+/// The instances that a surface is placed by, the outermost first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct InstancePath {
+    numbers: [u32; MOST_LEVELS],
+    levels: u8,
+}
+
+impl InstancePath {
+    /// This path, by one more instance; what is deeper than [`MOST_LEVELS`] is cut off.
+    pub(super) fn and(mut self, number: u32) -> InstancePath {
+        if let Some(place) = self.numbers.get_mut(usize::from(self.levels)) {
+            *place = number;
+            self.levels += 1;
+        }
+        self
+    }
+
+    /// The numbers of the instances in their octrees, which count them in an order of their own.
+    pub fn numbers(&self) -> &[u32] {
+        &self.numbers[..usize::from(self.levels)]
+    }
+}
+
+/// A hit of a ray on a surface that is placed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InstanceHit {
+    /// Where, with the triangle in the octree of the surface.
+    pub hit: Hit,
+    /// By which instances the surface is placed.
+    pub path: InstancePath,
+}

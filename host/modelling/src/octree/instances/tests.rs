@@ -1,0 +1,251 @@
+//! Tests of instances against asking each of them, and against one mesh of all.
+
+use super::super::{Octree, OctreeSettings, Ray, Walk};
+use super::build::Content;
+use super::*;
+use crate::numeric::sampling::{RandomStream, sphere};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+use std::sync::Arc;
+
+/// A tetrahedron about the origin, as large as 1.
+fn tetrahedron() -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let vertices = vec![
+        DVec3::new(0.5, 0.5, 0.5),
+        DVec3::new(0.5, -0.5, -0.5),
+        DVec3::new(-0.5, 0.5, -0.5),
+        DVec3::new(-0.5, -0.5, 0.5),
+    ];
+    (vertices, vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]])
+}
+
+fn octree(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Arc<Octree> {
+    let settings = OctreeSettings { walk: Walk::Index, ..OctreeSettings::default() };
+    Arc::new(Octree::build(vertices, triangles, &settings).expect("a sound mesh"))
+}
+
+fn surface() -> Prototype {
+    let (vertices, triangles) = tetrahedron();
+    Prototype::surface(octree(&vertices, &triangles))
+}
+
+/// A placement by chance: about the origin within `reach`, with scales about `size`, half of them mirrored.
+fn scattered(seed: u64, number: usize, reach: f64, size: f64) -> Instance {
+    let mut random = RandomStream::new(seed, number as u64);
+    let rotation = DQuat::from_axis_angle(sphere(random.point()), random.uniform() * 6.0);
+    let scale = size * (0.5 + random.uniform()) * if random.uniform() < 0.5 { 1.0 } else { -1.0 };
+    let translation = (DVec3::new(random.uniform(), random.uniform(), random.uniform()) * 2.0 - 1.0) * reach;
+    let placement = DAffine3 { matrix3: DMat3::from_quat(rotation) * scale, translation };
+    Instance { prototype: 0, variation: number as u16, placement }
+}
+
+fn of(prototypes: Vec<Prototype>, form: PlacementForm, count: usize, seed: u64) -> InstanceOctree {
+    // As many as fill the same part of the space.
+    let size = (count.max(1) as f64).cbrt().recip();
+    InstanceOctree::new(prototypes, form, count, |number| scattered(seed, number, 1.0, size)).expect("sound placements")
+}
+
+fn rays(seed: u64, count: usize, reach: f64) -> impl Iterator<Item = Ray> {
+    let mut random = RandomStream::new(seed, 1 << 40);
+    (0..count).map(move |_| {
+        let (origin, towards) =
+            (sphere(random.point()) * (3.0 * reach), sphere(random.point()) * reach * random.uniform());
+        Ray { origin, direction: towards - origin }
+    })
+}
+
+/// The nearest hit by asking every instance, and how many there are.
+fn asked(octree: &InstanceOctree, ray: &Ray, path: InstancePath) -> (Option<InstanceHit>, usize) {
+    let (mut best, mut count): (Option<InstanceHit>, usize) = (None, 0);
+    for number in 0..octree.count() {
+        let Instance { prototype, placement, .. } = octree.instance(number);
+        let inverse = placement.inverse();
+        let origin = inverse.transform_point3(ray.origin);
+        let inner = Ray { origin, direction: inverse.transform_vector3(ray.direction) };
+        let path = path.and(number as u32);
+        let (found, hits) = match &octree.prototypes[usize::from(prototype)].content {
+            Content::Surface(surface) => {
+                let mut hits = 0;
+                surface.each_hit(&inner, 0.0, f64::INFINITY, |_| {
+                    hits += 1;
+                    false
+                });
+                (surface.closest(&inner, 0.0, f64::INFINITY).map(|hit| InstanceHit { hit, path }), hits)
+            }
+            Content::Instances(below) => asked(below, &inner, path),
+        };
+        count += hits;
+        best = match (best, found) {
+            (Some(best), Some(found)) if found.hit.t >= best.hit.t => Some(best),
+            (best, found) => found.or(best),
+        };
+    }
+    (best, count)
+}
+
+fn check(octree: &InstanceOctree, seed: u64, count: usize, reach: f64) -> usize {
+    let mut hits = 0;
+    for ray in rays(seed, count, reach) {
+        let (expected, all) = asked(octree, &ray, InstancePath::default());
+        let found = octree.closest(&ray, 0.0, f64::INFINITY);
+        assert_eq!(found.map(|found| found.hit), expected.map(|expected| expected.hit), "{ray:?}");
+        assert_eq!(found.map(|found| found.path), expected.map(|expected| expected.path), "{ray:?}");
+        assert_eq!(octree.occluded(&ray, 0.0, f64::INFINITY), expected.is_some());
+        let mut given = 0;
+        octree.each_hit(&ray, 0.0, f64::INFINITY, |_| {
+            given += 1;
+            false
+        });
+        assert_eq!(given, all, "{ray:?}");
+        if let Some(found) = found {
+            hits += 1;
+            // What is nearer is free, up to the hit itself.
+            assert!(!octree.occluded(&ray, 0.0, found.hit.t));
+            assert_eq!(octree.closest(&ray, found.hit.t, f64::INFINITY).is_some(), all > 1);
+        }
+    }
+    hits
+}
+
+#[test]
+fn rays_hit_what_they_hit_when_every_instance_is_asked() {
+    for (count, seed) in [(0, 1), (1, 2), (7, 3), (8, 4), (9, 5), (300, 6), (5000, 7)] {
+        for form in [PlacementForm::Similar, PlacementForm::Affine] {
+            let hits = check(&of(vec![surface()], form, count, seed), seed, 300.min(60 + count), 1.2);
+            assert!(hits > 0 || count < 7, "{count}");
+        }
+    }
+}
+
+#[test]
+fn instances_are_where_one_mesh_of_all_is() {
+    let placed = of(vec![surface()], PlacementForm::Affine, 400, 11);
+    let (vertices, triangles) = tetrahedron();
+    let (mut all, mut corners) = (Vec::new(), Vec::new());
+    for number in 0..placed.count() {
+        let first = all.len() as u32;
+        let placement = placed.instance(number).placement;
+        all.extend(vertices.iter().map(|vertex| placement.transform_point3(*vertex)));
+        corners.extend(triangles.iter().map(|triangle| triangle.map(|vertex| vertex + first)));
+    }
+    let flat = octree(&all, &corners);
+    let mut hits = 0;
+    for ray in rays(12, 2000, 1.2) {
+        let (found, expected) = (placed.closest(&ray, 0.0, f64::INFINITY), flat.closest(&ray, 0.0, f64::INFINITY));
+        assert_eq!(found.is_some(), expected.is_some());
+        if let (Some(found), Some(expected)) = (found, expected) {
+            hits += 1;
+            assert!((found.hit.t - expected.t).abs() < 1e-12);
+            assert_eq!((found.path.numbers()[0] * 4 + found.hit.triangle), expected.triangle);
+            let placement = placed.innermost(&found.path).placement;
+            let [a, b, c] = triangles[found.hit.triangle as usize].map(|vertex| vertices[vertex as usize]);
+            let own = a * (1.0 - found.hit.u - found.hit.v) + b * found.hit.u + c * found.hit.v;
+            assert!(placement.transform_point3(own).distance(ray.at(found.hit.t)) < 1e-12);
+        }
+    }
+    assert!(hits > 1000, "{hits}");
+}
+
+#[test]
+fn instances_of_instances_are_hit_at_every_level_in_any_size() {
+    for size in [1.0_f64, 1e-6, 1e6] {
+        let mut inner = surface();
+        for level in 0..5 {
+            // Sizes are taken back from level to level, so that the whole stays of this world.
+            let (scale, mirror) =
+                (if level % 2 == 0 { size } else { size.recip() }, if level == 1 { -1.0 } else { 1.0 });
+            let extent = inner.bounds().size().max_element();
+            let instance = |number: usize| {
+                let Instance { variation, placement, .. } =
+                    scattered(level, number, 0.4 * scale * extent, 0.8 * mirror * scale);
+                Instance { prototype: 0, variation, placement }
+            };
+            let form = if level % 2 == 0 { PlacementForm::Similar } else { PlacementForm::Affine };
+            inner = Prototype::instances(Arc::new(InstanceOctree::new(vec![inner], form, 5, instance).expect("sound")));
+        }
+        let Content::Instances(octree) = &inner.content else { unreachable!("made of instances") };
+        let reach = inner.bounds().size().max_element();
+        let hits = check(octree, 21, 40, reach / 2.0);
+        assert!(hits > 5, "{hits} at {size}");
+        let first = rays(21, 40, reach / 2.0).find_map(|ray| octree.closest(&ray, 0.0, f64::INFINITY));
+        assert_eq!(first.map(|first| first.path.numbers().len()), Some(5));
+    }
+}
+
+#[test]
+fn ten_thousand_instances_at_one_place_are_one_hit_after_another() {
+    let there = |number: usize| Instance { variation: number as u16, ..scattered(1, 0, 1.0, 0.5) };
+    let octree = InstanceOctree::new(vec![surface()], PlacementForm::Similar, 10_000, there).expect("sound placements");
+    let at = octree.bounds().center();
+    let ray = Ray { origin: at + DVec3::new(0.01, 5.0, 0.02), direction: DVec3::NEG_Y };
+    let mut hits = 0;
+    octree.each_hit(&ray, 0.0, f64::INFINITY, |_| {
+        hits += 1;
+        false
+    });
+    assert!(hits >= 20_000 && hits % 10_000 == 0, "{hits}");
+    assert_eq!(octree.closest(&ray, 0.0, f64::INFINITY), octree.closest(&ray, 0.0, f64::INFINITY));
+}
+
+#[test]
+fn an_instance_costs_less_than_32_bytes_and_with_an_affine_map_less_than_64() {
+    for (form, most) in [(PlacementForm::Similar, 32), (PlacementForm::Affine, 64)] {
+        for count in [1_000, 30_000, 100_000] {
+            let InstanceCosts { instances, bytes } = of(vec![surface()], form, count, 31).costs();
+            assert!(instances == count && bytes <= most * count, "{count}: {}", bytes as f64 / count as f64);
+        }
+    }
+}
+
+#[test]
+fn the_same_octree_comes_from_any_number_of_threads() {
+    let made = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        format!("{:?}", pool.install(|| of(vec![surface()], PlacementForm::Similar, 5_000, 41)))
+    };
+    assert!(made(1) == made(3));
+}
+
+#[test]
+fn empty_prototypes_place_nothing() {
+    let octree = of(vec![Prototype::surface(octree(&[], &[]))], PlacementForm::Similar, 50, 51);
+    assert!(octree.count() == 0 && octree.bounds().is_empty());
+    assert_eq!(octree.closest(&Ray { origin: DVec3::ZERO, direction: DVec3::X }, 0.0, f64::INFINITY), None);
+}
+
+#[test]
+fn what_cannot_be_placed_is_told_by_its_number() {
+    let sound = |number: usize| scattered(61, number, 1.0, 0.1);
+    let refused = |form: PlacementForm, change: &(dyn Fn(&mut Instance) + Sync)| {
+        let instance = |number: usize| {
+            let mut instance = sound(number);
+            if number >= 700 {
+                change(&mut instance);
+            }
+            instance
+        };
+        InstanceOctree::new(vec![surface()], form, 1000, instance).expect_err("a problem")
+    };
+    use PlacementForm::{Affine, Similar};
+    let flat = |instance: &mut Instance| instance.placement.matrix3.z_axis = instance.placement.matrix3.x_axis;
+    let infinite = |instance: &mut Instance| instance.placement.translation.y = f64::INFINITY;
+    let stretched = |instance: &mut Instance| instance.placement.matrix3.z_axis *= 2.0;
+    let huge = |instance: &mut Instance| instance.placement.matrix3 *= 1e60;
+    let instance = 700;
+    assert_eq!(refused(Affine, &flat), InstanceError::Flat { instance });
+    assert_eq!(refused(Affine, &infinite), InstanceError::NotFinite { instance });
+    assert_eq!(refused(Affine, &huge), InstanceError::NotFinite { instance });
+    assert_eq!(refused(Affine, &|of| of.placement.matrix3 *= 0.0), InstanceError::Flat { instance });
+    assert_eq!(refused(Similar, &stretched), InstanceError::NotSimilar { instance });
+    assert_eq!(refused(Similar, &huge), InstanceError::NotSimilar { instance });
+    let unknown = InstanceError::UnknownPrototype { instance, prototype: 1, prototypes: 1 };
+    assert_eq!(refused(Similar, &|of| of.prototype = 1), unknown);
+    let mut deep = surface();
+    let mut refusal = None;
+    while refusal.is_none() {
+        match InstanceOctree::new(vec![deep.clone()], Similar, 1, sound) {
+            Ok(octree) => deep = Prototype::instances(Arc::new(octree)),
+            Err(error) => refusal = Some(error),
+        }
+    }
+    assert_eq!(refusal, Some(InstanceError::TooManyLevels { levels: MOST_LEVELS + 1 }));
+}
