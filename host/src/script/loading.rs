@@ -31,7 +31,7 @@ pub fn load(name: &str, inputs: &Inputs) -> Result<Evaluated, ScriptError> {
 /// Runs the script in a file; the paths in it are relative to its folder.
 ///
 /// # Errors
-/// As [`load`].
+/// [`ScriptError`] if the file cannot be read, the script is wrong, or it does not ask for what is given.
 pub fn load_file(path: &Path, inputs: &Inputs) -> Result<Evaluated, ScriptError> {
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
     if PICTURES.iter().any(|picture| extension.eq_ignore_ascii_case(picture)) {

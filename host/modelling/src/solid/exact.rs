@@ -92,7 +92,7 @@ impl ExactSolid {
     /// of its surface that is nearest. Where the result lies on the other side of a surface, normals are reversed.
     ///
     /// # Errors
-    /// As of [`Solid::evaluate`].
+    /// [`SolidError::SelfIntersecting`] if the result crosses itself when it is rounded, and that could not be mended.
     pub fn evaluate(operands: &[&ExactSolid], expression: &Expression) -> Result<(ExactSolid, Outcome), SolidError> {
         let solids: Vec<&Solid> = operands.iter().map(|operand| &operand.solid).collect();
         let (result, outcome) = Solid::evaluate(&solids, expression)?;

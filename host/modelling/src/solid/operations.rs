@@ -22,7 +22,7 @@ impl Solid {
     /// What is in either.
     ///
     /// # Errors
-    /// As of [`Solid::evaluate`].
+    /// [`SolidError::SelfIntersecting`] if the result crosses itself when it is rounded, and that could not be mended.
     pub fn union(&self, other: &Solid) -> Result<Solid, SolidError> {
         self.with(other, Expression::Union)
     }
@@ -30,7 +30,7 @@ impl Solid {
     /// What is in both.
     ///
     /// # Errors
-    /// As of [`Solid::evaluate`].
+    /// [`SolidError::SelfIntersecting`] if the result crosses itself when it is rounded, and that could not be mended.
     pub fn intersection(&self, other: &Solid) -> Result<Solid, SolidError> {
         self.with(other, Expression::Intersection)
     }
@@ -38,7 +38,7 @@ impl Solid {
     /// What is in this one and not in the other.
     ///
     /// # Errors
-    /// As of [`Solid::evaluate`].
+    /// [`SolidError::SelfIntersecting`] if the result crosses itself when it is rounded, and that could not be mended.
     pub fn difference(&self, other: &Solid) -> Result<Solid, SolidError> {
         let expression = Expression::difference(Expression::Operand(0), Expression::Operand(1));
         Solid::evaluate(&[self, other], &expression).map(|(solid, _)| solid)

@@ -20,7 +20,7 @@ struct Cut {
 /// The polyhedron, each face divided that creases of finite sharpness hold apart.
 ///
 /// # Errors
-/// As [`Polyhedron::linked`].
+/// Edges of more than two faces, or two faces that run the same way along an edge.
 pub(super) fn divided(mesh: Polyhedron) -> Result<Polyhedron, SubdivisionError> {
     let creases = Creases::of(&mesh);
     let cuts: Vec<Option<Cut>> = (0..mesh.face_count()).map(|face| Cut::of(&creases, face)).collect();

@@ -68,7 +68,7 @@ impl Polyhedron {
     /// steps as it lasts.
     ///
     /// # Errors
-    /// As [`Polyhedron::subdivided`].
+    /// A result of more than 2^28 corners, or faces that touch each other twice at a crease.
     pub fn limit(&self) -> Result<Mesh, SubdivisionError> {
         let lasting = self.lasting()?;
         Ok(limit::mesh(&lasting))
@@ -101,7 +101,8 @@ impl Polyhedron {
     /// - `tolerance`: for which they were made.
     ///
     /// # Errors
-    /// As [`Polyhedron::tessellated`] for the finer triangles.
+    /// A tolerance that is not positive, or so small that more than two million patches do not meet a part of it; a result of
+    /// more than 2^28 corners.
     pub fn distance(&self, mesh: &Mesh, tolerance: f64) -> Result<f64, SubdivisionError> {
         Ok(hausdorff(&self.tessellated(tolerance / FINER)?, mesh, usize::MAX))
     }

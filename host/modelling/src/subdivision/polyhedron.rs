@@ -74,7 +74,8 @@ impl Polyhedron {
     /// The polyhedron of the triangles of a mesh; vertices at the same position count as one.
     ///
     /// # Errors
-    /// As [`Polyhedron::new`].
+    /// A position that is not finite or beyond 1e150, a vertex that there is not, an edge of more than two triangles, two
+    /// triangles that run the same way along an edge; each with its place.
     pub fn from_mesh(mesh: &Mesh) -> Result<Polyhedron, SubdivisionError> {
         let vertices = mesh.vertices.len();
         if let Some((face, triangle)) =

@@ -120,7 +120,7 @@ impl StudiedScene {
     /// has none, by another grid of samples.
     ///
     /// # Errors
-    /// As [`StudiedScene::render`].
+    /// [`StudyError`]; [`StudyError::Interrupted`] for a picture that is not complete.
     pub(super) fn halves(&self, setup: &Setup, watch: &Watch<'_>) -> Result<[TimedRendering; 2], StudyError> {
         let half = |half: u64, order: &mut RenderOrder| {
             order.seed = order.seed.wrapping_add(REFERENCE_SEED + half);

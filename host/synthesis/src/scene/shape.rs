@@ -151,7 +151,7 @@ impl Shape {
     /// own coordinates; of a composite that of the triangles whose exact surfaces are known; 0 where none are.
     ///
     /// # Errors
-    /// As [`Shape::tessellate`].
+    /// [`ShapeError`] if the file cannot be read, the tolerance asks for too many triangles, or there is no such solid.
     pub(super) fn chord_error(&self, tolerance: Tolerance) -> Result<f64, ShapeError> {
         let ShapeMesh { mesh, surfaces, .. } = self.tessellate(tolerance)?;
         match self {

@@ -55,7 +55,7 @@ impl Task {
 /// Makes a rendering at once.
 ///
 /// # Errors
-/// As [`Task::new`].
+/// A solid is none, or a cut has no plane.
 pub fn render(
     kind: Rendering,
     facets: Facets,

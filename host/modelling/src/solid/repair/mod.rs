@@ -112,7 +112,7 @@ impl Solid {
     /// - `problem`: what [`Solid::new`] says of the mesh.
     ///
     /// # Errors
-    /// As of [`Solid::repaired`].
+    /// [`SolidError`] if numbers are wrong, or the mesh is not closed even after repair.
     pub fn repaired_of(mesh: Mesh, problem: &SolidError) -> Result<(Solid, Repair), SolidError> {
         let is_two_sided = match problem {
             // Nothing helps these.

@@ -73,7 +73,7 @@ impl ExactSolid {
     /// - `mesh`: the triangles, as [`ExactSolid::rounded`] made them for the choice, the radius and the tolerance.
     ///
     /// # Errors
-    /// As of [`ExactSolid::rounded`].
+    /// [`RoundingError`] if an edge is not between flat faces, or the rounding has no place.
     pub fn distance_of_rounded(
         &self,
         mesh: &Mesh,

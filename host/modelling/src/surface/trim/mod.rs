@@ -107,7 +107,7 @@ impl<S: Surface> TrimmedSurface<S> {
     /// All of `surface` except what `holes` surround.
     ///
     /// # Errors
-    /// As [`TrimmedSurface::new`]; the outline of the domain is loop 0.
+    /// [`TrimError`] if a hole is empty, does not close, or leaves the domain; the outline of the domain is loop 0.
     pub fn with_holes(surface: S, holes: Vec<Vec<TrimEdge>>) -> Result<TrimmedSurface<S>, TrimError> {
         let [low, high] = surface.domain();
         let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];

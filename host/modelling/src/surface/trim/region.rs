@@ -105,7 +105,7 @@ fn regions<'a, S: Surface>(
 /// ones, whose grids are hard to beat.
 ///
 /// # Errors
-/// As [`tessellate_trimmed`].
+/// [`TrimError`] if the tolerance is not positive or too fine, or a surface is not finite.
 pub fn tessellate_adaptively<S: Surface>(surfaces: &[S], tolerance: Tolerance) -> Result<Mesh, TrimError> {
     let whole = |surface| TrimmedSurface::with_holes(surface, Vec::new());
     tessellate_trimmed(&surfaces.iter().map(whole).collect::<Result<Vec<_>, _>>()?, tolerance)
