@@ -39,7 +39,7 @@ struct Arguments {
     /// Least side of a cell, scene units
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     leaf_side: Option<f64>,
-    /// As JSON
+    /// Prints JSON
     #[arg(long)]
     json: bool,
 }

@@ -26,7 +26,7 @@ struct Arguments {
     /// Renders one sample of each pixel, and tells how long those stages took of which that is known
     #[arg(long)]
     seconds: bool,
-    /// As JSON
+    /// Prints JSON
     #[arg(long)]
     json: bool,
 }

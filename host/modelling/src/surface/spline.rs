@@ -37,7 +37,7 @@ pub struct SplineSurface {
     bases: [Basis; 2],
     /// Row by row; v changes within a row.
     control: Vec<ControlPoint>,
-    /// As the control points: v changes first.
+    /// Row by row, as control points are; v changes within a row.
     patches: Vec<TensorPatch>,
 }
 

@@ -69,7 +69,7 @@ pub struct Source {
 pub enum Confidence {
     /// Programs of the time relied on it.
     Confirmed,
-    /// As the manuals are remembered.
+    /// The manuals say so, as they are remembered.
     Manual,
     /// A plausible reconstruction.
     Uncertain,
@@ -205,7 +205,7 @@ impl Source {
         Source { confidence: Confidence::Confirmed, note }
     }
 
-    /// As the manuals are remembered.
+    /// A source in the manuals, as they are remembered.
     pub const fn manual(note: &'static str) -> Source {
         Source { confidence: Confidence::Manual, note }
     }

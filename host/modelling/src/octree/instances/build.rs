@@ -105,7 +105,8 @@ impl InstanceOctree {
     ///   change its mind.
     ///
     /// # Errors
-    /// [`InstanceError`], of the first instance that has one.
+    /// [`InstanceError`]. Of several instances that cannot be placed it tells the first, but those that only rounding spoils
+    /// come last.
     pub fn new(
         prototypes: Vec<Prototype>,
         form: PlacementForm,
@@ -137,13 +138,13 @@ impl InstanceOctree {
             return Err(error);
         }
         let position = |number| Bounds::of([instance(number).placement.translation]);
-        builder.positions = around(instances.clone().into_par_iter().map(position));
-        if let Some(error) = instances.clone().into_par_iter().find_map_first(|number| builder.check_rounded(number)) {
+        builder.positions = cube_around(union(instances.clone().into_par_iter().map(position)));
+        let spoilt = |number| builder.check_rounded(number).err();
+        if let Some(error) = instances.clone().into_par_iter().find_map_first(spoilt) {
             return Err(error);
         }
-        let bounds =
-            instances.into_par_iter().map(|number| builder.bounds(number)).reduce(|| Bounds::EMPTY, Bounds::union);
-        builder.cube = around([bounds].into_par_iter());
+        let bounds = union(instances.into_par_iter().map(|number| builder.bounds(number)));
+        builder.cube = cube_around(bounds);
         builder.sort(count);
         let (nodes, placements) = builder.index();
         let (positions, cube) = (builder.positions, builder.cube);
@@ -196,12 +197,17 @@ impl InstanceOctree {
     }
 }
 
+/// The cube around nothing.
 const EMPTY: Cube = Cube { origin: DVec3::ZERO, side: 1.0 };
 
-/// The cube around some boxes.
-fn around(boxes: impl ParallelIterator<Item = Bounds>) -> Cube {
-    let all = boxes.reduce(|| Bounds::EMPTY, Bounds::union);
-    if all.is_empty() { EMPTY } else { Cube::around(all.min, all.max) }
+/// The cube around a box.
+fn cube_around(bounds: Bounds) -> Cube {
+    if bounds.is_empty() { EMPTY } else { Cube::around(bounds.min, bounds.max) }
+}
+
+/// The box around some boxes.
+fn union(boxes: impl ParallelIterator<Item = Bounds>) -> Bounds {
+    boxes.reduce(|| Bounds::EMPTY, Bounds::union)
 }
 
 struct Builder<'b, F> {
@@ -246,18 +252,16 @@ impl<F: Fn(usize) -> Instance + Sync> Builder<'_, F> {
     }
 
     /// What rounding makes of an instance may be too large or too small.
-    fn check_rounded(&self, number: usize) -> Option<InstanceError> {
-        let rounded = self.rounded(number).placement;
-        let determinant = rounded.matrix3.determinant();
-        let bounds = self.bounds(number);
-        let is_finite = rounded.is_finite() && (bounds.is_empty() || bounds.min.is_finite() && bounds.max.is_finite());
-        match () {
-            () if !is_finite => Some(InstanceError::NotFinite { instance: number }),
-            () if !(determinant.abs() > 0.0 && rounded.inverse().is_finite()) => {
-                Some(InstanceError::Flat { instance: number })
-            }
-            () => None,
+    fn check_rounded(&self, number: usize) -> Result<(), InstanceError> {
+        let (rounded, bounds) = (self.rounded(number).placement, self.bounds(number));
+        if !(rounded.is_finite() && (bounds.is_empty() || bounds.min.is_finite() && bounds.max.is_finite())) {
+            return Err(InstanceError::NotFinite { instance: number });
         }
+        let determinant = rounded.matrix3.determinant();
+        if determinant == 0.0 || !rounded.inverse().is_finite() {
+            return Err(InstanceError::Flat { instance: number });
+        }
+        Ok(())
     }
 
     fn rounded(&self, number: usize) -> Instance {

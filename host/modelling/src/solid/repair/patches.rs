@@ -27,7 +27,7 @@ pub(super) struct ClosingPatch {
 /// How patches are made, the better ones first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Method {
-    /// As the loops wind, seen along the axis that is nearest to their normal.
+    /// Triangles that wind as the loops do, seen along the axis that is nearest to their normal.
     Projected,
     /// Of least area, through the points of one loop.
     LeastArea,
