@@ -285,10 +285,11 @@ impl Production {
 /// # Errors
 /// [`ProductionError`]; more polygons than the machine renders are one.
 pub fn tiling(scene: &Scene, threads: Option<NonZeroUsize>, watch: &Watch<'_>) -> Result<Tiling, ProductionError> {
-    let mut prepared = Prepared::new(scene)?;
+    let mut scene = scene.clone();
     // Surfaces out of view send light, too, and come into view; near ones, too.
-    prepared.settings.light.interreflection = Interreflection::Solved;
-    prepared.settings.radiosity.pixels = 0.0;
+    scene.settings.light.interreflection = Interreflection::Solved;
+    scene.settings.radiosity.pixels = 0.0;
+    let prepared = Prepared::new(&scene)?;
     let plan = Plan::new(&prepared, &prepared.view());
     let workers = Workers::new(threads).map_err(RenderError::from)?;
     let tiling = workers.install(|| {

@@ -239,10 +239,13 @@ pub(super) fn nesting_of(object: &Object) -> u32 {
     }
 }
 
-/// Refuses lines, which bound nothing.
+/// Refuses lines, which bound nothing, and instances, which are many.
 pub(super) fn check_bounding(object: &Object) -> Result<(), String> {
     match object.shape {
         Shape::Curve(_) => Err(format!("{} is a curve and bounds nothing", object.name)),
+        Shape::Instances(_) => {
+            Err(format!("{} is made of instances; combine solids before they are placed", object.name))
+        }
         _ => Ok(()),
     }
 }

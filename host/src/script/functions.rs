@@ -1,7 +1,10 @@
 //! The tables of all functions.
 
 use super::function::Function;
-use super::{daylight, lighting, materials, shaping, showing, solids, stored, subdividing, surfaces, table, texturing};
+use super::{
+    daylight, instancing, lighting, materials, shaping, showing, solids, stored, subdividing, surfaces, table,
+    texturing,
+};
 
 /// Every function that a script may call: those that make and combine objects, then the others.
 pub fn functions() -> impl Iterator<Item = &'static Function> {
@@ -10,6 +13,7 @@ pub fn functions() -> impl Iterator<Item = &'static Function> {
         shaping::FUNCTIONS,
         surfaces::FUNCTIONS,
         subdividing::FUNCTIONS,
+        instancing::FUNCTIONS,
         materials::FUNCTIONS,
         texturing::FUNCTIONS,
         lighting::FUNCTIONS,
@@ -24,7 +28,8 @@ pub fn functions() -> impl Iterator<Item = &'static Function> {
 
 /// Whether a function gives an object its shape, rather than a place, a material or a name.
 pub(super) fn makes_shapes(function: &Function) -> bool {
-    let families = [solids::FUNCTIONS, shaping::FUNCTIONS, surfaces::FUNCTIONS, subdividing::FUNCTIONS];
+    let families =
+        [solids::FUNCTIONS, shaping::FUNCTIONS, surfaces::FUNCTIONS, subdividing::FUNCTIONS, instancing::FUNCTIONS];
     families.into_iter().flatten().any(|row| row.name == function.name)
 }
 

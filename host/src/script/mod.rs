@@ -20,6 +20,7 @@ mod shaping;
 mod sculpting;
 mod surfaces;
 mod subdividing;
+mod instancing;
 mod made_of;
 mod materials;
 mod texturing;
@@ -35,6 +36,8 @@ mod engine;
 mod shipped;
 mod loading;
 
+#[cfg(test)]
+mod instancing_tests;
 #[cfg(test)]
 mod surface_tests;
 #[cfg(test)]

@@ -100,6 +100,16 @@ pub(super) const FUNCTIONS: &[Function] = &[
         |_| pattern(Motif::Wood { turbulence, grain }, TextureMapping { solid: true, size, at, up }, vec![one, two])
     },
     function! {
+        varied(
+            one: ONE,
+            two: TWO,
+            channel: with_default(Integer(0u32, u32::MAX), 0, "patterns of different channels vary by themselves"),
+        )
+        "Makes a pattern that is the same everywhere on an instance, and lies between two paints by its variation. Give it where a reflectance is asked for."
+        "pot.material(varied([0.1, 0.3, 0.05], [0.4, 0.3, 0.05]));"
+        |_| pattern(Motif::Varied { channel }, TextureMapping { solid: true, ..TextureMapping::default() }, vec![one, two])
+    },
+    function! {
         between(
             low: required(ANY, "the number where the pattern is 0"),
             high: required(ANY, "the number where it is 1"),

@@ -47,7 +47,7 @@ pub use file::{ENDING, FileError, MAX_BYTES};
 pub use inside::Containment;
 pub use instances::{
     Instance, InstanceCosts, InstanceError, InstanceHit, InstanceOctree, InstancePath, MOST_INSTANCES, MOST_LEVELS,
-    MOST_PROTOTYPES, PlacementForm, Prototype,
+    MOST_PROTOTYPES, PlacedSurface, PlacementForm, Prototype,
 };
 pub use nearest::{Nearest, hausdorff};
 pub use points::{NearbyPoints, SortedPoints};

@@ -242,6 +242,9 @@ fn materials(scene: &Scene, source: &str) -> Result<Vec<Record>, CommandFailure>
         match &object.shape {
             Shape::Composite(composite) => composite.operands.iter().try_for_each(|o| walk(o, source, records)),
             Shape::Rounded(rounded) => walk(&rounded.object, source, records),
+            Shape::Instances(instances) => {
+                instances.prototypes.iter().flatten().try_for_each(|object| walk(object, source, records))
+            }
             _ => Ok(()),
         }
     }

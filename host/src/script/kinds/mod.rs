@@ -5,6 +5,7 @@ mod vectors;
 mod words;
 mod lists;
 mod curves;
+mod places;
 mod materials;
 
 pub(super) use curves::{CurveKind, Loops, SidesKind, Spline};
@@ -12,6 +13,7 @@ pub(super) use lists::{Contours, Indices, Numbers, Objects, PointsKind, RowsOfNu
 pub(super) use materials::{
     AmountKind, DistributionKind, DistributionValue, FunctionOfAngle, MaterialOrigin, MaterialOriginKind, Reflectance,
 };
-pub(super) use numbers::{ANY_NUMBER, Integer, Length, NumberKind, number};
+pub(super) use numbers::{ANY_NUMBER, Integer, Length, NumberKind, RangeKind, number};
+pub(super) use places::{ObjectGroups, PlaceValue, PlacesKind};
 pub(super) use vectors::{AxisKind, Factors, Lengths, NamedAxis, Powers, Vector};
 pub(super) use words::{Flag, NumberOrText, NumberOrTextValue, ObjectKind, ScalarKind, TextKind, Word};

@@ -1,12 +1,16 @@
 //! Kinds of numbers.
 
 use crate::script::parameter::{HasDefault, ParameterKind};
-use rhai::Dynamic;
+use rhai::{Array, Dynamic};
 use std::fmt::Display;
 
 /// A number within limits, the least and the greatest; infinite ones are none.
 #[derive(Clone, Copy)]
 pub(in crate::script) struct NumberKind(pub(in crate::script) f64, pub(in crate::script) f64);
+
+/// Two numbers within limits, the first not above the second; one number stands for both.
+#[derive(Clone, Copy)]
+pub(in crate::script) struct RangeKind(pub(in crate::script) f64, pub(in crate::script) f64);
 
 /// A length above 0.
 #[derive(Clone, Copy)]
@@ -32,6 +36,25 @@ impl ParameterKind for NumberKind {
 
     fn read(&self, value: &Dynamic) -> Option<f64> {
         number(value).filter(|x| (self.0..=self.1).contains(x))
+    }
+}
+
+impl ParameterKind for RangeKind {
+    type Value = [f64; 2];
+
+    fn words(&self) -> String {
+        format!("{}, or two [least, most]", NumberKind(self.0, self.1).words())
+    }
+
+    fn read(&self, value: &Dynamic) -> Option<[f64; 2]> {
+        let kind = NumberKind(self.0, self.1);
+        if let Some(both) = kind.read(value) {
+            return Some([both; 2]);
+        }
+        match value.read_lock::<Array>()?.as_slice() {
+            [least, most] => Some([kind.read(least)?, kind.read(most)?]).filter(|[least, most]| least <= most),
+            _ => None,
+        }
     }
 }
 
@@ -69,6 +92,18 @@ impl HasDefault for NumberKind {
 
     fn shown(&self, default: f64) -> String {
         shown(default)
+    }
+}
+
+impl HasDefault for RangeKind {
+    type Default = [f64; 2];
+
+    fn of_default(&self, default: [f64; 2]) -> [f64; 2] {
+        default
+    }
+
+    fn shown(&self, [least, most]: [f64; 2]) -> String {
+        if least == most { shown(least) } else { format!("[{}, {}]", shown(least), shown(most)) }
     }
 }
 

@@ -4,7 +4,7 @@ use crate::picture::Picture;
 use crate::plan::{Plan, Stage};
 use crate::render::two_way::greatest_gather_radius;
 use crate::render::{Memo, PreparedRenderer, RENDERERS, RenderOrder, Task, Technique, Watch};
-use crate::scene::{Caustics, Prepared, Scene, Settings};
+use crate::scene::{Caustics, GeometrySettings, Prepared, Scene, Settings};
 use crate::study::options::resized;
 use crate::study::{Options, StudyError};
 use serde::{Deserialize, Serialize};
@@ -98,9 +98,7 @@ impl StudiedScene {
         if settings.light.caustics == Caustics::PhotonMapped {
             settings.light.caustics = Caustics::LeftOut;
         }
-        if technique.row().always_maps_photons {
-            (technique.row().require)(&mut settings);
-        }
+        (technique.row().require)(&mut settings);
         settings.photons.radius =
             Some(settings.photons.radius.unwrap_or_else(|| greatest_gather_radius(&self.prepared)));
         Setup { technique, settings, target: None, denoise: false, own_tolerances: true }
@@ -111,9 +109,10 @@ impl StudiedScene {
         if technique.row().adds_samples {
             return Ok(Vec::new());
         }
-        let view = self.prepared.view();
-        let plan = Plan::new(&self.prepared, &view);
-        Ok(technique.prepare(&Task::new(&self.prepared, &plan))?.renderer.any().left_out(&view))
+        let prepared = self.prepared_for(&self.own(technique))?;
+        let view = prepared.view();
+        let plan = Plan::new(&prepared, &view);
+        Ok(technique.prepare(&Task::new(&prepared, &plan))?.renderer.any().left_out(&view))
     }
 
     /// Renders the two halves of a reference, which know nothing of one another: by other seeds, and scan line, which
@@ -216,7 +215,7 @@ impl StudiedScene {
     fn prepared_for(&self, setup: &Setup) -> Result<Prepared, StudyError> {
         let Setup { settings, own_tolerances, .. } = *setup;
         let own = self.settings();
-        let modelled = |s: &Settings| s.geometry;
+        let modelled = |s: &Settings| GeometrySettings { copies_instances: s.copies_instances(), ..s.geometry };
         if own_tolerances && modelled(&settings) == modelled(own) {
             let mut prepared = self.prepared.clone();
             prepared.settings = settings;

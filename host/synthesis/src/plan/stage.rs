@@ -72,7 +72,7 @@ impl<'a> Facts<'a> {
     }
 
     fn included(&self) -> impl Iterator<Item = &crate::scene::PreparedObject> {
-        self.prepared.objects.iter().zip(&self.included).filter(|(o, kept)| **kept && o.count > 0).map(|(o, _)| o)
+        self.prepared.objects.iter().zip(&self.included).filter(|(o, kept)| **kept && !o.is_empty()).map(|(o, _)| o)
     }
 
     pub(super) fn is_bright(&self, light: usize) -> bool {

@@ -4,7 +4,7 @@ use super::decision::Decision;
 use super::stage::Facts;
 use crate::illumination::light::LightOrigin;
 use crate::numeric::bounds::Bounds;
-use crate::scene::{Prepared, View};
+use crate::scene::{Prepared, PreparedObject, View};
 use glam::DVec3;
 
 /// Decides for each object whether it can influence one of the pictures.
@@ -14,14 +14,17 @@ pub(super) fn objects(prepared: &Prepared, views: &[View], facts: &Facts<'_>) ->
     };
     let window = View::window(prepared.settings.image.width, prepared.settings.image.height);
     let is_seen = |bounds: &Bounds| projections.iter().any(|seen| !bounds.is_outside(&seen.to_clip, window));
-    let visible: Vec<bool> = prepared.objects.iter().map(|o| o.count > 0 && is_seen(&o.bounds)).collect();
+    let stands = |o: &PreparedObject| !o.is_empty() && o.placed_by.is_none();
+    let visible: Vec<bool> = prepared.objects.iter().map(|o| stands(o) && is_seen(&o.bounds)).collect();
     let seen = prepared.objects.iter().zip(&visible).filter(|(_, v)| **v);
     let seen = seen.fold(Bounds::EMPTY, |b, (o, _)| b.union(o.bounds));
     let mirrors = facts.reflection().needed;
     let shadows = facts.shadows().needed;
-    let decide = |(object, visible): (&crate::scene::PreparedObject, &bool)| {
-        if object.count == 0 {
+    let decide = |(object, visible): (&PreparedObject, &bool)| {
+        if object.is_empty() {
             Decision::new(false, "it has no triangles")
+        } else if *visible && object.instances > 0 {
+            Decision::new(true, format!("in view, {} instances", object.instances))
         } else if *visible {
             Decision::new(true, format!("in view, {} triangles", object.count))
         } else if seen.is_empty() {
@@ -36,7 +39,16 @@ pub(super) fn objects(prepared: &Prepared, views: &[View], facts: &Facts<'_>) ->
             Decision::new(false, "out of view, and neither its mirror image nor its shadow can be seen")
         }
     };
-    prepared.objects.iter().zip(&visible).map(decide).collect()
+    let standing: Vec<Decision> = prepared.objects.iter().zip(&visible).map(decide).collect();
+    let decided = |(object, own): (&PreparedObject, &Decision)| match object.placed_by {
+        Some(placing) if standing[placing as usize].needed => {
+            let (name, triangles) = (&prepared.objects[placing as usize].name, object.count);
+            Decision::new(true, format!("placed by {name}, {triangles} triangles"))
+        }
+        Some(placing) => Decision::new(false, format!("placed by {}", prepared.objects[placing as usize].name)),
+        None => own.clone(),
+    };
+    prepared.objects.iter().zip(&standing).map(decided).collect()
 }
 
 /// Whether a box may stand between any bright light and a point of `seen`; errs towards yes.

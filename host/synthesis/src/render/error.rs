@@ -2,15 +2,15 @@
 
 use crate::illumination::material::MaterialError;
 use crate::memory::MemoryExceeded;
-use crate::octree::OctreeError;
 use crate::picture::PictureError;
+use crate::scene::AccelerationError;
 
 /// A reason for which there is no picture.
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
     /// The octree cannot be built.
     #[error("octree: {0}")]
-    Octree(#[from] OctreeError),
+    Octree(#[from] AccelerationError),
     /// The picture cannot be made.
     #[error(transparent)]
     Picture(#[from] PictureError),
@@ -21,6 +21,12 @@ pub enum RenderError {
         object: String,
         /// The fault of the material.
         source: MaterialError,
+    },
+    /// Instances are placed that were to be copied.
+    #[error("{object}: instances must be copied for this renderer, and the scene was prepared with them placed")]
+    PlacedInstances {
+        /// The object that has them.
+        object: String,
     },
     /// The view flattens space to a line or a point, or is not finite.
     #[error("the view has no directions for the pixels: its matrix is singular or not finite")]

@@ -25,6 +25,8 @@ mod renderers;
 #[cfg(test)]
 mod extreme_tests;
 #[cfg(test)]
+mod instance_tests;
+#[cfg(test)]
 mod lamp_tests;
 
 pub use error::{RadiosityError, RenderError};

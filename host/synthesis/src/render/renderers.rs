@@ -93,7 +93,7 @@ pub const RENDERERS: [RendererRow; 4] = [
         always_maps_photons: false,
         solves_radiosity: false,
         is_studied: true,
-        require: |_| (),
+        require: |settings| settings.geometry.copies_instances = true,
         prepare: |task| {
             let scan_line = ScanLine::new(task.prepared, task.plan)?;
             Ok(PreparedRenderer { renderer: AnyRenderer::Whole(Box::new(scan_line)), radiosity: None })
@@ -110,7 +110,10 @@ pub const RENDERERS: [RendererRow; 4] = [
         solves_radiosity: true,
         is_studied: false,
         // Diffuse surfaces show what is solved for: no path goes on from them.
-        require: |settings| settings.light.interreflection = Interreflection::Solved,
+        require: |settings| {
+            settings.light.interreflection = Interreflection::Solved;
+            settings.geometry.copies_instances = true;
+        },
         prepare: |task| {
             let world = World::new(task.prepared, task.plan)?;
             let solution = Radiosity::new(&world, task.plan, &task.prepared.settings.radiosity, None, &task.watch)?;

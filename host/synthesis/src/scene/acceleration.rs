@@ -1,19 +1,24 @@
-//! Octrees over a prepared scene: one over the static objects, one for each motion.
+//! Octrees over a prepared scene: one over the static objects, one for each motion, and the same of instances.
 
 use super::Motion;
-use crate::octree::Octree;
+use crate::octree::{InstanceOctree, Octree, Prototype};
+use glam::DAffine3;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 /// The octrees that rays go through. They know triangles of the scene, no renderer and no settings.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Acceleration {
     /// Over the static objects; none if there are none.
     pub still: Option<SceneOctree>,
     /// Over the objects that move while the shutter is open, where they are in the middle of that time; one for each
     /// motion.
     pub moving: Vec<(Motion, SceneOctree)>,
+    /// Over the instances that stand still; none if there are none. Hits name triangles of the scene.
+    pub placed: Option<InstanceOctree>,
+    /// Over the instances of objects that move, as for those that have triangles.
+    pub placed_moving: Vec<(Motion, InstanceOctree)>,
     /// How long it took to build them.
     pub build: Duration,
 }
@@ -25,6 +30,17 @@ pub struct SceneOctree {
     pub octree: Octree,
     /// The triangle of the scene behind each of its triangles; empty if it holds the whole scene.
     pub(super) triangle_of: Vec<u32>,
+}
+
+/// The instances of an object.
+#[derive(Clone, Debug)]
+pub(super) struct PlacedInstances {
+    /// The object.
+    pub object: u32,
+    /// The instances, in coordinates of the object.
+    pub prototype: Prototype,
+    /// From these to scene coordinates.
+    pub transform: DAffine3,
 }
 
 /// The objects of a scene that octrees are built over.

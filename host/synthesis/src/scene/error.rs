@@ -2,7 +2,9 @@
 
 use super::sculpture::SculptureError;
 use crate::database::DatabaseError;
+use crate::memory::MemoryExceeded;
 use crate::mesh::{MeshError, NoBunny};
+use crate::octree::{InstanceError, OctreeError};
 use crate::solid::{PrimitiveError, RoundingError, SolidError};
 use crate::subdivision::SubdivisionError;
 use crate::surface::TessellationError;
@@ -99,6 +101,9 @@ pub enum ShapeError {
         /// What is wrong with the solid.
         source: SolidError,
     },
+    /// There is no memory for all triangles.
+    #[error(transparent)]
+    Memory(#[from] MemoryExceeded),
     /// Its edges cannot be rounded.
     #[error("{object} cannot be rounded: {source}")]
     Rounding {
@@ -107,4 +112,15 @@ pub enum ShapeError {
         /// What keeps the edges from being rounded.
         source: RoundingError,
     },
+}
+
+/// A reason for which rays have no octree to go through.
+#[derive(Debug, thiserror::Error)]
+pub enum AccelerationError {
+    /// There are too many triangles.
+    #[error(transparent)]
+    Octree(#[from] OctreeError),
+    /// Instances cannot be placed.
+    #[error(transparent)]
+    Instances(#[from] InstanceError),
 }

@@ -19,6 +19,8 @@ mod composite;
 mod object_intersection;
 mod shape;
 mod parameters;
+mod scatter;
+mod instances;
 mod exact;
 mod acceleration;
 mod shared;
@@ -27,6 +29,7 @@ mod prepared;
 mod texture_footprint;
 mod piercing;
 mod octrees;
+mod placing;
 mod triangles;
 mod soft_box;
 mod default_light;
@@ -34,9 +37,11 @@ mod studio;
 
 pub use acceleration::{Acceleration, AccelerationKey, SceneOctree};
 pub use cage::{Cage, Sharp, Sharpening};
-pub use error::{SceneError, ShapeError};
+pub use error::{AccelerationError, SceneError, ShapeError};
 pub use motion::{Displacement, Motion};
-pub use object::{Composite, MAX_NESTING, Object, Operation, RoundedSolid, Shape};
+pub use object::{
+    Composite, Instances, MAX_NESTING, Object, Operation, PlacementList, Placing, RoundedSolid, Scatter, Shape,
+};
 pub use object_intersection::{ObjectIntersection, object_intersections};
 pub use origins::{ScriptPosition, ShapeOrigins};
 pub use piercing::SurfacePoint;

@@ -4,9 +4,13 @@ use super::cage::Cage;
 use super::sculpture::Sculpture;
 use super::solid::PrimitiveSolid;
 use crate::illumination::Material;
+use crate::illumination::texture::NumberTexture;
+use crate::octree::Instance;
 use crate::solid::Primitive;
 use glam::{DMat4, DVec3};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+use std::fmt;
 use std::path::PathBuf;
 
 /// One object: a shape, placed, of a material.
@@ -72,6 +76,8 @@ pub enum Shape {
     Curve(Box<[Object; 2]>),
     /// A solid with rounded edges.
     Rounded(Box<RoundedSolid>),
+    /// Objects that are placed many times.
+    Instances(Box<Instances>),
 }
 
 /// A solid of flat faces, edges of which are rounded.
@@ -83,6 +89,72 @@ pub struct RoundedSolid {
     pub edges: Vec<DVec3>,
     /// Radius of a ball that touches the faces where the rounding begins.
     pub radius: f64,
+}
+
+/// Objects that are placed many times, as one object.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Instances {
+    /// What is placed: groups of objects, each in coordinates of its own. Objects of a group may be instances again.
+    pub prototypes: Vec<Vec<Object>>,
+    /// Where.
+    pub placing: Placing,
+}
+
+/// Where instances are.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Placing {
+    /// At places that are told one by one, by any affine maps.
+    Listed(PlacementList),
+    /// By chance, on a surface.
+    Scattered(Box<Scatter>),
+}
+
+/// Instances by chance on the surface of an object: as many in each part of its area.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Scatter {
+    /// The object, in coordinates of the instances.
+    pub on: Object,
+    /// How many instances; there are fewer where these do not find room.
+    pub count: usize,
+    /// Of each two instances the least distance, 0 and more.
+    pub distance: f64,
+    /// The part of the instances that stay, 0 to 1, by place.
+    pub density: NumberTexture,
+    /// The least and the greatest angle between the surface and a level one, degrees.
+    pub slope: [f64; 2],
+    /// The least and the greatest y.
+    pub height: [f64; 2],
+    /// The least and the greatest scale, above 0.
+    pub scale: [f64; 2],
+    /// Within which angle they are turned about their axis, degrees; 360 is every way.
+    pub turn: f64,
+    /// How far their axis leans at the most, degrees, below 90.
+    pub lean: f64,
+    /// Where their axis, that is y of a prototype, points: 0 along the normal of the surface, 1 up.
+    pub upright: f64,
+    /// How deep their origin is below the surface, along their axis, units of the instances.
+    pub sink: f64,
+    /// How often there is each of the prototypes, in the same unit.
+    pub shares: Vec<f64>,
+    /// Seed of all random numbers.
+    pub seed: u64,
+}
+
+/// Placements one by one. As text, only their number is shown and a checksum: there may be millions.
+#[derive(Clone, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct PlacementList(pub Vec<Instance>);
+
+impl fmt::Debug for PlacementList {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut sum = crc32fast::Hasher::new();
+        for Instance { prototype, variation, placement } in &self.0 {
+            sum.update(bytemuck::bytes_of(&[*prototype, *variation]));
+            sum.update(bytemuck::cast_slice(&placement.to_cols_array()));
+        }
+        write!(f, "{} placements, {:08x}", self.0.len(), sum.finalize())
+    }
 }
 
 /// Deepest nesting of composites.
@@ -147,6 +219,7 @@ impl Shape {
             Shape::Composite(composite) => composite.operation.word(),
             Shape::Curve(_) => "curve",
             Shape::Rounded(rounded) => rounded.object.shape.word(),
+            Shape::Instances(_) => "instances",
         }
     }
 }
@@ -158,9 +231,6 @@ impl Object {
     /// - `operand_of`: for each triangle of a composite its innermost operand, as [`ShapeMesh`](super::ShapeMesh)
     ///   tells.
     pub fn materials(&self, operand_of: &[u32]) -> (Vec<Material>, Vec<u32>) {
-        let Some((composite, whole)) = self.composite() else {
-            return (vec![self.own_material().unwrap_or_default()], Vec::new());
-        };
         let mut materials: Vec<Material> = Vec::new();
         let mut number = |material: Material| {
             materials.iter().position(|known| *known == material).unwrap_or_else(|| {
@@ -168,11 +238,32 @@ impl Object {
                 materials.len() - 1
             }) as u32
         };
-        let of_operand: Vec<u32> = composite.materials(whole).into_iter().map(&mut number).collect();
+        let of_operand: Vec<u32> = self.operand_materials().into_iter().map(&mut number).collect();
         if materials.len() < 2 {
             return (vec![materials.pop().unwrap_or_default()], Vec::new());
         }
         (materials, operand_of.iter().map(|operand| of_operand[*operand as usize]).collect())
+    }
+
+    /// The materials of its operands, and of what instances place, in the order in which triangles name them; that of
+    /// the object, if it has no such parts.
+    pub(super) fn operand_materials(&self) -> Vec<Material> {
+        if let Shape::Instances(instances) = &self.shape {
+            let objects = instances.prototypes.iter().flatten();
+            return objects.flat_map(|object| object.within(&self.material).operand_materials()).collect();
+        }
+        match self.composite() {
+            Some((composite, whole)) => composite.materials(whole),
+            None => vec![self.own_material().unwrap_or_default()],
+        }
+    }
+
+    /// It, with the material of the whole that it is part of if it has none.
+    pub(super) fn within(&self, whole: &Option<Material>) -> Cow<'_, Object> {
+        match (self.own_material(), whole) {
+            (None, Some(_)) => Cow::Owned(Object { material: whole.clone(), ..self.clone() }),
+            _ => Cow::Borrowed(self),
+        }
     }
 
     /// The composite whose operands its triangles come from, and the material of the whole.

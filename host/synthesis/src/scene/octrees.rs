@@ -1,9 +1,10 @@
 //! Octrees over the objects of a prepared scene, built when they are first asked for.
 
 use super::Motion;
-use super::acceleration::{Acceleration, AccelerationKey, SceneOctree};
-use super::prepared::Contents;
-use crate::octree::{Octree, OctreeError, OctreeSettings};
+use super::acceleration::{Acceleration, AccelerationKey, PlacedInstances, SceneOctree};
+use super::error::AccelerationError;
+use super::prepared::{Contents, PreparedObject};
+use crate::octree::{Instance, InstanceError, InstanceOctree, Octree, OctreeError, OctreeSettings, PlacementForm};
 use crate::stages::stage;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -13,15 +14,17 @@ impl Contents {
     /// a change of any setting but those of geometry builds none.
     ///
     /// # Errors
-    /// [`OctreeError`], for more triangles than an octree takes.
-    pub fn acceleration(&self, kept: AccelerationKey) -> Result<Arc<Acceleration>, OctreeError> {
+    /// [`AccelerationError`], for more than an octree takes.
+    pub fn acceleration(&self, kept: AccelerationKey) -> Result<Arc<Acceleration>, AccelerationError> {
         if let Some(acceleration) = self.octrees.get(&kept) {
             return Ok(acceleration);
         }
         let stage = stage!("building the octree");
         let still = self.still(&kept)?;
         let moving = if kept.motions { self.moving(&kept)? } else { Vec::new() };
-        let acceleration = Arc::new(Acceleration { still, moving, build: stage.elapsed() });
+        let placed = self.placed_still(&kept)?;
+        let placed_moving = if kept.motions { self.placed_moving(&kept)? } else { Vec::new() };
+        let acceleration = Arc::new(Acceleration { still, moving, placed, placed_moving, build: stage.elapsed() });
         self.octrees.store(kept, &acceleration);
         Ok(acceleration)
     }
@@ -33,7 +36,10 @@ impl Contents {
 
     /// The octree over the static objects that are included; none if they have no triangles.
     fn still(&self, kept: &AccelerationKey) -> Result<Option<SceneOctree>, OctreeError> {
-        let stands = |object: usize| kept.objects[object] && !(kept.motions && self.objects[object].motion.is_some());
+        let stands = |object: usize| {
+            let PreparedObject { motion, placed_by, .. } = &self.objects[object];
+            kept.objects[object] && placed_by.is_none() && !(kept.motions && motion.is_some())
+        };
         let (triangles, triangle_of) = match (0..self.objects.len()).all(stands) {
             true => (self.triangles.clone(), Vec::new()),
             false => {
@@ -61,22 +67,61 @@ impl Contents {
             }
         }
         let made = |(motion, triangle_of): (Motion, Vec<u32>)| {
-            // Only the vertices that it has: there may be many motions.
-            let mut vertices = Vec::new();
-            let mut numbers = HashMap::new();
-            let mut number = |vertex: u32| {
-                *numbers.entry(vertex).or_insert_with(|| {
-                    vertices.push(self.vertices[vertex as usize]);
-                    vertices.len() as u32 - 1
-                })
-            };
-            let triangles: Vec<[u32; 3]> =
-                triangle_of.iter().map(|&t| self.triangles[t as usize].map(&mut number)).collect();
-            let octree = Octree::sharing(Arc::new(vertices), Arc::new(triangles), &OctreeSettings::default())?;
+            let octree = self.octree_over(triangle_of.iter().copied())?;
             Ok((motion, SceneOctree { octree, triangle_of }))
         };
         groups.into_iter().map(made).collect()
     }
+
+    /// An octree over some triangles, numbered in their order. It has the vertices of these only: there may be many.
+    ///
+    /// # Errors
+    /// [`OctreeError`], for more triangles than an octree takes.
+    pub(super) fn octree_over(&self, triangles: impl Iterator<Item = u32>) -> Result<Octree, OctreeError> {
+        let mut vertices = Vec::new();
+        let mut numbers = HashMap::new();
+        let mut number = |vertex: u32| {
+            *numbers.entry(vertex).or_insert_with(|| {
+                vertices.push(self.vertices[vertex as usize]);
+                vertices.len() as u32 - 1
+            })
+        };
+        let triangles: Vec<[u32; 3]> = triangles.map(|t| self.triangles[t as usize].map(&mut number)).collect();
+        Octree::sharing(Arc::new(vertices), Arc::new(triangles), &OctreeSettings::default())
+    }
+
+    /// The octree over the instances of objects that are included and stand still; none if there are none.
+    fn placed_still(&self, kept: &AccelerationKey) -> Result<Option<InstanceOctree>, InstanceError> {
+        let stands = |placed: &&PlacedInstances| {
+            let object = placed.object as usize;
+            kept.objects[object] && !(kept.motions && self.objects[object].motion.is_some())
+        };
+        let all: Vec<&PlacedInstances> = self.placed.iter().filter(stands).collect();
+        if all.is_empty() { Ok(None) } else { placed_together(&all).map(Some) }
+    }
+
+    /// Octrees over the instances of objects that are included and move, one for each motion.
+    fn placed_moving(&self, kept: &AccelerationKey) -> Result<Vec<(Motion, InstanceOctree)>, InstanceError> {
+        let mut groups: Vec<(Motion, Vec<&PlacedInstances>)> = Vec::new();
+        for placed in self.placed.iter().filter(|placed| kept.objects[placed.object as usize]) {
+            let Some(motion) = self.objects[placed.object as usize].motion else { continue };
+            match groups.iter_mut().find(|(other, _)| *other == motion) {
+                Some((_, of)) => of.push(placed),
+                None => groups.push((motion, vec![placed])),
+            }
+        }
+        groups.into_iter().map(|(motion, all)| Ok((motion, placed_together(&all)?))).collect()
+    }
+}
+
+/// One octree over the instances of several objects.
+fn placed_together(all: &[&PlacedInstances]) -> Result<InstanceOctree, InstanceError> {
+    let prototypes = all.iter().map(|placed| placed.prototype.clone()).collect();
+    let instance = |number: usize| {
+        let placement = all[number].transform;
+        Instance { prototype: number as u16, variation: 0, placement }
+    };
+    InstanceOctree::new(prototypes, PlacementForm::Exact, all.len(), instance)
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
 //! A scene flattened for rendering: one soup of triangles, with what each belongs to.
 
-use super::acceleration::AccelerationCache;
+use super::acceleration::{AccelerationCache, PlacedInstances};
 use super::exact::{ExactSurfaces, FLAT_SINE};
 use super::lamp_body::lamp_body;
-use super::object::{GROUND, Object};
+use super::object::{GROUND, Object, Shape};
 use super::parameters::parameters;
 use super::shape_mesh::ShapeMesh;
 use super::shared::SharedMeshes;
@@ -47,7 +47,7 @@ pub struct Contents {
     pub(super) exact: ExactSurfaces,
     /// For the triangles of objects of several materials, which of them.
     material_of: Vec<u32>,
-    /// The objects, in the order of the scene, and then the bodies of its lamps that reflect.
+    /// The objects, in the order of the scene, and then the bodies of its lamps that reflect, and what instances place.
     pub objects: Vec<PreparedObject>,
     /// The lights.
     pub lights: Vec<Light>,
@@ -61,6 +61,8 @@ pub struct Contents {
     pub camera: Camera,
     /// A box around everything.
     pub bounds: Bounds,
+    /// The instances that stand in it, each group of an object.
+    pub(super) placed: Vec<PlacedInstances>,
     /// Its octrees, as far as they were asked for.
     pub(super) octrees: AccelerationCache,
 }
@@ -82,6 +84,12 @@ pub struct PreparedObject {
     pub bounds: Bounds,
     /// The light whose body it is, an index into the lights of the scene; none of an object of the scene.
     pub light: Option<u32>,
+    /// The object whose instances place it, an index into the objects; it and its box are in coordinates of its own then.
+    pub placed_by: Option<u32>,
+    /// How many instances it has, each of which may place more; 0 for other objects.
+    pub instances: usize,
+    /// The variation of a copy that stands for an instance; 0 for others.
+    pub variation: u16,
     /// How it moves while the shutter is open; its triangles are where it is in the middle of that time.
     pub motion: Option<Motion>,
     /// Where its corner normals begin; none for an object with flat faces.
@@ -99,6 +107,11 @@ pub struct PreparedObject {
 }
 
 impl PreparedObject {
+    /// Whether it has neither triangles nor instances.
+    pub fn is_empty(&self) -> bool {
+        self.count == 0 && self.instances == 0
+    }
+
     /// Whether it has normals other than those of its faces.
     pub fn is_curved(&self) -> bool {
         self.normals_from.is_some()
@@ -148,6 +161,7 @@ impl Contents {
             background: scene.background,
             camera: Camera::framing(&Bounds::EMPTY),
             bounds: Bounds::EMPTY,
+            placed: Vec::new(),
             octrees: AccelerationCache::default(),
         };
         let mut shared = SharedMeshes::of(scene);
@@ -157,14 +171,19 @@ impl Contents {
         };
         for (object, index) in scene.objects.iter().zip(0u32..) {
             let made = shared.mesh_of(scene, index)?;
-            contents.add(object, &made, motions.get(&index).copied(), &scene.settings.geometry)?;
+            contents.add_standing(object, &made, motions.get(&index).copied(), &scene.settings.geometry)?;
         }
         for (light, number) in scene.lights.iter().zip(0u32..) {
             let Some((patch, material)) = light.body() else { continue };
             let (body, made) = lamp_body(patch, material, number, &scene.settings.geometry)?;
-            contents.add(&body, &made, None, &scene.settings.geometry)?;
+            contents.add_standing(&body, &made, None, &scene.settings.geometry)?;
             if let Some(body) = contents.objects.last_mut() {
                 (body.shape, body.light) = ("light", Some(number));
+            }
+        }
+        for (object, index) in scene.objects.iter().zip(0u32..) {
+            if let Shape::Instances(instances) = &object.shape {
+                contents.add_instances(index, object, instances, &scene.settings)?;
             }
         }
         contents.camera = scene.camera.unwrap_or_else(|| Camera::framing(&contents.subject()));
@@ -173,18 +192,34 @@ impl Contents {
 
     /// A box around what is looked at: all objects that are no grounds and no lamps, or everything if there are only these.
     pub fn subject(&self) -> Bounds {
-        let is_meant = |object: &&PreparedObject| object.shape != GROUND && object.light.is_none();
+        let is_meant =
+            |object: &&PreparedObject| object.shape != GROUND && object.light.is_none() && object.placed_by.is_none();
         let all = self.objects.iter().filter(is_meant).filter(|object| !object.bounds.is_empty());
         all.map(|object| object.bounds).reduce(Bounds::union).unwrap_or(self.bounds)
     }
 
-    fn add(
+    /// Adds an object that stands in the scene as the last one.
+    pub(super) fn add_standing(
         &mut self,
         object: &Object,
         shape_mesh: &ShapeMesh,
         motion: Option<Motion>,
         settings: &GeometrySettings,
-    ) -> Result<(), SceneError> {
+    ) -> Result<&mut PreparedObject, SceneError> {
+        let bounds = self.add(object, shape_mesh, motion, settings)?.bounds;
+        self.bounds = self.bounds.union(bounds);
+        let last = self.objects.len() - 1;
+        Ok(&mut self.objects[last])
+    }
+
+    /// Adds an object as the last one; the box around everything stays.
+    pub(super) fn add(
+        &mut self,
+        object: &Object,
+        shape_mesh: &ShapeMesh,
+        motion: Option<Motion>,
+        settings: &GeometrySettings,
+    ) -> Result<&mut PreparedObject, SceneError> {
         let failed = |problem: String| SceneError::Object { object: object.name.clone(), problem };
         let ShapeMesh { mesh, surfaces, operand_of, lines } = shape_mesh;
         if self.triangles.len() as u64 + mesh.triangles.len() as u64 > MAX_TRIANGLES {
@@ -224,7 +259,6 @@ impl Contents {
         if motion.is_some() && materials.iter().any(|material| !material.emission.is_black()) {
             return Err(failed("it emits light, and what emits light cannot move".into()));
         }
-        self.bounds = self.bounds.union(bounds);
         self.objects.push(PreparedObject {
             name: object.name.clone(),
             shape: object.shape.word(),
@@ -233,6 +267,9 @@ impl Contents {
             count: mesh.triangles.len() as u32,
             bounds,
             light: None,
+            placed_by: None,
+            instances: 0,
+            variation: 0,
             motion,
             normals_from,
             parameters_from,
@@ -241,7 +278,8 @@ impl Contents {
             surfaces_from,
             materials_from,
         });
-        Ok(())
+        let last = self.objects.len() - 1;
+        Ok(&mut self.objects[last])
     }
 
     /// Stores the placed corner normals if any of them departs from its face's.
@@ -313,6 +351,12 @@ impl Contents {
     pub fn parameters(&self, triangle: u32) -> Option<&[DVec2; 3]> {
         let object = self.object(triangle);
         object.parameters_from.map(|from| &self.parameters[(from + triangle - object.first) as usize])
+    }
+
+    /// An object whose instances are placed, if there is one: renderers that go through triangles one by one do not see
+    /// them.
+    pub fn placed(&self) -> Option<&PreparedObject> {
+        self.objects.iter().find(|object| object.instances > 0)
     }
 
     /// The view of the scene's own camera.

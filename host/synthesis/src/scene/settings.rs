@@ -13,7 +13,8 @@ pub const MAX_PHOTONS: u32 = 16_000_000;
 /// Deepest chain of reflections.
 pub const MAX_REFLECTION_DEPTH: u32 = 1_000;
 
-/// How a scene is rendered. Only `geometry` decides what a scene becomes when it is prepared.
+/// How a scene is rendered. Only `geometry` and [`Settings::copies_instances`] decide what a scene becomes when it is
+/// prepared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
@@ -59,6 +60,8 @@ pub struct GeometrySettings {
     pub exact_surfaces: bool,
     /// How long the shutter is open, in the unit of time of motions.
     pub shutter: f64,
+    /// Whether instances become objects of their own, for renderers that go through triangles one by one.
+    pub copies_instances: bool,
 }
 
 /// What of light counts, and how closely it is looked at.
@@ -170,6 +173,13 @@ impl Settings {
         Settings { image, ..Settings::default() }
     }
 
+    /// Whether a scene is prepared with its instances as objects of their own: also where light is solved for or stored
+    /// by triangles.
+    pub fn copies_instances(&self) -> bool {
+        let by_triangles = self.light.interreflection == Interreflection::Solved;
+        self.geometry.copies_instances || by_triangles || self.light.caustics == Caustics::PhotonMapped
+    }
+
     /// Checks every number.
     ///
     /// # Errors
@@ -200,7 +210,7 @@ impl ImageSettings {
 impl GeometrySettings {
     /// What holds without a word.
     pub const DEFAULT: GeometrySettings =
-        GeometrySettings { tolerance: None, angle: 45.0, exact_surfaces: true, shutter: 1.0 };
+        GeometrySettings { tolerance: None, angle: 45.0, exact_surfaces: true, shutter: 1.0, copies_instances: false };
 
     fn check(&self) -> Result<(), String> {
         if !(self.angle > 0.0 && self.angle <= 180.0) {

@@ -24,8 +24,11 @@ const MEASURED_STEPS: usize = 6;
 const TEAPOT_DIAGONAL: f64 = 8.28;
 
 impl Shape {
-    /// Checks the measures; the problem in words.
-    pub(super) fn check(&self) -> Result<(), String> {
+    /// Checks the measures.
+    ///
+    /// # Errors
+    /// The problem in words.
+    pub fn check(&self) -> Result<(), String> {
         match self {
             // What sculptured surfaces are made of was checked; whether they can be tessellated is seen then.
             Shape::Teapot | Shape::Mesh { .. } | Shape::Stored { .. } | Shape::Sculpture(_) => Ok(()),
@@ -45,6 +48,7 @@ impl Shape {
             }
             Shape::Curve(objects) => objects.iter().try_for_each(|o| o.check(false).map_err(|error| error.to_string())),
             Shape::Rounded(rounded) => rounded.object.check(false).map_err(|error| error.to_string()),
+            Shape::Instances(instances) => instances.check(),
         }
     }
 
@@ -52,7 +56,7 @@ impl Shape {
     pub fn is_exact_and_curved(&self) -> bool {
         match self {
             Shape::Composite(composite) => composite.operands.iter().any(|o| o.shape.is_exact_and_curved()),
-            Shape::Curve(_) | Shape::Rounded(_) => false,
+            Shape::Curve(_) | Shape::Rounded(_) | Shape::Instances(_) => false,
             _ => self.extent().is_some(),
         }
     }
@@ -91,7 +95,7 @@ impl Shape {
                 rounded.object.extent().or_else(|| Some(extent()? * largest_stretch(&rounded.object.transform)))
             }
             Shape::HalfSpace { .. } | Shape::Ground { .. } | Shape::Bunny => None,
-            Shape::Mesh { .. } | Shape::Stored { .. } => None,
+            Shape::Mesh { .. } | Shape::Stored { .. } | Shape::Instances(_) => None,
         }
     }
 
@@ -121,6 +125,7 @@ impl Shape {
                 Ok(ShapeMesh { lines, ..ShapeMesh::default() })
             }
             Shape::Rounded(rounded) => rounded.tessellate(tolerance),
+            Shape::Instances(instances) => instances.tessellate(tolerance),
             Shape::Bunny => Ok(ShapeMesh { mesh: mesh::bunny()?, ..ShapeMesh::default() }),
             Shape::Mesh { path } => Ok(ShapeMesh { mesh: mesh_of(path)?, ..ShapeMesh::default() }),
             Shape::Stored { database, name } => {

@@ -2,6 +2,7 @@
 
 use crate::mesh::{Mesh, Polylines};
 use crate::surface::Surface;
+use glam::DVec3;
 use std::sync::Arc;
 
 /// Triangles of a shape, and what they belong to.
@@ -16,4 +17,9 @@ pub struct ShapeMesh {
     pub operand_of: Vec<u32>,
     /// Lines, in own coordinates.
     pub lines: Polylines,
+}
+
+/// Corner normals of flat faces; none of length for a triangle without area.
+pub(super) fn flat_normals(mesh: &Mesh) -> Vec<[DVec3; 3]> {
+    (0..mesh.triangles.len()).map(|triangle| [mesh.face_normal(triangle).unwrap_or(DVec3::ZERO); 3]).collect()
 }

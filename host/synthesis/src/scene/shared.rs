@@ -1,7 +1,7 @@
 //! Shapes that several objects have: their triangles are made once.
 
 use super::shape_mesh::ShapeMesh;
-use super::{Scene, SceneError};
+use super::{Scene, SceneError, Shape};
 use crate::memory;
 use crate::numeric::debug_hash;
 use rustc_hash::FxHashMap;
@@ -61,6 +61,8 @@ impl SharedMeshes {
         let needed = &mut self.needed[first as usize];
         let made = match self.meshes.get(&first) {
             Some(made) => Rc::clone(made),
+            // They are placed when all other objects are there.
+            None if matches!(object.shape, Shape::Instances(_)) => Rc::default(),
             None => {
                 let made = object.tessellate(scene.settings.geometry.tolerance, scene.settings.geometry.angle)?;
                 let (count, triangles) = (u64::from(*needed), made.mesh.triangles.len() as u64);

@@ -29,7 +29,8 @@ impl Contents {
     /// - `weights`: of the corners of the triangle. `sides`: tangents, scene units.
     pub fn texture_place(&self, triangle: u32, weights: [f64; 3], sides: Footprint) -> TextureFootprint {
         let [p, q, r] = self.corners(triangle);
-        let to_own = &self.object(triangle).to_own;
+        let object = self.object(triangle);
+        let to_own = &object.to_own;
         let own = to_own.transform_point3(p * weights[0] + q * weights[1] + r * weights[2]);
         let (b, c) = (q - p, r - p);
         // Tangents in coordinates along two sides of the triangle: the dual basis.
@@ -51,7 +52,7 @@ impl Contents {
         } else {
             [DVec3::ZERO; 2]
         };
-        TextureFootprint { uv, own, sides: sides.map(side), along }
+        TextureFootprint { uv, own, sides: sides.map(side), along, variation: object.variation }
     }
 }
 

@@ -35,8 +35,15 @@ impl Object {
     }
 
     /// In own coordinates; a flat shape fits any.
-    fn own_tolerance(&self, scene_tolerance: Option<f64>, angle: f64) -> Tolerance {
-        Tolerance::new(self.own_chord(scene_tolerance).unwrap_or(f64::MAX), angle)
+    pub(super) fn own_tolerance(&self, scene_tolerance: Option<f64>, angle: f64) -> Tolerance {
+        let chord = match self.shape {
+            // Each of the objects that are placed may have one of its own.
+            Shape::Instances(_) => {
+                self.tolerance.or(scene_tolerance).map(|given| given / largest_stretch(&self.transform))
+            }
+            _ => self.own_chord(scene_tolerance),
+        };
+        Tolerance::new(chord.unwrap_or(f64::MAX), angle)
     }
 
     /// Largest distance between the exact surface and the triangles as they are written, scene units; an upper bound for skewed

@@ -1,9 +1,10 @@
 //! A scene as one mesh, of which every triangle knows its object and its surface.
 
+use super::shape_mesh::flat_normals;
 use super::{MAX_OBJECTS, Object, Scene, SceneError, Shape, ShapeMesh};
 use crate::illumination::Material;
 use crate::illumination::material::{MaterialKind, MaterialPreview};
-use crate::mesh::{Grouped, Mesh, MetallicRoughness};
+use crate::mesh::{Grouped, MetallicRoughness};
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
@@ -56,8 +57,10 @@ impl Scene {
     pub fn within(mut self, chord: Option<f64>, angle: Option<f64>) -> Scene {
         fn release(object: &mut Object) {
             object.tolerance = None;
-            if let Shape::Composite(composite) = &mut object.shape {
-                composite.operands.iter_mut().for_each(release);
+            match &mut object.shape {
+                Shape::Composite(composite) => composite.operands.iter_mut().for_each(release),
+                Shape::Instances(instances) => instances.prototypes.iter_mut().flatten().for_each(release),
+                _ => {}
             }
         }
         if chord.is_some() {
@@ -98,10 +101,6 @@ fn metallic_roughness(material: &Material) -> MetallicRoughness {
         1.0
     };
     MetallicRoughness { base, metallic, roughness }
-}
-
-fn flat_normals(mesh: &Mesh) -> Vec<[DVec3; 3]> {
-    (0..mesh.triangles.len()).map(|triangle| [mesh.face_normal(triangle).unwrap_or(DVec3::ZERO); 3]).collect()
 }
 
 #[cfg(test)]

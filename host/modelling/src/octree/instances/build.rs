@@ -8,8 +8,8 @@ use super::super::partition::ItemGroup;
 use super::super::wide_bvh::{BvhNode, CellGroup, Child, divide_cells};
 use super::super::{LocationalCode, MAX_DEPTH, Octree};
 use super::error::{InstanceError, MOST_INSTANCES, MOST_LEVELS, MOST_PROTOTYPES};
-use super::path::InstancePath;
-use super::placement::{Instance, PlacementForm, Placements, rounded};
+use super::path::{InstancePath, PlacedSurface};
+use super::placement::{Instance, PlacementForm, Placements, longest, rounded};
 use crate::memory;
 use crate::numeric::bounds::Bounds;
 use glam::{DAffine3, DVec3};
@@ -43,15 +43,21 @@ pub struct Prototype {
 
 #[derive(Clone, Debug)]
 pub(super) enum Content {
-    Surface(Arc<Octree>),
+    /// Hits name its triangles by their numbers from `first` on.
+    Surface {
+        octree: Arc<Octree>,
+        first: u32,
+    },
     Instances(Arc<InstanceOctree>),
 }
 
 impl Prototype {
     /// A surface.
-    pub fn surface(octree: Arc<Octree>) -> Prototype {
+    ///
+    /// - `first`: the number by which hits name its first triangle, where triangles of several surfaces are told apart.
+    pub fn surface(octree: Arc<Octree>, first: u32) -> Prototype {
         let bounds = Bounds::of(octree.triangles.iter().flatten().map(|vertex| octree.vertices[*vertex as usize]));
-        Prototype::new(Content::Surface(octree), bounds, 0)
+        Prototype::new(Content::Surface { octree, first }, bounds, 0)
     }
 
     /// Instances.
@@ -170,21 +176,24 @@ impl InstanceOctree {
         self.placements.get(&self.positions, number)
     }
 
-    /// The instance at the end of a path: from coordinates of its prototype to those of this octree.
+    /// How the surface at the end of a path is placed.
     ///
     /// # Panics
     /// If the path is not of this octree.
-    pub fn innermost(&self, path: &InstancePath) -> Instance {
+    pub fn placed(&self, path: &InstancePath) -> PlacedSurface {
         let mut octree = self;
-        let mut innermost = Instance { prototype: 0, variation: 0, placement: DAffine3::IDENTITY };
+        let mut placed = PlacedSurface { placement: DAffine3::IDENTITY, variation: 0, largest: 0.0 };
         for number in path.numbers() {
-            let instance = octree.instance(*number as usize);
-            innermost = Instance { placement: innermost.placement * instance.placement, ..instance };
-            if let Content::Instances(inner) = &octree.prototypes[usize::from(instance.prototype)].content {
+            let Instance { prototype, variation, placement } = octree.instance(*number as usize);
+            let outer = placed.placement;
+            placed.largest += longest(&outer.matrix3) * placement.translation.length();
+            placed.placement = outer * placement;
+            if let Content::Instances(inner) = &octree.prototypes[usize::from(prototype)].content {
                 octree = inner;
             }
+            placed.variation = placed.variation.wrapping_add(variation);
         }
-        innermost
+        placed
     }
 
     /// What it costs.
@@ -192,6 +201,7 @@ impl InstanceOctree {
         let placements = match &self.placements {
             Placements::Similar(all) => size_of_val(all.as_slice()),
             Placements::Affine(all) => size_of_val(all.as_slice()),
+            Placements::Exact(all) => size_of_val(all.as_slice()),
         };
         InstanceCosts { instances: self.count(), bytes: placements + size_of_val(self.nodes.as_slice()) }
     }

@@ -17,5 +17,5 @@ mod tests;
 
 pub use build::{InstanceCosts, InstanceOctree, Prototype};
 pub use error::{InstanceError, MOST_INSTANCES, MOST_LEVELS, MOST_PROTOTYPES};
-pub use path::{InstanceHit, InstancePath};
+pub use path::{InstanceHit, InstancePath, PlacedSurface};
 pub use placement::{Instance, PlacementForm};

@@ -2,6 +2,7 @@
 
 use super::error::MOST_LEVELS;
 use crate::numeric::ray::Hit;
+use glam::DAffine3;
 
 /// The instances that a surface is placed by, the outermost first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -33,4 +34,16 @@ pub struct InstanceHit {
     pub hit: Hit,
     /// By which instances the surface is placed.
     pub path: InstancePath,
+}
+
+/// How a surface is placed by the instances of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlacedSurface {
+    /// From coordinates of the surface to those of the octree at the beginning of the path.
+    pub placement: DAffine3,
+    /// The sum of the variations of all instances of the path, modulo 2^16.
+    pub variation: u16,
+    /// The largest distance that placing it adds on the way, in coordinates of that octree: of this, times the precision
+    /// of numbers, points are rounded.
+    pub largest: f64,
 }

@@ -2,10 +2,11 @@
 
 use super::super::cube::Cube;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
+use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
 
 /// An instance: something that is placed, and how.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Instance {
     /// Number of what is placed, in the list of prototypes.
     pub prototype: u16,
@@ -25,6 +26,8 @@ pub enum PlacementForm {
     Similar,
     /// Any affine map, in 52 bytes: positions are rounded to 2^-32 of the cube around all, the rest to single precision.
     Affine,
+    /// Any affine map as it is, in 104 bytes: for the few that hold many.
+    Exact,
 }
 
 impl PlacementForm {
@@ -33,6 +36,7 @@ impl PlacementForm {
         match self {
             PlacementForm::Similar => size_of::<SimilarPlacement>(),
             PlacementForm::Affine => size_of::<AffinePlacement>(),
+            PlacementForm::Exact => size_of::<Instance>(),
         }
     }
 }
@@ -169,6 +173,7 @@ pub(super) struct InstanceBound {
 pub(super) enum Placements {
     Similar(Vec<SimilarPlacement>),
     Affine(Vec<AffinePlacement>),
+    Exact(Vec<Instance>),
 }
 
 impl Placements {
@@ -177,6 +182,7 @@ impl Placements {
         match form {
             PlacementForm::Similar => Placements::Similar(Vec::with_capacity(count)),
             PlacementForm::Affine => Placements::Affine(Vec::with_capacity(count)),
+            PlacementForm::Exact => Placements::Exact(Vec::with_capacity(count)),
         }
     }
 
@@ -184,6 +190,7 @@ impl Placements {
         match self {
             Placements::Similar(all) => all.push(SimilarPlacement::new(cube, instance)),
             Placements::Affine(all) => all.push(AffinePlacement::new(cube, instance)),
+            Placements::Exact(all) => all.push(*instance),
         }
     }
 
@@ -191,6 +198,7 @@ impl Placements {
         match self {
             Placements::Similar(all) => all.len(),
             Placements::Affine(all) => all.len(),
+            Placements::Exact(all) => all.len(),
         }
     }
 
@@ -200,6 +208,7 @@ impl Placements {
         match self {
             Placements::Similar(all) => all[number].instance(cube),
             Placements::Affine(all) => all[number].instance(cube),
+            Placements::Exact(all) => all[number],
         }
     }
 
@@ -215,9 +224,12 @@ impl Placements {
             Placements::Affine(all) => {
                 let AffinePlacement { columns, prototype, .. } = all[number];
                 let origin = position(cube, all[number].position);
-                // The Frobenius norm bounds the norm by which a map makes vectors longer.
-                let square: f64 = columns.iter().map(|x| f64::from(*x) * f64::from(*x)).sum();
-                InstanceBound { prototype, origin, longer: square.sqrt() }
+                let longer = longest(&DMat3::from_cols_array(&columns.map(f64::from)));
+                InstanceBound { prototype, origin, longer }
+            }
+            Placements::Exact(all) => {
+                let Instance { prototype, placement, .. } = all[number];
+                InstanceBound { prototype, origin: placement.translation, longer: longest(&placement.matrix3) }
             }
         }
     }
@@ -228,7 +240,13 @@ pub(super) fn rounded(form: PlacementForm, cube: &Cube, instance: &Instance) -> 
     match form {
         PlacementForm::Similar => SimilarPlacement::new(cube, instance).instance(cube),
         PlacementForm::Affine => AffinePlacement::new(cube, instance).instance(cube),
+        PlacementForm::Exact => *instance,
     }
+}
+
+/// No vector becomes more times as long by a map: the Frobenius norm.
+pub(super) fn longest(map: &DMat3) -> f64 {
+    (map.x_axis.length_squared() + map.y_axis.length_squared() + map.z_axis.length_squared()).sqrt()
 }
 
 #[cfg(test)]
@@ -241,8 +259,9 @@ mod tests {
     }
 
     #[test]
-    fn similar_placements_take_24_bytes_and_affine_ones_52() {
-        assert_eq!([PlacementForm::Similar.bytes(), PlacementForm::Affine.bytes()], [24, 52]);
+    fn placements_take_as_many_bytes_as_their_form_tells() {
+        let forms = [PlacementForm::Similar, PlacementForm::Affine, PlacementForm::Exact];
+        assert_eq!(forms.map(PlacementForm::bytes), [24, 52, 104]);
     }
 
     #[test]
@@ -255,7 +274,9 @@ mod tests {
             let translation = DVec3::new(random.uniform(), random.uniform(), random.uniform()) * 4000.0 - 1000.0;
             let placement = DAffine3 { matrix3: DMat3::from_quat(rotation) * scale, translation };
             let given = Instance { prototype: 3, variation: case, placement };
-            for (form, most) in [(PlacementForm::Similar, 4e-4), (PlacementForm::Affine, 1e-7)] {
+            for (form, most) in
+                [(PlacementForm::Similar, 4e-4), (PlacementForm::Affine, 1e-7), (PlacementForm::Exact, 0.0)]
+            {
                 let kept = rounded(form, &cube(), &given);
                 assert_eq!((kept.prototype, kept.variation), (3, case));
                 assert!((kept.placement.translation - translation).abs().max_element() <= 4096.0 / POSITIONS);

@@ -25,7 +25,7 @@ fn octree(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Arc<Octree> {
 
 fn surface() -> Prototype {
     let (vertices, triangles) = tetrahedron();
-    Prototype::surface(octree(&vertices, &triangles))
+    Prototype::surface(octree(&vertices, &triangles), 0)
 }
 
 /// A placement by chance: about the origin within `reach`, with scales about `size`, half of them mirrored.
@@ -63,7 +63,7 @@ fn asked(octree: &InstanceOctree, ray: &Ray, path: InstancePath) -> (Option<Inst
         let inner = Ray { origin, direction: inverse.transform_vector3(ray.direction) };
         let path = path.and(number as u32);
         let (found, hits) = match &octree.prototypes[usize::from(prototype)].content {
-            Content::Surface(surface) => {
+            Content::Surface { octree: surface, .. } => {
                 let mut hits = 0;
                 surface.each_hit(&inner, 0.0, f64::INFINITY, |_| {
                     hits += 1;
@@ -109,7 +109,7 @@ fn check(octree: &InstanceOctree, seed: u64, count: usize, reach: f64) -> usize 
 #[test]
 fn rays_hit_what_they_hit_when_every_instance_is_asked() {
     for (count, seed) in [(0, 1), (1, 2), (7, 3), (8, 4), (9, 5), (300, 6), (5000, 7)] {
-        for form in [PlacementForm::Similar, PlacementForm::Affine] {
+        for form in [PlacementForm::Similar, PlacementForm::Affine, PlacementForm::Exact] {
             let hits = check(&of(vec![surface()], form, count, seed), seed, 300.min(60 + count), 1.2);
             assert!(hits > 0 || count < 7, "{count}");
         }
@@ -136,7 +136,7 @@ fn instances_are_where_one_mesh_of_all_is() {
             hits += 1;
             assert!((found.hit.t - expected.t).abs() < 1e-12);
             assert_eq!((found.path.numbers()[0] * 4 + found.hit.triangle), expected.triangle);
-            let placement = placed.innermost(&found.path).placement;
+            let placement = placed.placed(&found.path).placement;
             let [a, b, c] = triangles[found.hit.triangle as usize].map(|vertex| vertices[vertex as usize]);
             let own = a * (1.0 - found.hit.u - found.hit.v) + b * found.hit.u + c * found.hit.v;
             assert!(placement.transform_point3(own).distance(ray.at(found.hit.t)) < 1e-12);
@@ -168,6 +168,37 @@ fn instances_of_instances_are_hit_at_every_level_in_any_size() {
         assert!(hits > 5, "{hits} at {size}");
         let first = rays(21, 40, reach / 2.0).find_map(|ray| octree.closest(&ray, 0.0, f64::INFINITY));
         assert_eq!(first.map(|first| first.path.numbers().len()), Some(5));
+    }
+}
+
+#[test]
+fn a_hit_tells_which_surface_it_is_on_and_how_that_is_placed() {
+    let (vertices, triangles) = tetrahedron();
+    let surface = |first: u32| Prototype::surface(octree(&vertices, &triangles), first);
+    let at = |prototype: u16, variation: u16, x: f64| Instance {
+        prototype,
+        variation,
+        placement: DAffine3::from_translation(DVec3::X * x),
+    };
+    let row = |number: usize| [at(0, 7, 0.0), at(1, 9, 2.0)][number];
+    let pair = InstanceOctree::new(vec![surface(0), surface(4)], PlacementForm::Exact, 2, row).expect("sound");
+    let far = |number: usize| [at(0, 100, 50.0), at(0, 65_530, -50.0)][number];
+    let pairs = vec![Prototype::instances(Arc::new(pair))];
+    let octree = InstanceOctree::new(pairs, PlacementForm::Exact, 2, far).expect("sound");
+    for (x, first, variation) in [(50.0, 0, 107), (52.0, 4, 109), (-50.0, 0, 1), (-48.0, 4, 3)] {
+        let ray = Ray { origin: DVec3::new(x + 0.1, 0.1, 5.0), direction: DVec3::NEG_Z };
+        let found = octree.closest(&ray, 0.0, f64::INFINITY).expect("a hit");
+        assert_eq!(found.hit.triangle / 4 * 4, first);
+        let placed = octree.placed(&found.path);
+        assert_eq!((placed.placement, placed.variation), (at(0, 0, x).placement, variation));
+        let way = 50.0 + if first == 0 { 0.0 } else { 2.0 };
+        assert!((way..2.0 * way).contains(&placed.largest), "{}", placed.largest);
+        let mut given = Vec::new();
+        octree.each_hit(&ray, 0.0, f64::INFINITY, |hit| {
+            given.push(hit.hit.triangle);
+            false
+        });
+        assert!(given.len() == 2 && given.contains(&found.hit.triangle) && given.iter().all(|t| t / 4 * 4 == first));
     }
 }
 
@@ -207,7 +238,7 @@ fn the_same_octree_comes_from_any_number_of_threads() {
 
 #[test]
 fn empty_prototypes_place_nothing() {
-    let octree = of(vec![Prototype::surface(octree(&[], &[]))], PlacementForm::Similar, 50, 51);
+    let octree = of(vec![Prototype::surface(octree(&[], &[]), 0)], PlacementForm::Similar, 50, 51);
     assert!(octree.count() == 0 && octree.bounds().is_empty());
     assert_eq!(octree.closest(&Ray { origin: DVec3::ZERO, direction: DVec3::X }, 0.0, f64::INFINITY), None);
 }

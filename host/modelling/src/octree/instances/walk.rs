@@ -71,7 +71,9 @@ trait Query {
     /// The lengths between which hits count.
     fn limits(&self) -> [f64; 2];
     /// Asks a surface; returns whether the answer is known.
-    fn ask(&mut self, surface: &Octree, ray: &Ray, path: InstancePath) -> bool;
+    ///
+    /// - `first`: the number of its first triangle in hits.
+    fn ask(&mut self, surface: &Octree, first: u32, ray: &Ray, path: InstancePath) -> bool;
 }
 
 struct Nearest {
@@ -84,13 +86,18 @@ impl Query for Nearest {
         self.limits
     }
 
-    fn ask(&mut self, surface: &Octree, ray: &Ray, path: InstancePath) -> bool {
+    fn ask(&mut self, surface: &Octree, first: u32, ray: &Ray, path: InstancePath) -> bool {
         if let Some(hit) = surface.closest(ray, self.limits[0], self.limits[1]) {
             self.limits[1] = hit.t;
-            self.best = Some(InstanceHit { hit, path });
+            self.best = Some(InstanceHit { hit: numbered(hit, first), path });
         }
         false
     }
+}
+
+/// A hit whose triangle is counted from a number on.
+fn numbered(hit: Hit, first: u32) -> Hit {
+    Hit { triangle: hit.triangle + first, ..hit }
 }
 
 struct Any {
@@ -102,7 +109,7 @@ impl Query for Any {
         self.limits
     }
 
-    fn ask(&mut self, surface: &Octree, ray: &Ray, _: InstancePath) -> bool {
+    fn ask(&mut self, surface: &Octree, _: u32, ray: &Ray, _: InstancePath) -> bool {
         surface.occluded(ray, self.limits[0], self.limits[1])
     }
 }
@@ -117,8 +124,8 @@ impl<F: FnMut(InstanceHit) -> bool> Query for Each<F> {
         self.limits
     }
 
-    fn ask(&mut self, surface: &Octree, ray: &Ray, path: InstancePath) -> bool {
-        let enough = |hit: Hit| (self.enough)(InstanceHit { hit, path });
+    fn ask(&mut self, surface: &Octree, first: u32, ray: &Ray, path: InstancePath) -> bool {
+        let enough = |hit: Hit| (self.enough)(InstanceHit { hit: numbered(hit, first), path });
         surface.each_hit(ray, self.limits[0], self.limits[1], enough)
     }
 }
@@ -176,7 +183,7 @@ impl<Q: Query> LeafVisitor for Visitor<'_, Q> {
             let ray = Ray { origin, direction: inverse.transform_vector3(self.ray.direction) };
             let path = self.path.and(number as u32);
             let is_known = match &self.octree.prototypes[usize::from(instance.prototype)].content {
-                Content::Surface(surface) => self.query.ask(surface, &ray, path),
+                Content::Surface { octree, first } => self.query.ask(octree, *first, &ray, path),
                 Content::Instances(inner) => inner.ask(&ray, path, self.query),
             };
             if is_known {

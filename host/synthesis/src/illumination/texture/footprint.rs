@@ -14,6 +14,8 @@ pub struct TextureFootprint {
     pub sides: [FootprintSide; 2],
     /// The derivatives of the point in the scene by u and v, as far as the triangle tells; 0 where it does not.
     pub along: [DVec3; 2],
+    /// By which instances of one kind differ; 0 for what is no instance.
+    pub variation: u16,
 }
 
 /// A vector along the surface, in three coordinate systems.

@@ -162,7 +162,7 @@ impl TextureMapping {
             let own = lay(side.uv, side.own);
             FootprintSide { scene: side.scene, uv: own.truncate(), own }
         };
-        TextureFootprint { uv: own.truncate(), own, sides: footprint.sides.map(side), along: footprint.along }
+        TextureFootprint { uv: own.truncate(), own, sides: footprint.sides.map(side), ..*footprint }
     }
 
     /// From the coordinates of the object to those of the pattern; on a surface it turns about the normal.

@@ -41,7 +41,7 @@ use super::film::Film;
 use super::indirect::IndirectLight;
 use super::ray_tracing::RayFinisher;
 use super::tally::Tally;
-use super::world::{AHEAD, Appearance, CameraRays, World};
+use super::world::{AHEAD, Appearance, CameraRays, World, check_copied};
 use super::{FinishedCounts, RayCounts, RenderError, RenderOrder, Renderer, Rendering, SpanCounts, Watch};
 use crate::color::Channels;
 use crate::illumination::light::LightSource;
@@ -145,6 +145,7 @@ impl<'a> ScanLine<'a> {
     /// # Errors
     /// [`RenderError::Material`]; [`RenderError::Octree`], where samples are finished by rays.
     pub fn new(prepared: &'a Prepared, plan: &'a Plan) -> Result<ScanLine<'a>, RenderError> {
+        check_copied(prepared)?;
         let appearance = Appearance::new(prepared, plan)?.without_caustics();
         let for_rays = triangles_for_rays(&appearance, plan);
         let lit_by_others = triangles_lit_by_others(&appearance, plan, !for_rays.is_empty());

@@ -1,7 +1,8 @@
 //! The surface element at a hit: position, normals, and where rays may leave from.
 
+use super::carrier::Carrier;
 use crate::numeric::ray::{Hit, Ray};
-use crate::scene::{Displacement, Prepared, SurfacePoint};
+use crate::scene::{Prepared, SurfacePoint};
 use glam::DVec3;
 
 /// Rounding errors in units of the last place of the triangle's largest coordinate that a leaving ray keeps clear of.
@@ -100,20 +101,22 @@ impl SurfaceElement {
         true
     }
 
-    /// Takes it along with what moves.
-    pub(in crate::render) fn carry(&mut self, moved: &Displacement) {
+    /// Takes it to where what it belongs to is.
+    pub(in crate::render) fn carry(&mut self, carrier: &Carrier) {
+        let height = carrier.height(self.face);
         for point in [&mut self.position, &mut self.leave, &mut self.through, &mut self.leave_curved] {
-            *point = moved.point(*point);
+            *point = carrier.point(*point);
         }
-        for vector in [&mut self.face, &mut self.normal, &mut self.horizon] {
-            *vector = moved.vector(*vector);
+        for normal in [&mut self.face, &mut self.normal, &mut self.horizon] {
+            *normal = carrier.normal(*normal);
         }
         // There and back, points are rounded again.
-        let largest = self.position.abs().max_element() + moved.largest();
-        let clearance = self.face * (CLEARANCE_ULPS * f64::EPSILON * largest);
+        let distance = CLEARANCE_ULPS * f64::EPSILON * carrier.largest_at(self.position);
+        let clearance = self.face * distance;
         self.leave += clearance;
         self.leave_curved += clearance;
         self.through -= clearance;
+        self.clearance = self.clearance * height + distance;
     }
 
     /// Gives it another normal for shading.

@@ -2,18 +2,20 @@
 
 use super::appearance::Appearance;
 use super::camera_rays::BoundedRay;
+use super::carrier::Carrier;
 use super::element::{SurfaceElement, clearance};
 use super::interaction::{RayHit, SurfaceInteraction};
 use super::light_buffer::{LightBuffer, Occluders};
 use crate::color::Channels;
 use crate::illumination::light::{LightOrigin, LightSource};
-use crate::illumination::optics::{Bsdf, InteriorMedium, TextureValues};
+use crate::illumination::optics::{Bsdf, TextureValues};
+use crate::illumination::texture::TextureFootprint;
 use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::{Hit, Ray};
-use crate::octree::{Octree, Shaft, SurfacePoints};
+use crate::octree::{InstanceHit, Octree, SurfacePoints};
 use crate::plan::{Plan, Stage};
 use crate::render::RenderError;
-use crate::scene::{Acceleration, AccelerationKey, Displacement, Prepared, SceneOctree, footprint};
+use crate::scene::{Acceleration, AccelerationKey, Footprint, Prepared, SceneOctree, footprint};
 use crate::stages::stage;
 use glam::DVec3;
 use std::sync::Arc;
@@ -26,7 +28,7 @@ const MOST_COINCIDENT: usize = 8;
 pub struct World<'a> {
     pub(in crate::render) appearance: Appearance<'a>,
     /// The octrees of what the plan keeps; empty if it needs none.
-    acceleration: Arc<Acceleration>,
+    pub(super) acceleration: Arc<Acceleration>,
     light_buffer: Option<LightBuffer>,
     /// Points that stand for what stands still, if rays are to hit these.
     points: Option<SurfacePoints>,
@@ -38,6 +40,9 @@ impl<'a> World<'a> {
     /// # Errors
     /// [`RenderError`].
     pub fn new(prepared: &'a Prepared, plan: &Plan) -> Result<World<'a>, RenderError> {
+        if plan.needs(Stage::Radiosity) || plan.needs(Stage::PhotonMap) {
+            check_copied(prepared)?;
+        }
         let keeps = |object: usize| plan.needs(Stage::Octree) && plan.includes_object(object);
         let objects = (0..prepared.objects.len()).map(keeps).collect();
         let acceleration = prepared.acceleration(AccelerationKey { objects, motions: plan.needs(Stage::Motion) })?;
@@ -78,8 +83,7 @@ impl<'a> World<'a> {
 
     /// Materials and lights alone, for whom traces no rays.
     pub(in crate::render) fn without_rays(appearance: Appearance<'a>) -> World<'a> {
-        let acceleration = Arc::new(Acceleration { still: None, moving: Vec::new(), build: Duration::ZERO });
-        World { appearance, acceleration, light_buffer: None, points: None }
+        World { appearance, acceleration: Arc::default(), light_buffer: None, points: None }
     }
 
     fn over(acceleration: Arc<Acceleration>, appearance: Appearance<'a>, plan: &Plan) -> World<'a> {
@@ -108,7 +112,7 @@ impl<'a> World<'a> {
     }
 
     /// The octree of what stands still, if anything does.
-    fn still(&self) -> Option<&SceneOctree> {
+    pub(super) fn still(&self) -> Option<&SceneOctree> {
         self.acceleration.still.as_ref()
     }
 
@@ -132,11 +136,11 @@ impl<'a> World<'a> {
 
     /// Whether something moves, so that samples need a time.
     pub(in crate::render) fn moves(&self) -> bool {
-        !self.acceleration.moving.is_empty()
+        !(self.acceleration.moving.is_empty() && self.acceleration.placed_moving.is_empty())
     }
 
-    /// The first triangle in sight at a time, and where what it belongs to has moved to.
-    fn first(&self, ray: &Ray, [t_min, t_max]: [f64; 2], time: f64) -> Option<(Hit, u32, Option<Displacement>)> {
+    /// The first triangle in sight at a time, and how what it belongs to was brought there.
+    fn first(&self, ray: &Ray, [t_min, t_max]: [f64; 2], time: f64) -> Option<(Hit, u32, Option<Carrier>)> {
         let hit = match &self.points {
             Some(points) => points.closest(ray, t_min, t_max),
             None => self.octree().and_then(|octree| octree.closest(ray, t_min, t_max)),
@@ -147,7 +151,20 @@ impl<'a> World<'a> {
             let moved = motion.at(time);
             let t_max = first.map_or(t_max, |(hit, ..)| hit.t);
             if let Some(hit) = carried.octree.closest(&moved.still(ray), t_min, t_max) {
-                first = Some((hit, carried.triangle(hit.triangle), Some(moved)));
+                first = Some((hit, carried.triangle(hit.triangle), Some(Carrier::moved(&moved))));
+            }
+        }
+        if let Some(placed) = &self.acceleration.placed {
+            let t_max = first.map_or(t_max, |(hit, ..)| hit.t);
+            if let Some(InstanceHit { hit, path }) = placed.closest(ray, t_min, t_max) {
+                first = Some((hit, hit.triangle, Some(Carrier::placed(&placed.placed(&path), None))));
+            }
+        }
+        for (motion, placed) in &self.acceleration.placed_moving {
+            let moved = motion.at(time);
+            let t_max = first.map_or(t_max, |(hit, ..)| hit.t);
+            if let Some(InstanceHit { hit, path }) = placed.closest(&moved.still(ray), t_min, t_max) {
+                first = Some((hit, hit.triangle, Some(Carrier::placed(&placed.placed(&path), Some(&moved)))));
             }
         }
         first
@@ -167,14 +184,14 @@ impl<'a> World<'a> {
         {
             return RayHit::Light(index, light_hit);
         }
-        let Some((hit, triangle, moved)) = first else { return RayHit::Nothing };
+        let Some((hit, triangle, carrier)) = first else { return RayHit::Nothing };
         let prepared = self.appearance.prepared;
         let contact =
-            if moved.is_none() && self.points.is_none() { self.contact(&bounded.ray, triangle, &hit) } else { None };
+            if carrier.is_none() && self.points.is_none() { self.contact(&bounded.ray, triangle, &hit) } else { None };
         let (hit, triangle) = contact.unwrap_or((hit, triangle));
-        // What moves is intersected as if it stood still, up to the element.
-        let ray = match (moved, &self.points) {
-            (Some(moved), _) => moved.still(&bounded.ray),
+        // What moves or is placed is intersected where it is kept, up to the element.
+        let ray = match (&carrier, &self.points) {
+            (Some(carrier), _) => carrier.own_ray(&bounded.ray),
             (None, Some(_)) => through(&bounded.ray, &hit, prepared.corners(triangle)),
             (None, None) => bounded.ray,
         };
@@ -184,7 +201,7 @@ impl<'a> World<'a> {
         let object = prepared.object_of[triangle as usize];
         let material = prepared.material_number(triangle);
         let bsdf = self.appearance.bsdf(object, material);
-        let length = ray.direction.length();
+        let length = bounded.ray.direction.length();
         let distance = hit.t * length;
         let exact = if self.appearance.exact {
             let on = prepared.on_surface(triangle, &ray, weights(&hit), element.position, element.outside);
@@ -193,10 +210,15 @@ impl<'a> World<'a> {
             None
         };
         let depth = distance + exact.map_or(0.0, |on| on.beyond * length);
+        let mut along = bsdf.brushed_along;
+        if let Some(carrier) = &carrier {
+            element.carry(carrier);
+            along = along.map(|along| carrier.vector(along));
+        }
         let texture_values = if bsdf.is_textured() {
-            let towards = ray.direction / length;
+            let towards = bounded.ray.direction / length;
             let sides = footprint(element.face, towards, bounded.cone.at(distance));
-            let mut place = prepared.texture_place(triangle, weights(&hit), sides);
+            let mut place = self.texture_place(triangle, &hit, sides, carrier.as_ref());
             if let Some(on) = exact {
                 (place.uv, place.own) = (on.uv, on.own);
             }
@@ -205,11 +227,6 @@ impl<'a> World<'a> {
         } else {
             TextureValues::new()
         };
-        let mut along = bsdf.brushed_along;
-        if let Some(moved) = moved {
-            element.carry(&moved);
-            along = along.map(|along| moved.vector(along));
-        }
         RayHit::Surface(SurfaceInteraction {
             element,
             bsdf,
@@ -222,6 +239,25 @@ impl<'a> World<'a> {
             texture_values,
             brushed_along: along,
         })
+    }
+
+    /// Where a hit is, and what of the surface is looked at: as [`Contents::texture_place`](crate::scene::Contents::texture_place)
+    /// tells, also of what is carried from where it is kept.
+    pub(super) fn texture_place(
+        &self,
+        triangle: u32,
+        hit: &Hit,
+        sides: Footprint,
+        carrier: Option<&Carrier>,
+    ) -> TextureFootprint {
+        let prepared = self.appearance.prepared;
+        let Some(carrier) = carrier else { return prepared.texture_place(triangle, weights(hit), sides) };
+        let own = sides.map(|side| carrier.own_vector(side));
+        let mut place = prepared.texture_place(triangle, weights(hit), own);
+        place.sides.iter_mut().zip(sides).for_each(|(side, scene)| side.scene = scene);
+        place.along = place.along.map(|along| carrier.vector(along));
+        place.variation = carrier.variation;
+        place
     }
 
     /// The position where a ray hit an element: where a point stands for the surface, not all rays come to one place.
@@ -333,170 +369,44 @@ impl<'a> World<'a> {
         });
         !self.moves()
             && !lamps.any(|lamp| Octree::may_stand_between(from, to, lamp))
+            && self
+                .acceleration
+                .placed
+                .as_ref()
+                .is_none_or(|placed| !Octree::may_stand_between(from, to, placed.bounds()))
             && self.still().is_none_or(is_clear)
     }
 
-    /// Transmittance of a shadow ray: 0 if something opaque is in between; and whether it went through polished bodies
-    /// that would have bent it.
-    ///
-    /// - `index`: of the light to which the ray leads, which does not occlude itself; with the occluders that stand
-    ///   still, if they are known. `time`: when.
-    pub(in crate::render) fn transmittance(
-        &self,
-        ray: &Ray,
-        t_max: f64,
-        index: usize,
-        occluders: Option<&Occluders>,
-        wavelength_set: usize,
-        time: f64,
-    ) -> (Channels, bool) {
-        let blocks = |(other, (_, source)): (usize, &(usize, LightSource))| {
-            other != index && source.is_surface() && source.intersect(ray, 0.0, t_max, wavelength_set).is_some()
-        };
-        if self.appearance.sources.iter().enumerate().any(blocks) {
-            return (Channels::ZERO, false);
-        }
-        let shaft = match occluders {
-            Some(Occluders::Dark) => return (Channels::ZERO, false),
-            Some(Occluders::Few(shaft)) => Some(&**shaft),
-            _ => None,
-        };
-        let still = self.still();
-        let (mut part, mut is_cleared) = still.map_or((Channels::ONE, false), |still| {
-            self.octree_transmittance(still, shaft, ray, t_max, wavelength_set)
-        });
-        for (motion, carried) in &self.acceleration.moving {
-            if part != Channels::ZERO {
-                let (transmittance, cleared) =
-                    self.octree_transmittance(carried, None, &motion.at(time).still(ray), t_max, wavelength_set);
-                part *= transmittance;
-                is_cleared |= cleared;
-            }
-        }
-        (part, is_cleared)
-    }
-
-    /// Transmittance of the triangles of an octree, or of those of a shaft.
-    fn octree_transmittance(
-        &self,
-        over: &SceneOctree,
-        shaft: Option<&Shaft>,
-        ray: &Ray,
-        t_max: f64,
-        wavelength_set: usize,
-    ) -> (Channels, bool) {
-        if !(self.appearance.has_passable || self.appearance.has_clear_shadows) {
-            let occluded = match shaft {
-                Some(shaft) => over.octree.occluded_in(shaft, ray, 0.0, t_max),
-                None => over.octree.occluded(ray, 0.0, t_max),
-            };
-            return (if occluded { Channels::ZERO } else { Channels::ONE }, false);
-        }
-        match self.passable_hits(over, shaft, ray, t_max, true) {
-            Some(hits) => self.transmittance_of(&hits, ray, t_max, wavelength_set),
-            None => (Channels::ZERO, false),
-        }
-    }
-
-    /// Transmittance of all that stands still and that light passes straight, by wavelength set, as if nothing opaque
-    /// stood between it; none if there is nothing of that kind on the way.
-    pub(in crate::render) fn straight_transmittances(&self, ray: &Ray, t_max: f64) -> Option<Vec<Channels>> {
-        let hits = self.passable_hits(self.still()?, None, ray, t_max, false).filter(|hits| !hits.is_empty())?;
-        let sets = 0..self.appearance.wavelengths.count();
-        Some(sets.map(|wavelength_set| self.transmittance_of(&hits, ray, t_max, wavelength_set).0).collect())
-    }
-
-    /// Where a ray hits surfaces that light passes straight, the nearest first; none if it hits one that stops it.
-    ///
-    /// A hit has the number of its triangle in the scene.
-    ///
-    /// - `is_stopped`: whether what lets no light pass counts.
-    fn passable_hits(
-        &self,
-        over: &SceneOctree,
-        shaft: Option<&Shaft>,
-        ray: &Ray,
-        t_max: f64,
-        is_stopped: bool,
-    ) -> Option<Vec<Hit>> {
-        let object_of = &self.appearance.prepared.object_of;
-        let mut hits: Vec<Hit> = Vec::new();
-        let clears = self.appearance.has_clear_shadows;
-        let enough = |hit: Hit| {
-            let hit = Hit { triangle: over.triangle(hit.triangle), ..hit };
-            let bsdf = self.bsdf_of(hit.triangle);
-            let passable = bsdf.is_passable() || clears && bsdf.is_clear();
-            if passable {
-                hits.push(hit);
-            }
-            is_stopped && !passable
-        };
-        let stopped = match shaft {
-            Some(shaft) => over.octree.each_hit_in(shaft, ray, 0.0, t_max, enough),
-            None => over.octree.each_hit(ray, 0.0, t_max, enough),
-        };
-        if stopped {
-            return None;
-        }
-        // Where triangles of an object share a side, what they stand for is passed once.
-        hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
-        hits.dedup_by_key(|hit| (hit.t, object_of[hit.triangle as usize]));
-        Some(hits)
-    }
-
     /// The BSDF of a triangle.
-    fn bsdf_of(&self, triangle: u32) -> &Bsdf {
+    pub(super) fn bsdf_of(&self, triangle: u32) -> &Bsdf {
         let prepared = self.appearance.prepared;
         self.appearance.bsdf(prepared.object_of[triangle as usize], prepared.material_number(triangle))
     }
+}
 
-    /// Transmittance of surfaces that light passes straight, and of the bodies within them.
-    ///
-    /// - `hits`: of the ray, the nearest first.
-    fn transmittance_of(&self, hits: &[Hit], ray: &Ray, t_max: f64, wavelength_set: usize) -> (Channels, bool) {
-        let prepared = self.appearance.prepared;
-        // Where the ray is in which body, since when.
-        let mut inside: Vec<(u32, f64, &InteriorMedium)> = Vec::new();
-        let left = |interior: &InteriorMedium, way: f64| {
-            interior.absorption.of(wavelength_set).map(|absorption| (-absorption * way).exp())
-        };
-        let length = ray.direction.length();
-        let mut is_cleared = false;
-        let part = hits.iter().fold(Channels::ONE, |part, hit| {
-            let triangle = hit.triangle;
-            let bsdf = self.bsdf_of(triangle);
-            let slope = slope(prepared.corners(triangle), ray.direction) / length;
-            let place = || prepared.texture_place(triangle, weights(hit), Default::default());
-            let Some(interior) = bsdf.interior.as_ref().filter(|_| !bsdf.is_passable()) else {
-                return part * bsdf.straight_transmittance(wavelength_set, slope.abs(), place);
-            };
-            is_cleared = true;
-            let object = prepared.object_of[triangle as usize];
-            let mut part = part * bsdf.clear_transmittance(wavelength_set, slope.abs(), place);
-            match (slope > 0.0, inside.iter().rposition(|(other, ..)| *other == object)) {
-                // It began within the body, if it did not come into it.
-                (true, entered) => {
-                    let since = entered.map_or(0.0, |place| inside.swap_remove(place).1);
-                    part *= left(interior, (hit.t - since) * length);
-                }
-                (false, _) => inside.push((object, hit.t, interior)),
-            }
-            part
-        });
-        // The light may be within a body.
-        let inside = inside.into_iter().filter(|_| t_max.is_finite());
-        let part = inside.fold(part, |part, (_, since, interior)| part * left(interior, (t_max - since) * length));
-        (part, is_cleared)
+/// Refuses instances that are placed, for what goes through triangles one by one.
+///
+/// # Errors
+/// [`RenderError::PlacedInstances`].
+pub(in crate::render) fn check_copied(prepared: &Prepared) -> Result<(), RenderError> {
+    match prepared.placed() {
+        Some(object) => Err(RenderError::PlacedInstances { object: object.name.clone() }),
+        None => Ok(()),
     }
 }
 
+/// The outer unit normal of a triangle; 0 for one without area.
+pub(super) fn outer_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a).normalize_or_zero()
+}
+
 /// How far a direction goes along the outer normal of a triangle; 0 for one without area.
-fn slope([a, b, c]: [DVec3; 3], direction: DVec3) -> f64 {
-    (b - a).cross(c - a).normalize_or_zero().dot(direction)
+fn slope(corners: [DVec3; 3], direction: DVec3) -> f64 {
+    outer_normal(corners).dot(direction)
 }
 
 /// How much of each corner is in a hit.
-fn weights(hit: &Hit) -> [f64; 3] {
+pub(super) fn weights(hit: &Hit) -> [f64; 3] {
     [1.0 - hit.u - hit.v, hit.u, hit.v]
 }
 

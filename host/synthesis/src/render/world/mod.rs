@@ -2,11 +2,13 @@
 //! renderer.
 
 mod appearance;
+mod carrier;
 mod element;
 mod camera_rays;
 mod interaction;
 mod light_buffer;
 mod geometry;
+mod transmittance;
 mod media;
 mod reflectance;
 
@@ -14,6 +16,7 @@ pub(in crate::render) use appearance::Appearance;
 pub(in crate::render) use camera_rays::{AHEAD, BoundedRay, CameraRays, RayCone, plane_intersection};
 pub(in crate::render) use element::SurfaceElement;
 pub use geometry::World;
+pub(in crate::render) use geometry::check_copied;
 pub(in crate::render) use interaction::{RayHit, SurfaceInteraction};
 pub(in crate::render) use light_buffer::Occluders;
 pub(in crate::render) use media::{Media, MediumInterface};

@@ -5,6 +5,7 @@ mod checker;
 mod clouds;
 mod marble;
 mod wood;
+mod varied;
 
 use super::{Image, MOST_PAINTS, TextureError, TextureFootprint};
 use sampled::Sampled;
@@ -117,6 +118,14 @@ motifs! {
     parts |sampled| two(wood::second(sampled, *turbulence, *grain)),
     mean two(wood::mean()),
     tried Motif::Wood { turbulence: 0.2, grain: 0.3 };
+
+    /// One mixture of the two paints all over an instance, by its variation.
+    Varied "varied" {
+        /// Patterns of different channels vary by themselves.
+        channel: u32,
+    }
+    check Ok(()), parts |sampled| two(varied::second(sampled, *channel)), mean two(varied::MEAN),
+    tried Motif::Varied { channel: 0 };
 }
 
 impl Motif {

@@ -1,0 +1,96 @@
+//! Facts about instances that scripts place.
+
+use super::tests::{problem, run};
+use crate::octree::Instance;
+use crate::scene::{Instances, Placing, Prepared, Shape};
+use glam::{DAffine3, DVec3};
+
+fn of(shape: &Shape) -> &Instances {
+    match shape {
+        Shape::Instances(instances) => instances,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn listed(instances: &Instances) -> &[Instance] {
+    match &instances.placing {
+        Placing::Listed(list) => &list.0,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn places_are_points_or_tell_how_to_place() {
+    let made = run("
+        let ball = sphere(0.2);
+        let rod = box(0.1, 2, 0.1);
+        let pair = [ball, rod.translate(0, 1, 0)];
+        let row = instances([pair, [cube(1)]], [
+            [1, 2, 3],
+            #{ at: [4, 0, 0], turn: 90, scale: 2, which: 1, variation: 1 },
+            #{ axis: \"x\", turn: 90, scale: [1, 2, 3] },
+            #{ at: [0, 1, 0], matrix: [[1, 0, 0], [0.5, 1, 0], [0, 0, -1]] },
+        ]).name(\"row\").translate(0, 5, 0);
+        sphere(1);
+    ");
+    let [row, ball] = &made.scene.objects[..] else { panic!("{}", made.scene.objects.len()) };
+    assert_eq!((&*row.name, &*ball.name), ("row", "sphere 2"));
+    assert_eq!(row.transform.transform_point3(DVec3::ZERO), DVec3::Y * 5.0);
+    let instances = of(&row.shape);
+    let sizes: Vec<usize> = instances.prototypes.iter().map(Vec::len).collect();
+    assert_eq!(sizes, [2, 1]);
+    let all = listed(instances);
+    let maps = |number: usize, from: DVec3| all[number].placement.transform_point3(from);
+    assert_eq!(all[0].placement, DAffine3::from_translation(DVec3::new(1.0, 2.0, 3.0)));
+    assert_eq!((all[1].prototype, all[1].variation), (1, u16::MAX));
+    assert!((maps(1, DVec3::Z) - DVec3::new(6.0, 0.0, 0.0)).length() < 1e-12);
+    assert!((maps(2, DVec3::ONE) - DVec3::new(1.0, -3.0, 2.0)).length() < 1e-12);
+    assert_eq!(maps(3, DVec3::ONE), DVec3::new(1.5, 2.0, -1.0));
+    assert_ne!(all[0].variation, all[2].variation);
+}
+
+#[test]
+fn instances_of_scattered_instances_stand_where_their_surface_is() {
+    let made = run("
+        let tuft = scatter(box(0.02, 0.2, 0.02), ground(1), #{ count: 30, seed: 5 });
+        let hill = sphere(3).translate(0, -1, 0);
+        scatter(tuft, hill, #{ count: 20, slope: [0, 40], upright: 1, scale: [0.5, 1] });
+        hill.translate(100, 0, 0);
+    ");
+    let names: Vec<&str> = made.scene.objects.iter().map(|object| &*object.name).collect();
+    assert_eq!(names, ["ground", "sphere", "instances 2"]);
+    let prepared = Prepared::new(&made.scene).expect("a scene");
+    let group = &prepared.objects[2];
+    assert_eq!(
+        (group.instances, prepared.triangles.len() as u32),
+        (20, prepared.objects.iter().map(|o| o.count).sum())
+    );
+    // The hill was where it was scattered on.
+    assert!(group.bounds.min.x > -4.0 && group.bounds.max.x < 4.0 && group.bounds.min.y > 1.0);
+    assert!(group.bounds.max.y < 2.5);
+}
+
+#[test]
+fn what_cannot_be_placed_is_told_with_its_place() {
+    for (text, expected) in [
+        (
+            "let b = sphere(1);\nb + instances(cube(1), [[0, 0, 0]]);",
+            (2, 3, "made of instances; combine solids before"),
+        ),
+        ("let b = cube(1); instances(b, [[0, 0, 0]]);\nb.translate(1, 0, 0);", (2, 3, "became part of another")),
+        ("let b = cube(1);\ninstances([b, b], [[0, 0, 0]]);", (2, 1, "an object is told twice")),
+        ("instances(cube(1), [[0, 0]]);", (1, 1, "places must be a list of points")),
+        ("instances(cube(1), [#{ at: [0, 0, 0], spin: 4 }]);", (1, 1, "places must be a list of points")),
+        ("instances(cube(1), [#{ which: 1 }]);", (1, 1, "which 1 of place 1 is not within 0 to 0")),
+        ("instances([], [[0, 0, 0]]);", (1, 1, "objects must be an object, a list of objects")),
+        ("let b = cube(1).moving([1, 0, 0]);\ninstances(b, [[0, 0, 0]]);", (2, 1, "moves; let the whole move")),
+        ("scatter(cube(1), half_space(\"y\"), 10);", (1, 1, "has no surface of its own")),
+        ("scatter(cube(1), cube(4), #{ count: 10, shares: [1, 2] });", (1, 1, "shares is out of range")),
+        ("scatter(cube(1), cube(4), #{ count: 10, slope: [40, 20] });", (1, 1, "slope must be a number from 0 to 180")),
+        ("let b = cube(1); for i in 0..8 { b = instances(b, [[0, 0, 0]]); }", (1, 38, "nested more than 7 times")),
+    ] {
+        let (line, column, message) = problem(text);
+        assert!(message.contains(expected.2), "{text}: {message}");
+        assert_eq!((line, column), (expected.0, expected.1), "{text}");
+    }
+}

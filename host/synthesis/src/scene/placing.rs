@@ -1,0 +1,280 @@
+//! Instances of a prepared scene: what they place, each stored once, and where.
+
+use super::acceleration::PlacedInstances;
+use super::instances::Places;
+use super::object::{Instances, Object, Shape};
+use super::prepared::{Contents, PreparedObject};
+use super::shape_mesh::ShapeMesh;
+use super::stretch::largest_stretch;
+use super::{GeometrySettings, Motion, SceneError, Settings};
+use crate::illumination::Material;
+use crate::memory;
+use crate::numeric::bounds::Bounds;
+use crate::numeric::triangle::MAX_MAGNITUDE;
+use crate::octree::{Instance, InstanceOctree, PlacementForm, Prototype};
+use crate::stages::stage;
+use glam::{DAffine3, DMat4};
+use std::sync::Arc;
+
+/// Bytes of a triangle of a copy: corners, normals, numbers, and half a vertex.
+const TRIANGLE_BYTES: u64 = 64;
+/// Bytes of a copy beside its triangles: names, materials, maps.
+const COPY_BYTES: u64 = 1024;
+
+/// What a group of objects becomes part of.
+#[derive(Clone, Copy)]
+struct Whole<'a> {
+    /// Number of the object whose instances are prepared.
+    object: u32,
+    /// That of objects that have none.
+    material: &'a Option<Material>,
+    /// How much longer what is placed may become at the most.
+    stretch: f64,
+}
+
+/// Objects of a group as they are copied.
+enum Copied {
+    Object(Box<Object>, ShapeMesh),
+    Instances(DAffine3, CopiedInstances),
+}
+
+/// Instances as they are copied.
+struct CopiedInstances {
+    prototypes: Vec<Vec<Copied>>,
+    placements: Vec<Instance>,
+}
+
+impl Contents {
+    /// Places the instances of an object of the scene, or copies what they place.
+    ///
+    /// - `index`: of the object, which was added without triangles.
+    ///
+    /// # Errors
+    /// [`SceneError`], for what cannot be tessellated or placed.
+    pub(super) fn add_instances(
+        &mut self,
+        index: u32,
+        object: &Object,
+        instances: &Instances,
+        settings: &Settings,
+    ) -> Result<(), SceneError> {
+        let _stage = stage!("placing instances");
+        let geometry = &settings.geometry;
+        let stretch = largest_stretch(&object.transform);
+        let whole = Whole { object: index, material: &object.material, stretch };
+        let transform = DAffine3::from_mat4(object.transform);
+        if settings.copies_instances() {
+            let copied = CopiedInstances::new(&object.name, instances, whole, geometry)?;
+            return copied.add_to(self, &object.name, transform, self.objects[index as usize].motion, geometry);
+        }
+        let octree = self.instance_octree(&object.name, instances, whole, geometry)?;
+        let corners = octree.bounds().corners().map(|corner| transform.transform_point3(corner));
+        let still = if octree.bounds().is_empty() { Bounds::EMPTY } else { Bounds::of(corners) };
+        let is_near = still.is_empty() || still.min.abs().max(still.max.abs()).max_element() <= MAX_MAGNITUDE;
+        if !is_near {
+            let problem = format!("an instance is placed farther than {MAX_MAGNITUDE:e} from the origin");
+            return Err(SceneError::Object { object: object.name.clone(), problem });
+        }
+        let half = 0.5 * geometry.shutter;
+        let group = &mut self.objects[index as usize];
+        group.bounds = group.motion.map_or(still, |motion| motion.swept(&still, [-half, half]));
+        group.instances = octree.count();
+        self.bounds = self.bounds.union(group.bounds);
+        let prototype = Prototype::instances(Arc::new(octree));
+        self.placed.push(PlacedInstances { object: index, prototype, transform });
+        Ok(())
+    }
+
+    /// The octree over instances, in coordinates of the object that has them; what they place is added.
+    fn instance_octree(
+        &mut self,
+        name: &str,
+        instances: &Instances,
+        whole: Whole<'_>,
+        geometry: &GeometrySettings,
+    ) -> Result<InstanceOctree, SceneError> {
+        let places = whole.places(name, instances, geometry)?;
+        let whole = Whole { stretch: whole.stretch * instances.largest_stretch(), ..whole };
+        let prototypes = instances.prototypes.iter().map(|group| self.prototype(name, group, whole, geometry));
+        let prototypes = prototypes.collect::<Result<Vec<Prototype>, SceneError>>()?;
+        let placed = |number: usize| places.instance(number);
+        InstanceOctree::new(prototypes, places.form(), places.count(), placed).map_err(|error| failed(name, error))
+    }
+
+    /// A group of objects as one prototype.
+    fn prototype(
+        &mut self,
+        name: &str,
+        group: &[Object],
+        whole: Whole<'_>,
+        geometry: &GeometrySettings,
+    ) -> Result<Prototype, SceneError> {
+        let first = self.triangles.len() as u32;
+        for object in group.iter().filter(|object| !matches!(object.shape, Shape::Instances(_))) {
+            let (object, made) = whole.made(object, geometry)?;
+            let added = self.add(&object, &made, None, geometry)?;
+            check_emission(added)?;
+            added.placed_by = Some(whole.object);
+        }
+        let triangles = first..self.triangles.len() as u32;
+        let mut parts = Vec::new();
+        if !triangles.is_empty() {
+            let octree = self.octree_over(triangles).map_err(|error| failed(name, error))?;
+            parts.push((Prototype::surface(Arc::new(octree), first), DAffine3::IDENTITY));
+        }
+        for object in group {
+            let Shape::Instances(inner) = &object.shape else { continue };
+            let material = object.material.clone().or_else(|| whole.material.clone());
+            let stretch = whole.stretch * largest_stretch(&object.transform);
+            let within = Whole { material: &material, stretch, ..whole };
+            let octree = self.instance_octree(&object.name, inner, within, geometry)?;
+            parts.push((Prototype::instances(Arc::new(octree)), DAffine3::from_mat4(object.transform)));
+        }
+        if let [(alone, placement)] = &parts[..]
+            && *placement == DAffine3::IDENTITY
+        {
+            return Ok(alone.clone());
+        }
+        let placements: Vec<DAffine3> = parts.iter().map(|(_, placement)| *placement).collect();
+        let prototypes: Vec<Prototype> = parts.into_iter().map(|(prototype, _)| prototype).collect();
+        let instance =
+            |number: usize| Instance { prototype: number as u16, variation: 0, placement: placements[number] };
+        let together = InstanceOctree::new(prototypes, PlacementForm::Exact, placements.len(), instance);
+        Ok(Prototype::instances(Arc::new(together.map_err(|error| failed(name, error))?)))
+    }
+}
+
+impl Whole<'_> {
+    /// Where the instances of an object of a group are.
+    fn places<'a>(
+        &self,
+        name: &str,
+        instances: &'a Instances,
+        geometry: &GeometrySettings,
+    ) -> Result<Places<'a>, SceneError> {
+        let tolerance = geometry.tolerance.map(|tolerance| tolerance / self.stretch);
+        instances.places(tolerance, geometry.angle).map_err(|error| failed(name, error))
+    }
+
+    /// An object of a group, and its triangles in its own coordinates.
+    fn made(&self, object: &Object, geometry: &GeometrySettings) -> Result<(Object, ShapeMesh), SceneError> {
+        let mut object = object.within(self.material).into_owned();
+        object.tolerance = object.tolerance.map(|tolerance| tolerance / self.stretch);
+        let tolerance = geometry.tolerance.map(|tolerance| tolerance / self.stretch);
+        let made = object.tessellate(tolerance, geometry.angle)?;
+        Ok((object, made))
+    }
+}
+
+impl CopiedInstances {
+    fn new(
+        name: &str,
+        instances: &Instances,
+        whole: Whole<'_>,
+        geometry: &GeometrySettings,
+    ) -> Result<CopiedInstances, SceneError> {
+        let stretch = whole.stretch * instances.largest_stretch();
+        let copied = |object: &Object| match &object.shape {
+            Shape::Instances(inner) => {
+                let material = object.material.clone().or_else(|| whole.material.clone());
+                let stretch = stretch * largest_stretch(&object.transform);
+                let inner = CopiedInstances::new(
+                    &object.name,
+                    inner,
+                    Whole { material: &material, stretch, ..whole },
+                    geometry,
+                )?;
+                Ok(Copied::Instances(DAffine3::from_mat4(object.transform), inner))
+            }
+            _ => {
+                let (object, made) = Whole { stretch, ..whole }.made(object, geometry)?;
+                Ok(Copied::Object(Box::new(object), made))
+            }
+        };
+        let prototypes = instances.prototypes.iter().map(|group| group.iter().map(copied).collect());
+        let prototypes = prototypes.collect::<Result<Vec<Vec<Copied>>, SceneError>>()?;
+        let places = whole.places(name, instances, geometry)?;
+        let placements = (0..places.count()).map(|number| places.instance(number)).collect();
+        Ok(CopiedInstances { prototypes, placements })
+    }
+
+    /// Objects and triangles of all copies.
+    fn counts(&self) -> [u64; 2] {
+        let of = |copied: &Copied| match copied {
+            Copied::Object(_, made) => [1, made.mesh.triangles.len() as u64],
+            Copied::Instances(_, inner) => inner.counts(),
+        };
+        let sum = |[a, b]: [u64; 2], [c, d]: [u64; 2]| [a.saturating_add(c), b.saturating_add(d)];
+        let groups: Vec<[u64; 2]> =
+            self.prototypes.iter().map(|group| group.iter().map(of).fold([0; 2], sum)).collect();
+        let group = |instance: &Instance| groups.get(usize::from(instance.prototype)).copied().unwrap_or_default();
+        self.placements.iter().map(group).fold([0; 2], sum)
+    }
+
+    /// Adds the copies as objects of the scene.
+    fn add_to(
+        mut self,
+        contents: &mut Contents,
+        name: &str,
+        transform: DAffine3,
+        motion: Option<Motion>,
+        geometry: &GeometrySettings,
+    ) -> Result<(), SceneError> {
+        let [objects, triangles] = self.counts();
+        let bytes = objects.saturating_mul(COPY_BYTES).saturating_add(triangles.saturating_mul(TRIANGLE_BYTES));
+        memory::reserve(bytes, || format!("copying instances as {objects} objects of {triangles} triangles"))
+            .map_err(|error| failed(name, error))?;
+        let mut add = |object: &Object, made: &ShapeMesh, variation: u16| {
+            let added = contents.add_standing(object, made, motion, geometry)?;
+            added.variation = variation;
+            check_emission(added)
+        };
+        self.each(transform, 0, name, &mut add)
+    }
+
+    /// Gives all copies, placed.
+    fn each(
+        &mut self,
+        to_scene: DAffine3,
+        variation: u16,
+        name: &str,
+        give: &mut impl FnMut(&Object, &ShapeMesh, u16) -> Result<(), SceneError>,
+    ) -> Result<(), SceneError> {
+        let CopiedInstances { prototypes, placements } = self;
+        for (number, instance) in placements.iter().enumerate() {
+            let count = prototypes.len();
+            let Some(group) = prototypes.get_mut(usize::from(instance.prototype)) else {
+                let problem =
+                    format!("instance {number} places prototype {}, but there are {count}", instance.prototype);
+                return Err(SceneError::Object { object: name.to_owned(), problem });
+            };
+            let (placement, variation) = (to_scene * instance.placement, variation.wrapping_add(instance.variation));
+            for copied in group {
+                match copied {
+                    Copied::Object(object, made) => {
+                        let own = object.transform;
+                        object.transform = DMat4::from(placement) * own;
+                        let given = give(object, made, variation);
+                        object.transform = own;
+                        given?;
+                    }
+                    Copied::Instances(transform, inner) => {
+                        inner.each(placement * *transform, variation, name, give)?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Refuses light sources: a scene has each of them once.
+fn check_emission(object: &PreparedObject) -> Result<(), SceneError> {
+    let emits = object.materials.iter().any(|material| !material.emission.is_black());
+    let problem = "it emits light, and what emits light cannot be an instance; copy it instead";
+    if emits { Err(failed(&object.name, problem)) } else { Ok(()) }
+}
+
+fn failed(object: &str, problem: impl ToString) -> SceneError {
+    SceneError::Object { object: object.to_owned(), problem: problem.to_string() }
+}
