@@ -8,6 +8,11 @@ pub const LANES: usize = 8;
 #[repr(C, align(32))]
 pub struct Eight(pub [f32; LANES]);
 
+/// One of 2^24 parts.
+const PART: f32 = 1.0 / (1_u32 << 24) as f32;
+/// The bits of the number 1.
+const ONE: i32 = 127 << 23;
+
 /// Arithmetic on eight numbers in single precision. Comparisons give one bit a lane.
 ///
 /// Products that are added to may be rounded once or twice, so that no result may depend on the last digit.
@@ -19,6 +24,10 @@ pub trait Lanes: Copy {
     fn splat(proof: Self::Proof, x: f32) -> Self;
     /// Eight numbers.
     fn load(proof: Self::Proof, x: &Eight) -> Self;
+    /// Parts of 2^32, rounded down to 2^-24.
+    fn parts(proof: Self::Proof, x: &[u32; LANES]) -> Self;
+    /// For parts x of an octave, counted in 2^10 parts, 2^x and up to 6.2 % more: it is linear from octave to octave.
+    fn powers(proof: Self::Proof, x: &[i16; LANES]) -> Self;
     /// The numbers lane by lane.
     fn store(self) -> Eight;
     /// Sum.
@@ -83,6 +92,14 @@ impl Lanes for ScalarLanes {
         Self(x.0)
     }
     #[inline(always)]
+    fn parts((): (), x: &[u32; LANES]) -> Self {
+        Self(x.map(|x| (x >> 8) as f32 * PART))
+    }
+    #[inline(always)]
+    fn powers((): (), x: &[i16; LANES]) -> Self {
+        Self(x.map(|x| f32::from_bits((i32::from(x) << 13).wrapping_add(ONE) as u32)))
+    }
+    #[inline(always)]
     fn store(self) -> Eight {
         Eight(self.0)
     }
@@ -133,7 +150,7 @@ pub use wide::{Avx, AvxLanes};
 
 #[cfg(target_arch = "x86_64")]
 mod wide {
-    use super::{Eight, Lanes};
+    use super::{Eight, LANES, Lanes, ONE, PART};
     use std::arch::x86_64::*;
 
     /// The processor has AVX2 and fused multiply-adds: whoever has one of these has asked it.
@@ -172,6 +189,23 @@ mod wide {
         fn load(_: Avx, x: &Eight) -> Self {
             // SAFETY: the `Avx` proves that there is the instruction; eight numbers are as large and aligned as it asks for.
             Self(unsafe { _mm256_load_ps(x.0.as_ptr()) })
+        }
+        #[inline(always)]
+        fn parts(proof: Avx, x: &[u32; LANES]) -> Self {
+            // SAFETY: the `Avx` proves that there are the instructions; there are eight numbers of 32 bits, at any place.
+            let parts = unsafe {
+                let bits = _mm256_loadu_si256(x.as_ptr().cast());
+                _mm256_cvtepi32_ps(_mm256_srli_epi32::<8>(bits))
+            };
+            Self(parts).times(Self::splat(proof, PART))
+        }
+        #[inline(always)]
+        fn powers(_: Avx, x: &[i16; LANES]) -> Self {
+            // SAFETY: the `Avx` proves that there are the instructions; there are eight numbers of 16 bits, at any place.
+            Self(unsafe {
+                let wide = _mm256_cvtepi16_epi32(_mm_loadu_si128(x.as_ptr().cast()));
+                _mm256_castsi256_ps(_mm256_add_epi32(_mm256_slli_epi32::<13>(wide), _mm256_set1_epi32(ONE)))
+            })
         }
         #[inline(always)]
         fn store(self) -> Eight {
@@ -219,6 +253,29 @@ mod wide {
         #[inline(always)]
         fn is_at_most(self, other: Self) -> u32 {
             instruction!(_mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0))) as u32
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_and_powers_are_near_below_and_above_whatever_the_processor() {
+        let parts = [0, 1, 255, 256, 1 << 31, u32::MAX - 255, u32::MAX, 0x1234_5678];
+        let steps = [0, 1, 512, 1023, -1, -1024, 31 * 1024, -31 * 1024];
+        let scalar = [ScalarLanes::parts((), &parts), ScalarLanes::powers((), &steps)].map(|lanes| lanes.store().0);
+        for lane in 0..LANES {
+            let off = f64::from(parts[lane]) / 4_294_967_296.0 - f64::from(scalar[0][lane]);
+            assert!((0.0..1.0 / f64::from(1 << 24)).contains(&off), "{lane}: {off}");
+            let more = f64::from(scalar[1][lane]) / (f64::from(steps[lane]) / 1024.0).exp2();
+            assert!((1.0..1.062).contains(&more), "{lane}: {more}");
+        }
+        #[cfg(target_arch = "x86_64")]
+        if let Some(avx) = Avx::detected() {
+            let wide = [AvxLanes::parts(avx, &parts), AvxLanes::powers(avx, &steps)].map(|lanes| lanes.store().0);
+            assert_eq!(wide, scalar);
         }
     }
 }

@@ -7,9 +7,10 @@ use super::super::lanes::LANES;
 use super::super::partition::ItemGroup;
 use super::super::wide_bvh::{BvhNode, CellGroup, Child, divide_cells};
 use super::super::{LocationalCode, MAX_DEPTH, Octree};
+use super::blocks::Placements;
 use super::error::{InstanceError, MOST_INSTANCES, MOST_LEVELS, MOST_PROTOTYPES};
 use super::path::{InstancePath, PlacedSurface};
-use super::placement::{Instance, PlacementForm, Placements, longest, rounded};
+use super::placement::{Instance, PlacementForm, PrototypeSphere, longest, rounded};
 use crate::memory;
 use crate::numeric::bounds::Bounds;
 use glam::{DAffine3, DVec3};
@@ -18,13 +19,17 @@ use std::sync::Arc;
 use wide::f32x4;
 
 /// So many instances or fewer are a leaf.
-const LEAF: usize = 8;
+const LEAF: usize = LANES;
+/// Fills leaves that are not full.
+const NONE: u32 = u32::MAX;
 /// Of neighbours in the order of their codes, at least so many are in a cell in the mean.
 const CELL: usize = 16;
 /// Groups of cells that are divided at once: more would take more memory.
 const BATCH: usize = 64;
 /// Bytes of nodes for each instance, at the most.
 const NODE_BYTES: usize = 16;
+/// A sphere is so much larger than it would be without rounding.
+const SPHERE_ROUNDING: f64 = 1e-9;
 /// A placement flattens if the volume of a unit cube becomes this part of the cube of its longest edge.
 const FLAT: f64 = 1e-12;
 /// Edges of a cube that is rotated and scaled are as long and as upright to each other as this.
@@ -35,8 +40,7 @@ const SIMILAR: f64 = 1e-6;
 pub struct Prototype {
     pub(super) content: Content,
     bounds: Bounds,
-    /// No point of it is farther from its origin.
-    pub(super) radius: f64,
+    sphere: PrototypeSphere,
     /// How many times over it is made of instances.
     levels: usize,
 }
@@ -57,18 +61,26 @@ impl Prototype {
     /// - `first`: the number by which hits name its first triangle, where triangles of several surfaces are told apart.
     pub fn surface(octree: Arc<Octree>, first: u32) -> Prototype {
         let bounds = Bounds::of(octree.triangles.iter().flatten().map(|vertex| octree.vertices[*vertex as usize]));
-        Prototype::new(Content::Surface { octree, first }, bounds, 0)
+        let corners = octree.triangles.iter().flatten().map(|vertex| octree.vertices[*vertex as usize]);
+        let radius = corners.map(|corner| corner.distance(bounds.center())).fold(0.0, f64::max);
+        Prototype::new(Content::Surface { octree, first }, bounds, radius, 0)
     }
 
     /// Instances.
     pub fn instances(instances: Arc<InstanceOctree>) -> Prototype {
         let (bounds, levels) = (instances.bounds, instances.levels);
-        Prototype::new(Content::Instances(instances), bounds, levels)
+        Prototype::new(Content::Instances(instances), bounds, 0.5 * bounds.diagonal(), levels)
     }
 
-    fn new(content: Content, bounds: Bounds, levels: usize) -> Prototype {
-        let radius = bounds.min.abs().max(bounds.max.abs()).length();
-        Prototype { content, bounds, radius, levels }
+    fn new(content: Content, bounds: Bounds, radius: f64, levels: usize) -> Prototype {
+        let sphere = match bounds.is_empty() {
+            true => PrototypeSphere { center: DVec3::ZERO, radius: 0.0 },
+            false => PrototypeSphere {
+                center: bounds.center(),
+                radius: ((radius * (1.0 + SPHERE_ROUNDING)) as f32).next_up(),
+            },
+        };
+        Prototype { content, bounds, sphere, levels }
     }
 
     /// The box around it, in its own coordinates; empty without triangles.
@@ -81,6 +93,8 @@ impl Prototype {
 #[derive(Clone, Debug)]
 pub struct InstanceOctree {
     pub(super) prototypes: Vec<Prototype>,
+    /// Of the prototypes.
+    pub(super) spheres: Vec<PrototypeSphere>,
     /// Around all positions.
     pub(super) positions: Cube,
     pub(super) placements: Placements,
@@ -88,6 +102,7 @@ pub struct InstanceOctree {
     pub(super) cube: Cube,
     pub(super) nodes: Vec<BvhNode>,
     bounds: Bounds,
+    count: usize,
     /// How many times over instances are placed by instances.
     levels: usize,
 }
@@ -131,8 +146,10 @@ impl InstanceOctree {
         }
         let bytes = count * (form.bytes() + NODE_BYTES + 2 * size_of::<u64>());
         memory::reserve(bytes as u64, || format!("placing {count} instances"))?;
+        let spheres: Vec<PrototypeSphere> = prototypes.iter().map(|prototype| prototype.sphere).collect();
         let mut builder = Builder {
             prototypes: &prototypes,
+            spheres: &spheres,
             form,
             positions: EMPTY,
             cube: EMPTY,
@@ -143,7 +160,7 @@ impl InstanceOctree {
         if let Some(error) = instances.clone().into_par_iter().find_map_first(|number| builder.check(number).err()) {
             return Err(error);
         }
-        let position = |number| Bounds::of([instance(number).placement.translation]);
+        let position = |number| Bounds::of([builder.center(&instance(number))]);
         builder.positions = cube_around(union(instances.clone().into_par_iter().map(position)));
         let spoilt = |number| builder.check_rounded(number).err();
         if let Some(error) = instances.clone().into_par_iter().find_map_first(spoilt) {
@@ -153,8 +170,8 @@ impl InstanceOctree {
         builder.cube = cube_around(bounds);
         builder.sort(count);
         let (nodes, placements) = builder.index();
-        let (positions, cube) = (builder.positions, builder.cube);
-        Ok(InstanceOctree { prototypes, positions, placements, cube, nodes, bounds, levels })
+        let (positions, cube, count) = (builder.positions, builder.cube, builder.keys.len());
+        Ok(InstanceOctree { prototypes, spheres, positions, placements, cube, nodes, bounds, count, levels })
     }
 
     /// The box around all instances; empty without any.
@@ -164,27 +181,25 @@ impl InstanceOctree {
 
     /// Number of instances, those of empty prototypes left out.
     pub fn count(&self) -> usize {
-        self.placements.len()
+        self.count
     }
 
-    /// An instance as it is kept; the number is that of an [`InstancePath`].
-    ///
-    /// # Panics
-    /// If there is none of this number.
-    #[inline]
-    pub fn instance(&self, number: usize) -> Instance {
-        self.placements.get(&self.positions, number)
+    /// An instance as it is kept; the number is that of an [`InstancePath`]. None if there is none of this number.
+    pub fn instance(&self, number: u32) -> Option<Instance> {
+        self.placements.get(&self.positions, &self.spheres, number as usize)
     }
 
-    /// How the surface at the end of a path is placed.
-    ///
-    /// # Panics
-    /// If the path is not of this octree.
+    /// All instances as they are kept, with their numbers.
+    pub fn instances(&self) -> impl Iterator<Item = (u32, Instance)> + '_ {
+        (0..(self.placements.blocks() * LANES) as u32).filter_map(|number| Some((number, self.instance(number)?)))
+    }
+
+    /// How the surface at the end of a path of this octree is placed.
     pub fn placed(&self, path: &InstancePath) -> PlacedSurface {
         let mut octree = self;
         let mut placed = PlacedSurface { placement: DAffine3::IDENTITY, variation: 0, largest: 0.0 };
         for number in path.numbers() {
-            let Instance { prototype, variation, placement } = octree.instance(*number as usize);
+            let Some(Instance { prototype, variation, placement }) = octree.instance(*number) else { break };
             let outer = placed.placement;
             placed.largest += longest(&outer.matrix3) * placement.translation.length();
             placed.placement = outer * placement;
@@ -198,12 +213,7 @@ impl InstanceOctree {
 
     /// What it costs.
     pub fn costs(&self) -> InstanceCosts {
-        let placements = match &self.placements {
-            Placements::Similar(all) => size_of_val(all.as_slice()),
-            Placements::Affine(all) => size_of_val(all.as_slice()),
-            Placements::Exact(all) => size_of_val(all.as_slice()),
-        };
-        InstanceCosts { instances: self.count(), bytes: placements + size_of_val(self.nodes.as_slice()) }
+        InstanceCosts { instances: self.count, bytes: self.placements.bytes() + size_of_val(self.nodes.as_slice()) }
     }
 }
 
@@ -222,6 +232,7 @@ fn union(boxes: impl ParallelIterator<Item = Bounds>) -> Bounds {
 
 struct Builder<'b, F> {
     prototypes: &'b [Prototype],
+    spheres: &'b [PrototypeSphere],
     form: PlacementForm,
     positions: Cube,
     cube: Cube,
@@ -274,8 +285,14 @@ impl<F: Fn(usize) -> Instance + Sync> Builder<'_, F> {
         Ok(())
     }
 
+    /// Where the centre of the sphere of an instance is.
+    fn center(&self, instance: &Instance) -> DVec3 {
+        instance.placement.transform_point3(self.spheres[usize::from(instance.prototype)].center)
+    }
+
     fn rounded(&self, number: usize) -> Instance {
-        rounded(self.form, &self.positions, &(self.instance)(number))
+        let instance = (self.instance)(number);
+        rounded(self.form, &self.positions, &instance, self.spheres[usize::from(instance.prototype)].center)
     }
 
     /// The box around an instance.
@@ -362,12 +379,16 @@ impl<F: Fn(usize) -> Instance + Sync> Builder<'_, F> {
             };
             let made: Vec<GroupIndex> = batch.par_iter().map(below).collect();
             for (made, CellGroup { place, .. }) in made.into_iter().zip(batch) {
-                let (above, before) = (nodes.len(), placements.len());
+                let (above, before) = (nodes.len(), placements.blocks());
                 nodes.extend(made.nodes.into_iter().map(|mut node| {
                     node.children = node.children.map(|child| child.moved(above, before));
                     node
                 }));
-                made.numbers.iter().for_each(|n| placements.push(&self.positions, &(self.instance)(*n as usize)));
+                for leaf in &made.leaves {
+                    let numbers = leaf.iter().filter(|number| **number != NONE);
+                    let instances = numbers.map(|number| (self.instance)(*number as usize));
+                    placements.push(&self.positions, self.spheres, instances);
+                }
                 if let Some(place) = place {
                     place.attach(&mut nodes, Child(above as u32));
                 }
@@ -378,11 +399,11 @@ impl<F: Fn(usize) -> Instance + Sync> Builder<'_, F> {
     }
 }
 
-/// The nodes of some instances, and the numbers of these leaf by leaf.
+/// The nodes of some instances, and the numbers of these, leaf by leaf.
 #[derive(Default)]
 struct GroupIndex {
     nodes: Vec<BvhNode>,
-    numbers: Vec<u32>,
+    leaves: Vec<[u32; LEAF]>,
 }
 
 /// Adds the nodes of some instances.
@@ -396,9 +417,11 @@ fn divide_items(items: &mut [Item], index: &mut GroupIndex) {
             divide_items(share, index);
             child
         } else {
-            let first = index.numbers.len();
-            index.numbers.extend(share.iter().map(Item::number));
-            Child::leaf(first..index.numbers.len())
+            let place = index.leaves.len();
+            let mut leaf = [NONE; LEAF];
+            leaf.iter_mut().zip(share.iter()).for_each(|(number, item)| *number = item.number());
+            index.leaves.push(leaf);
+            Child::leaf(place..place + 1)
         };
         index.nodes[node].set(lane, &around, child);
     }

@@ -9,6 +9,7 @@
 mod error;
 mod placement;
 mod path;
+mod blocks;
 mod build;
 mod walk;
 

@@ -3,7 +3,6 @@
 use super::super::cube::Cube;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use serde::{Deserialize, Serialize};
-use std::sync::LazyLock;
 
 /// An instance: something that is placed, and how.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -24,19 +23,20 @@ pub enum PlacementForm {
     /// Positions are rounded to 2^-32 of the cube around all, angles to 1e-4, scales to a part in 2,900; no rotation and
     /// the scale 1 are exact. Only the rotation and the mean scale of a placement are kept, and whether it is mirrored.
     Similar,
-    /// Any affine map, in 52 bytes: positions are rounded to 2^-32 of the cube around all, the rest to single precision.
+    /// Any affine map, in 52 bytes: positions are rounded to 2^-32 of the cube around all, the inverse of the rest to
+    /// single precision.
     Affine,
     /// Any affine map as it is, in 104 bytes: for the few that hold many.
     Exact,
 }
 
 impl PlacementForm {
-    /// Bytes of one placement.
+    /// Bytes of one placement, of which eight stand together.
     pub const fn bytes(self) -> usize {
         match self {
-            PlacementForm::Similar => size_of::<SimilarPlacement>(),
-            PlacementForm::Affine => size_of::<AffinePlacement>(),
-            PlacementForm::Exact => size_of::<Instance>(),
+            PlacementForm::Similar => 24,
+            PlacementForm::Affine => 52,
+            PlacementForm::Exact => 104,
         }
     }
 }
@@ -50,6 +50,8 @@ const STEP_BITS: u32 = 15;
 /// Scales are kept in so many steps of an octave, 2^10.
 const OCTAVE_STEPS: usize = 1 << 10;
 const OCTAVE: f64 = OCTAVE_STEPS as f64;
+/// The root of 2, of which this many steps make an octave.
+const STEP_OF_OCTAVE: f64 = 1.000_677_130_693_066_4;
 /// Scales lie within so many octaves on both sides of 1.
 pub(super) const MOST_OCTAVES: f64 = 31.0;
 
@@ -61,31 +63,48 @@ fn position(cube: &Cube, [x, y, z]: [u32; 3]) -> DVec3 {
     cube.origin + DVec3::new(f64::from(x), f64::from(y), f64::from(z)) * (cube.side / POSITIONS)
 }
 
+/// The sphere around a prototype, in its coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PrototypeSphere {
+    pub(super) center: DVec3,
+    /// Rounded up.
+    pub(super) radius: f32,
+}
+
 /// A placement by position, rotation and scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
 pub(super) struct SimilarPlacement {
-    position: [u32; 3],
+    /// Of the centre of the prototype.
+    pub(super) position: [u32; 3],
     /// Three components of a unit quaternion, 15 bits each; then which one is left out, and whether it is mirrored.
-    rotation: [u16; 3],
+    pub(super) rotation: [u16; 3],
     /// The logarithm of the scale.
-    scale: i16,
-    prototype: u16,
-    variation: u16,
+    pub(super) scale: i16,
+    pub(super) prototype: u16,
+    pub(super) variation: u16,
 }
 
 /// A placement by an affine map.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
 pub(super) struct AffinePlacement {
-    position: [u32; 3],
-    columns: [f32; 9],
-    prototype: u16,
-    variation: u16,
+    /// Of the centre of the prototype.
+    pub(super) position: [u32; 3],
+    /// The columns of the inverse map, which rays ask for.
+    pub(super) inverse: [f32; 9],
+    pub(super) prototype: u16,
+    pub(super) variation: u16,
+}
+
+/// A placement as rays need it: where the centre of the prototype is, and the inverse of the map about it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct OwnFrame {
+    pub(super) center: DVec3,
+    pub(super) inverse: DMat3,
 }
 
 impl SimilarPlacement {
-    fn new(cube: &Cube, instance: &Instance) -> SimilarPlacement {
+    /// - `center`: of the prototype, in its coordinates.
+    pub(super) fn new(cube: &Cube, instance: &Instance, center: DVec3) -> SimilarPlacement {
         let map = instance.placement.matrix3;
         let determinant = map.determinant();
         let scale = determinant.abs().cbrt();
@@ -101,7 +120,7 @@ impl SimilarPlacement {
             bits = bits << STEP_BITS | (step(component) + STEPS as i64) as u64;
         }
         SimilarPlacement {
-            position: packed_position(cube, instance.placement.translation),
+            position: packed_position(cube, instance.placement.transform_point3(center)),
             rotation: [0, 16, 32].map(|shift| (bits >> shift) as u16),
             scale: (octaves * OCTAVE).round() as i16,
             prototype: instance.prototype,
@@ -109,137 +128,93 @@ impl SimilarPlacement {
         }
     }
 
+    /// The rotation, and 1 or, where it is mirrored, -1.
+    #[inline(always)]
     fn rotation_and_sign(&self) -> (DQuat, f64) {
         let mut bits = self.rotation.iter().rev().fold(0_u64, |bits, part| bits << 16 | u64::from(*part));
-        let mut others = [0.0; 3];
-        for other in others.iter_mut().rev() {
-            let step = (bits & ((1 << STEP_BITS) - 1)) as f64 - STEPS;
-            *other = step / (STEPS * std::f64::consts::SQRT_2);
-            bits >>= STEP_BITS;
-        }
-        let left_out = bits as usize & 3;
-        let largest = (1.0 - others.iter().map(|other| other * other).sum::<f64>()).max(0.0).sqrt();
-        let mut all = [0.0; 4];
-        all[left_out] = largest;
-        (0..4).filter(|i| *i != left_out).zip(others).for_each(|(i, other)| all[i] = other);
-        (DQuat::from_array(all).normalize(), if bits & 4 == 0 { 1.0 } else { -1.0 })
+        const MASK: u64 = (1 << STEP_BITS) - 1;
+        const STEP: f64 = std::f64::consts::FRAC_1_SQRT_2 / STEPS;
+        let component = |bits: u64| ((bits & MASK) as f64 - STEPS) * STEP;
+        let (c, b, a) = (component(bits), component(bits >> STEP_BITS), component(bits >> (2 * STEP_BITS)));
+        bits >>= 3 * STEP_BITS;
+        let largest = (1.0 - (a * a + b * b + c * c)).max(0.0).sqrt();
+        let all = match bits & 3 {
+            0 => [largest, a, b, c],
+            1 => [a, largest, b, c],
+            2 => [a, b, largest, c],
+            _ => [a, b, c, largest],
+        };
+        (DQuat::from_array(all), if bits & 4 == 0 { 1.0 } else { -1.0 })
     }
 
-    fn scale(&self) -> f64 {
+    #[inline(always)]
+    pub(super) fn scale(&self) -> f64 {
         let (octaves, part) = (i32::from(self.scale >> 10), self.scale as usize & (OCTAVE_STEPS - 1));
         SCALES[part] * f64::from_bits(((octaves + 1023) as u64) << 52)
     }
 
-    fn instance(&self, cube: &Cube) -> Instance {
+    pub(super) fn instance(&self, cube: &Cube, center: DVec3) -> Instance {
         let (rotation, sign) = self.rotation_and_sign();
         let matrix3 = DMat3::from_quat(rotation) * (sign * self.scale());
-        let placement = DAffine3 { matrix3, translation: position(cube, self.position) };
-        Instance { prototype: self.prototype, variation: self.variation, placement }
+        placed(matrix3, position(cube, self.position), center, self.prototype, self.variation)
+    }
+
+    #[inline(always)]
+    pub(super) fn frame(&self, cube: &Cube) -> OwnFrame {
+        let (rotation, sign) = self.rotation_and_sign();
+        let inverse = DMat3::from_quat(rotation).transpose() * (sign / self.scale());
+        OwnFrame { center: position(cube, self.position), inverse }
     }
 }
 
 impl AffinePlacement {
-    fn new(cube: &Cube, instance: &Instance) -> AffinePlacement {
+    /// - `center`: of the prototype, in its coordinates.
+    pub(super) fn new(cube: &Cube, instance: &Instance, center: DVec3) -> AffinePlacement {
         AffinePlacement {
-            position: packed_position(cube, instance.placement.translation),
-            columns: instance.placement.matrix3.to_cols_array().map(|x| x as f32),
+            position: packed_position(cube, instance.placement.transform_point3(center)),
+            inverse: instance.placement.matrix3.inverse().to_cols_array().map(|x| x as f32),
             prototype: instance.prototype,
             variation: instance.variation,
         }
     }
 
-    fn instance(&self, cube: &Cube) -> Instance {
-        let matrix3 = DMat3::from_cols_array(&self.columns.map(f64::from));
-        let placement = DAffine3 { matrix3, translation: position(cube, self.position) };
-        Instance { prototype: self.prototype, variation: self.variation, placement }
+    pub(super) fn instance(&self, cube: &Cube, center: DVec3) -> Instance {
+        let OwnFrame { center: at, inverse } = self.frame(cube);
+        placed(inverse.inverse(), at, center, self.prototype, self.variation)
     }
+
+    #[inline(always)]
+    pub(super) fn frame(&self, cube: &Cube) -> OwnFrame {
+        OwnFrame {
+            center: position(cube, self.position),
+            inverse: DMat3::from_cols_array(&self.inverse.map(f64::from)),
+        }
+    }
+}
+
+/// The instance that brings the centre of a prototype to a place.
+fn placed(matrix3: DMat3, at: DVec3, center: DVec3, prototype: u16, variation: u16) -> Instance {
+    Instance { prototype, variation, placement: DAffine3 { matrix3, translation: at - matrix3 * center } }
 }
 
 /// The scales of one octave from 1 on: a table, since a ray asks for those of many instances.
-static SCALES: LazyLock<[f64; OCTAVE_STEPS]> =
-    LazyLock::new(|| std::array::from_fn(|step| (step as f64 / OCTAVE).exp2()));
-
-/// A bound of where an instance is, which is found sooner than its placement.
-pub(super) struct InstanceBound {
-    pub(super) prototype: u16,
-    /// Where the origin of the prototype is.
-    pub(super) origin: DVec3,
-    /// No vector becomes more times as long.
-    pub(super) longer: f64,
-}
-
-/// Placements in a cube around their positions, in the order in which they were added.
-#[derive(Clone, Debug)]
-pub(super) enum Placements {
-    Similar(Vec<SimilarPlacement>),
-    Affine(Vec<AffinePlacement>),
-    Exact(Vec<Instance>),
-}
-
-impl Placements {
-    /// None yet, with memory for so many.
-    pub(super) fn with_capacity(form: PlacementForm, count: usize) -> Placements {
-        match form {
-            PlacementForm::Similar => Placements::Similar(Vec::with_capacity(count)),
-            PlacementForm::Affine => Placements::Affine(Vec::with_capacity(count)),
-            PlacementForm::Exact => Placements::Exact(Vec::with_capacity(count)),
-        }
+static SCALES: [f64; OCTAVE_STEPS] = {
+    let mut scales = [1.0; OCTAVE_STEPS];
+    let mut step = 1;
+    while step < OCTAVE_STEPS {
+        scales[step] = scales[step - 1] * STEP_OF_OCTAVE;
+        step += 1;
     }
-
-    pub(super) fn push(&mut self, cube: &Cube, instance: &Instance) {
-        match self {
-            Placements::Similar(all) => all.push(SimilarPlacement::new(cube, instance)),
-            Placements::Affine(all) => all.push(AffinePlacement::new(cube, instance)),
-            Placements::Exact(all) => all.push(*instance),
-        }
-    }
-
-    pub(super) fn len(&self) -> usize {
-        match self {
-            Placements::Similar(all) => all.len(),
-            Placements::Affine(all) => all.len(),
-            Placements::Exact(all) => all.len(),
-        }
-    }
-
-    /// An instance as it was rounded.
-    #[inline]
-    pub(super) fn get(&self, cube: &Cube, number: usize) -> Instance {
-        match self {
-            Placements::Similar(all) => all[number].instance(cube),
-            Placements::Affine(all) => all[number].instance(cube),
-            Placements::Exact(all) => all[number],
-        }
-    }
-
-    /// A bound of where an instance is.
-    #[inline]
-    pub(super) fn bound(&self, cube: &Cube, number: usize) -> InstanceBound {
-        match self {
-            Placements::Similar(all) => {
-                let placement = &all[number];
-                let (origin, longer) = (position(cube, placement.position), placement.scale());
-                InstanceBound { prototype: placement.prototype, origin, longer }
-            }
-            Placements::Affine(all) => {
-                let AffinePlacement { columns, prototype, .. } = all[number];
-                let origin = position(cube, all[number].position);
-                let longer = longest(&DMat3::from_cols_array(&columns.map(f64::from)));
-                InstanceBound { prototype, origin, longer }
-            }
-            Placements::Exact(all) => {
-                let Instance { prototype, placement, .. } = all[number];
-                InstanceBound { prototype, origin: placement.translation, longer: longest(&placement.matrix3) }
-            }
-        }
-    }
-}
+    scales
+};
 
 /// An instance as it is kept.
-pub(super) fn rounded(form: PlacementForm, cube: &Cube, instance: &Instance) -> Instance {
+///
+/// - `center`: of its prototype.
+pub(super) fn rounded(form: PlacementForm, cube: &Cube, instance: &Instance, center: DVec3) -> Instance {
     match form {
-        PlacementForm::Similar => SimilarPlacement::new(cube, instance).instance(cube),
-        PlacementForm::Affine => AffinePlacement::new(cube, instance).instance(cube),
+        PlacementForm::Similar => SimilarPlacement::new(cube, instance, center).instance(cube, center),
+        PlacementForm::Affine => AffinePlacement::new(cube, instance, center).instance(cube, center),
         PlacementForm::Exact => *instance,
     }
 }
@@ -259,12 +234,6 @@ mod tests {
     }
 
     #[test]
-    fn placements_take_as_many_bytes_as_their_form_tells() {
-        let forms = [PlacementForm::Similar, PlacementForm::Affine, PlacementForm::Exact];
-        assert_eq!(forms.map(PlacementForm::bytes), [24, 52, 104]);
-    }
-
-    #[test]
     fn placements_are_kept_within_the_rounding_that_their_form_tells() {
         let mut random = RandomStream::new(7, 0);
         for case in 0..2000 {
@@ -277,7 +246,7 @@ mod tests {
             for (form, most) in
                 [(PlacementForm::Similar, 4e-4), (PlacementForm::Affine, 1e-7), (PlacementForm::Exact, 0.0)]
             {
-                let kept = rounded(form, &cube(), &given);
+                let kept = rounded(form, &cube(), &given, DVec3::ZERO);
                 assert_eq!((kept.prototype, kept.variation), (3, case));
                 assert!((kept.placement.translation - translation).abs().max_element() <= 4096.0 / POSITIONS);
                 let off = kept.placement.matrix3 - placement.matrix3;
@@ -291,7 +260,12 @@ mod tests {
     fn no_rotation_and_the_scale_one_are_exact() {
         for matrix3 in [DMat3::IDENTITY, DMat3::IDENTITY * 2.0, DMat3::IDENTITY * -0.5] {
             let placement = DAffine3 { matrix3, translation: DVec3::ZERO };
-            let kept = rounded(PlacementForm::Similar, &cube(), &Instance { prototype: 0, variation: 0, placement });
+            let kept = rounded(
+                PlacementForm::Similar,
+                &cube(),
+                &Instance { prototype: 0, variation: 0, placement },
+                DVec3::ZERO,
+            );
             assert_eq!(kept.placement.matrix3, matrix3);
         }
     }

@@ -1,5 +1,6 @@
 //! Tests of instances against asking each of them, and against one mesh of all.
 
+use super::super::lanes::LANES;
 use super::super::{Octree, OctreeSettings, Ray, Walk};
 use super::build::Content;
 use super::*;
@@ -56,12 +57,13 @@ fn rays(seed: u64, count: usize, reach: f64) -> impl Iterator<Item = Ray> {
 /// The nearest hit by asking every instance, and how many there are.
 fn asked(octree: &InstanceOctree, ray: &Ray, path: InstancePath) -> (Option<InstanceHit>, usize) {
     let (mut best, mut count): (Option<InstanceHit>, usize) = (None, 0);
-    for number in 0..octree.count() {
-        let Instance { prototype, placement, .. } = octree.instance(number);
-        let inverse = placement.inverse();
-        let origin = inverse.transform_point3(ray.origin);
-        let inner = Ray { origin, direction: inverse.transform_vector3(ray.direction) };
-        let path = path.and(number as u32);
+    for (number, Instance { prototype, placement, .. }) in octree.instances() {
+        let (block, lane) = (number as usize / LANES, number as usize % LANES);
+        let center = octree.spheres[usize::from(prototype)].center;
+        let inner = octree.placements.own_ray(&octree.positions, block, lane, center, ray);
+        let far = placement.transform_point3(inner.at(0.7)).distance(ray.at(0.7));
+        assert!(far < 1e-9 * (ray.at(0.7).length() + placement.translation.length()), "{far}");
+        let path = path.and(number);
         let (found, hits) = match &octree.prototypes[usize::from(prototype)].content {
             Content::Surface { octree: surface, .. } => {
                 let mut hits = 0;
@@ -118,12 +120,18 @@ fn rays_hit_what_they_hit_when_every_instance_is_asked() {
 
 #[test]
 fn instances_are_where_one_mesh_of_all_is() {
-    let placed = of(vec![surface()], PlacementForm::Affine, 400, 11);
+    for form in [PlacementForm::Similar, PlacementForm::Affine, PlacementForm::Exact] {
+        are_where_one_mesh_is(&of(vec![surface()], form, 400, 11));
+    }
+}
+
+fn are_where_one_mesh_is(placed: &InstanceOctree) {
     let (vertices, triangles) = tetrahedron();
     let (mut all, mut corners) = (Vec::new(), Vec::new());
-    for number in 0..placed.count() {
+    let mut firsts = std::collections::HashMap::new();
+    for (number, Instance { placement, .. }) in placed.instances() {
         let first = all.len() as u32;
-        let placement = placed.instance(number).placement;
+        firsts.insert(number, corners.len() as u32);
         all.extend(vertices.iter().map(|vertex| placement.transform_point3(*vertex)));
         corners.extend(triangles.iter().map(|triangle| triangle.map(|vertex| vertex + first)));
     }
@@ -135,7 +143,7 @@ fn instances_are_where_one_mesh_of_all_is() {
         if let (Some(found), Some(expected)) = (found, expected) {
             hits += 1;
             assert!((found.hit.t - expected.t).abs() < 1e-12);
-            assert_eq!((found.path.numbers()[0] * 4 + found.hit.triangle), expected.triangle);
+            assert_eq!(firsts[&found.path.numbers()[0]] + found.hit.triangle, expected.triangle);
             let placement = placed.placed(&found.path).placement;
             let [a, b, c] = triangles[found.hit.triangle as usize].map(|vertex| vertices[vertex as usize]);
             let own = a * (1.0 - found.hit.u - found.hit.v) + b * found.hit.u + c * found.hit.v;
@@ -224,6 +232,14 @@ fn an_instance_costs_less_than_32_bytes_and_with_an_affine_map_less_than_64() {
             let InstanceCosts { instances, bytes } = of(vec![surface()], form, count, 31).costs();
             assert!(instances == count && bytes <= most * count, "{count}: {}", bytes as f64 / count as f64);
         }
+    }
+}
+
+#[test]
+fn placements_take_as_many_bytes_as_their_form_tells() {
+    for form in [PlacementForm::Similar, PlacementForm::Affine, PlacementForm::Exact] {
+        let octree = of(vec![surface()], form, 8, 3);
+        assert_eq!(octree.costs().bytes - size_of_val(octree.nodes.as_slice()), 8 * form.bytes());
     }
 }
 

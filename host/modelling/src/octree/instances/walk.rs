@@ -2,17 +2,14 @@
 
 #[cfg(target_arch = "x86_64")]
 use super::super::lanes::{Avx, AvxLanes};
-use super::super::lanes::{Lanes, ScalarLanes};
+use super::super::lanes::{LANES, Lanes, ScalarLanes};
 use super::super::prepared_ray::PreparedRay;
 use super::super::visit::{LeafVisitor, visit_leaves};
 use super::super::{Hit, Octree, Ray};
+use super::blocks::SphereTest;
 use super::build::{Content, InstanceOctree};
 use super::path::{InstanceHit, InstancePath};
-use super::placement::InstanceBound;
 use std::ops::Range;
-
-/// Rounding of a sphere, as a part of its radius and of how far it is: far more than there is.
-const ROUNDING: f64 = 1e-9;
 
 impl InstanceOctree {
     /// Finds the nearest hit with `t_min < t < t_max`, both exclusive, as [`Octree::closest`] does.
@@ -61,7 +58,10 @@ impl InstanceOctree {
         let [t_min, t_max] = query.limits();
         let Some(prepared) = PreparedRay::new(ray, &self.cube, t_min, t_max) else { return false };
         let limit = prepared.single.limit_of(prepared.chord.length());
-        let mut visitor = Visitor { octree: self, ray, prepared: &prepared, path, query, limit };
+        let test = SphereTest::new(ray, &self.positions);
+        let from = test.as_ref().map_or(0.0, |test| test.from(t_min));
+        let mut visitor =
+            Visitor::<L, _> { proof, octree: self, ray, prepared: &prepared, test, from, path, query, limit };
         visit_leaves::<L>(proof, &self.nodes, &prepared.single, &mut visitor)
     }
 }
@@ -86,6 +86,7 @@ impl Query for Nearest {
         self.limits
     }
 
+    #[inline(always)]
     fn ask(&mut self, surface: &Octree, first: u32, ray: &Ray, path: InstancePath) -> bool {
         if let Some(hit) = surface.closest(ray, self.limits[0], self.limits[1]) {
             self.limits[1] = hit.t;
@@ -109,6 +110,7 @@ impl Query for Any {
         self.limits
     }
 
+    #[inline(always)]
     fn ask(&mut self, surface: &Octree, _: u32, ray: &Ray, _: InstancePath) -> bool {
         surface.occluded(ray, self.limits[0], self.limits[1])
     }
@@ -124,6 +126,7 @@ impl<F: FnMut(InstanceHit) -> bool> Query for Each<F> {
         self.limits
     }
 
+    #[inline(always)]
     fn ask(&mut self, surface: &Octree, first: u32, ray: &Ray, path: InstancePath) -> bool {
         let enough = |hit: Hit| (self.enough)(InstanceHit { hit: numbered(hit, first), path });
         surface.each_hit(ray, self.limits[0], self.limits[1], enough)
@@ -131,38 +134,42 @@ impl<F: FnMut(InstanceHit) -> bool> Query for Each<F> {
 }
 
 /// Takes a ray into the coordinates of prototypes.
-struct Visitor<'v, Q> {
+struct Visitor<'v, L: Lanes, Q> {
+    proof: L::Proof,
     octree: &'v InstanceOctree,
     ray: &'v Ray,
     prepared: &'v PreparedRay,
+    /// None where spheres about instances cannot be compared with the ray.
+    test: Option<SphereTest>,
+    /// The length of the ray from which on hits count.
+    from: f32,
     path: InstancePath,
     query: &'v mut Q,
     limit: f32,
 }
 
-impl<Q: Query> Visitor<'_, Q> {
-    /// Whether the ray comes to the sphere about the origin of an instance that all of it is within; in doubt it does.
+impl<L: Lanes, Q: Query> Visitor<'_, L, Q> {
+    /// The length of the ray up to which hits count.
     #[inline(always)]
-    fn may_hit(&self, number: usize) -> bool {
-        let InstanceBound { prototype, origin, longer } = self.octree.placements.bound(&self.octree.positions, number);
-        let to = origin - self.ray.origin;
-        let radius = self.octree.prototypes[usize::from(prototype)].radius * longer * (1.0 + ROUNDING)
-            + to.abs().max_element() * ROUNDING;
-        let square = self.ray.direction.length_squared();
-        if !square.is_normal() {
-            return true;
+    fn to(&self) -> f32 {
+        self.test.as_ref().map_or(0.0, |test| test.to(self.query.limits()[1]))
+    }
+
+    /// Asks what is placed at a place; returns whether the answer is known.
+    #[inline(always)]
+    fn ask(&mut self, block: usize, lane: usize) -> bool {
+        let InstanceOctree { placements, positions, prototypes, spheres, .. } = self.octree;
+        let Some(prototype) = placements.prototype(block, lane).map(usize::from) else { return false };
+        let ray = placements.own_ray(positions, block, lane, spheres[prototype].center, self.ray);
+        let path = self.path.and((block * LANES + lane) as u32);
+        match &prototypes[prototype].content {
+            Content::Surface { octree, first } => self.query.ask(octree, *first, &ray, path),
+            Content::Instances(inner) => inner.ask(&ray, path, self.query),
         }
-        let t = to.dot(self.ray.direction) / square;
-        let beside = to - self.ray.direction * t;
-        let [t_min, t_max] = self.query.limits();
-        let half = radius / square.sqrt();
-        // Written so that what is not a number may hit.
-        let misses = beside.length_squared() > radius * radius || t + half < t_min || t - half > t_max;
-        !misses
     }
 }
 
-impl<Q: Query> LeafVisitor for Visitor<'_, Q> {
+impl<L: Lanes, Q: Query> LeafVisitor for Visitor<'_, L, Q> {
     #[inline(always)]
     fn limit(&self) -> f32 {
         self.limit
@@ -172,22 +179,29 @@ impl<Q: Query> LeafVisitor for Visitor<'_, Q> {
     fn count(&mut self) {}
 
     #[inline(always)]
-    fn visit(&mut self, places: Range<usize>) -> bool {
-        for number in places {
-            if !self.may_hit(number) {
-                continue;
-            }
-            let instance = self.octree.instance(number);
-            let inverse = instance.placement.inverse();
-            let origin = inverse.transform_point3(self.ray.origin);
-            let ray = Ray { origin, direction: inverse.transform_vector3(self.ray.direction) };
-            let path = self.path.and(number as u32);
-            let is_known = match &self.octree.prototypes[usize::from(instance.prototype)].content {
-                Content::Surface { octree, first } => self.query.ask(octree, *first, &ray, path),
-                Content::Instances(inner) => inner.ask(&ray, path, self.query),
-            };
-            if is_known {
-                return true;
+    fn visit(&mut self, blocks: Range<usize>) -> bool {
+        let InstanceOctree { placements, positions, spheres, .. } = self.octree;
+        for block in blocks {
+            let mut to = self.to();
+            let (mut lanes, enter) =
+                placements.meets::<L>(self.proof, positions, block, spheres, self.test.as_ref(), [self.from, to]);
+            // The nearer ones first, so that those behind a hit are not asked.
+            while lanes != 0 {
+                let mut lane = lanes.trailing_zeros() as usize & (LANES - 1);
+                let mut others = lanes & (lanes - 1);
+                while others != 0 {
+                    let other = others.trailing_zeros() as usize & (LANES - 1);
+                    others &= others - 1;
+                    lane = if enter.0[other] < enter.0[lane] { other } else { lane };
+                }
+                lanes &= !(1 << lane);
+                if enter.0[lane] > to {
+                    continue;
+                }
+                if self.ask(block, lane) {
+                    return true;
+                }
+                to = self.to();
             }
             let length = self.prepared.single.limit(self.query.limits()[1]);
             self.limit = self.limit.min(length);
