@@ -4,7 +4,8 @@ use super::builder::Builder;
 use super::function::{Function, function};
 use super::handle::{CallResult, Handle};
 use super::kinds::{
-    ANY_NUMBER, AmountKind, Integer, NumberKind, Numbers, ObjectGroups, ObjectKind, PlaceValue, PlacesKind, RangeKind,
+    ANY_NUMBER, AmountKind, Flag, Integer, NumberKind, Numbers, ObjectGroups, ObjectKind, PlaceValue, PlacesKind,
+    RangeKind,
 };
 use super::parameter::{Required, optional, required, with_default};
 use crate::numeric::sampling::mix;
@@ -42,7 +43,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     function! {
         scatter(
             objects: OBJECTS,
-            on: required(ObjectKind, "the object on whose surface they stand as it is now; it stays"),
+            on: required(ObjectKind, "the object on whose surface they stand, as it is now"),
             count: required(Integer(0, MOST_INSTANCES), "how many; fewer where they find no room"),
             distance: with_default(NumberKind(0.0, f64::INFINITY), 0.0, "of each two the least distance"),
             density: with_default(
@@ -70,17 +71,26 @@ pub(super) const FUNCTIONS: &[Function] = &[
             ),
             shares: optional(Numbers, "the same of each", "how often there is each group of objects"),
             seed: with_default(Integer(0, i64::MAX as u64), 1, "of all that is drawn"),
+            stays: with_default(Flag, true, "whether that object stays; if not, it is used up"),
             sink: with_default(ANY_NUMBER, 0.0, "how deep their origin is below the surface, along their y axis"),
         )
         "Scatters objects over the surface of another by chance, as one object: as many on each part of its area. Each instance takes 29 bytes, and some millions are found in a second."
         "scatter(cone(0.1, 0.4), pot, #{ count: 400, distance: 0.1, scale: [0.7, 1.3], slope: [0, 60] });"
         |builder| {
             builder.check_still(on)?;
+            if objects.iter().flatten().any(|object| *object == on) {
+                return Err("an object cannot be scattered on itself; copy() it before".into());
+            }
+            let surface = on;
             let on = builder.object(on)?.clone();
             let shares = shares.unwrap_or_else(|| vec![1.0; objects.len()]);
             let height = height.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
             let scatter = Scatter { on, count, distance, density, slope, height, scale, turn, lean, upright, shares, seed, sink };
-            add(builder, objects, Placing::Scattered(Box::new(scatter)))
+            let all = add(builder, objects, Placing::Scattered(Box::new(scatter)))?;
+            if !stays {
+                builder.use_up(surface);
+            }
+            Ok(all)
         }
     },
 ];

@@ -52,15 +52,15 @@ fn places_are_points_or_tell_how_to_place() {
 #[test]
 fn instances_of_scattered_instances_stand_where_their_surface_is() {
     let made = run("
-        let tuft = scatter(box(0.02, 0.2, 0.02), ground(1), #{ count: 30, seed: 5 });
+        let tuft = scatter(box(0.02, 0.2, 0.02), ground(1), #{ count: 30, seed: 5, stays: false });
         let hill = sphere(3).translate(0, -1, 0);
         scatter(tuft, hill, #{ count: 20, slope: [0, 40], upright: 1, scale: [0.5, 1] });
         hill.translate(100, 0, 0);
     ");
     let names: Vec<&str> = made.scene.objects.iter().map(|object| &*object.name).collect();
-    assert_eq!(names, ["ground", "sphere", "instances 2"]);
+    assert_eq!(names, ["sphere", "instances 2"]);
     let prepared = Prepared::new(&made.scene).expect("a scene");
-    let group = &prepared.objects[2];
+    let group = &prepared.objects[1];
     assert_eq!(
         (group.instances, prepared.triangles.len() as u32),
         (20, prepared.objects.iter().map(|o| o.count).sum())
@@ -84,6 +84,7 @@ fn what_cannot_be_placed_is_told_with_its_place() {
         ("instances(cube(1), [#{ which: 1 }]);", (1, 1, "which 1 of place 1 is not within 0 to 0")),
         ("instances([], [[0, 0, 0]]);", (1, 1, "objects must be an object, a list of objects")),
         ("let b = cube(1).moving([1, 0, 0]);\ninstances(b, [[0, 0, 0]]);", (2, 1, "moves; let the whole move")),
+        ("let b = cube(1); scatter(b, b, 10);", (1, 18, "an object cannot be scattered on itself")),
         ("scatter(cube(1), half_space(\"y\"), 10);", (1, 1, "has no surface of its own")),
         ("scatter(cube(1), cube(4), #{ count: 10, shares: [1, 2] });", (1, 1, "shares is out of range")),
         ("scatter(cube(1), cube(4), #{ count: 10, slope: [40, 20] });", (1, 1, "slope must be a number from 0 to 180")),

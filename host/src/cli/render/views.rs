@@ -7,6 +7,7 @@ use crate::cli::output::{self, warn};
 use crate::cli::source::stem;
 use crate::cli::{CommandFailure, Exit, progress};
 use crate::memory;
+use crate::octree::InstanceCosts;
 use crate::picture::display::{DisplayTransform, Tone, clipped};
 use crate::picture::{Picture, Provenance};
 use crate::render::radiosity::RadiosityReport;
@@ -175,6 +176,7 @@ impl ViewBatch<'_> {
             "exposure": self.stops,
             "tone": self.display.tone.word(),
             "triangles": self.prepared.triangles.len(),
+            "instances": self.prepared.instance_costs(),
             "build_seconds": self.build_seconds,
             "render_seconds": rendering.seconds,
             "threads": rendering.threads,
@@ -226,6 +228,10 @@ impl ViewBatch<'_> {
             say!("{seconds:>9.3} s  {:indent$}{name}{times}", "", indent = 2 * depth);
         }
         say!("{} triangles", self.prepared.triangles.len());
+        if let Some(InstanceCosts { instances, bytes, triangles }) = self.prepared.instance_costs() {
+            let each = bytes as f64 / instances as f64;
+            say!("{instances} instances of {each:.1} bytes each; with them {triangles} triangles are placed");
+        }
         if let Some(balance) = &rendering.flux_balance {
             say!("{balance}");
         }

@@ -11,7 +11,7 @@ use crate::illumination::Material;
 use crate::memory;
 use crate::numeric::bounds::Bounds;
 use crate::numeric::triangle::MAX_MAGNITUDE;
-use crate::octree::{Instance, InstanceOctree, PlacementForm, Prototype};
+use crate::octree::{Instance, InstanceCosts, InstanceOctree, PlacementForm, Prototype};
 use crate::stages::stage;
 use glam::{DAffine3, DMat4};
 use std::sync::Arc;
@@ -79,6 +79,8 @@ impl Contents {
         let group = &mut self.objects[index as usize];
         group.bounds = group.motion.map_or(still, |motion| motion.swept(&still, [-half, half]));
         group.instances = octree.count();
+        let placed = octree.costs().triangles;
+        self.instance_costs.triangles = self.instance_costs.triangles.saturating_add(placed);
         self.bounds = self.bounds.union(group.bounds);
         let prototype = Prototype::instances(Arc::new(octree));
         self.placed.push(PlacedInstances { object: index, prototype, transform });
@@ -98,7 +100,12 @@ impl Contents {
         let prototypes = instances.prototypes.iter().map(|group| self.prototype(name, group, whole, geometry));
         let prototypes = prototypes.collect::<Result<Vec<Prototype>, SceneError>>()?;
         let placed = |number: usize| places.instance(number);
-        InstanceOctree::new(prototypes, places.form(), places.count(), placed).map_err(|error| failed(name, error))
+        let octree = InstanceOctree::new(prototypes, places.form(), places.count(), placed);
+        let octree = octree.map_err(|error| failed(name, error))?;
+        let InstanceCosts { instances, bytes, .. } = octree.costs();
+        self.instance_costs.instances += instances;
+        self.instance_costs.bytes += bytes;
+        Ok(octree)
     }
 
     /// A group of objects as one prototype.

@@ -14,6 +14,7 @@ use crate::illumination::{Light, Material, RgbPower};
 use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
 use crate::numeric::triangle::MAX_MAGNITUDE;
+use crate::octree::InstanceCosts;
 use crate::stages::stage;
 use glam::{DMat3, DMat4, DVec2, DVec3, Vec3};
 use rustc_hash::FxHashMap;
@@ -63,6 +64,8 @@ pub struct Contents {
     pub bounds: Bounds,
     /// The instances that stand in it, each group of an object.
     pub(super) placed: Vec<PlacedInstances>,
+    /// What these cost, all levels together.
+    pub(super) instance_costs: InstanceCosts,
     /// Its octrees, as far as they were asked for.
     pub(super) octrees: AccelerationCache,
 }
@@ -162,6 +165,7 @@ impl Contents {
             camera: Camera::framing(&Bounds::EMPTY),
             bounds: Bounds::EMPTY,
             placed: Vec::new(),
+            instance_costs: InstanceCosts::default(),
             octrees: AccelerationCache::default(),
         };
         let mut shared = SharedMeshes::of(scene);
@@ -351,6 +355,11 @@ impl Contents {
     pub fn parameters(&self, triangle: u32) -> Option<&[DVec2; 3]> {
         let object = self.object(triangle);
         object.parameters_from.map(|from| &self.parameters[(from + triangle - object.first) as usize])
+    }
+
+    /// What all placed instances cost, those within prototypes too; nothing without any.
+    pub fn instance_costs(&self) -> Option<InstanceCosts> {
+        (self.instance_costs.instances > 0).then_some(self.instance_costs)
     }
 
     /// An object whose instances are placed, if there is one: renderers that go through triangles one by one do not see

@@ -114,23 +114,25 @@ impl SphereTest {
     }
 
     /// As [`SphereTest::meets`], in the coordinates of each prototype, where its sphere is one.
+    ///
+    /// These are scaled, so that the inverse map has the norm 1, for placements and cubes of any size.
     #[inline(always)]
     fn meets_affine(&self, block: &AffineBlock, radii: &Eight, [from, to]: [f32; 2]) -> (u32, Eight) {
-        let (side, mut lanes, mut near) = (self.unit.recip(), 0, Eight([0.0; LANES]));
+        let (mut lanes, mut near) = (0, Eight([0.0; LANES]));
         for lane in 0..LANES {
             let entry = |entry: usize| block.inverse[entry].0[lane];
+            let scale = (0..9).map(|k| entry(k) * entry(k)).sum::<f32>().sqrt().recip();
             let own = |[x, y, z]: [f32; 3]| {
-                let row = |row: usize| entry(row) * x + entry(3 + row) * y + entry(6 + row) * z;
-                [row(0) * side, row(1) * side, row(2) * side]
+                let row = |row: usize| (entry(row) * x + entry(3 + row) * y + entry(6 + row) * z) * scale;
+                [row(0), row(1), row(2)]
             };
             let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
             let from_center = |axis: usize| self.origin[axis] - (block.position[axis][lane] >> 8) as f32 * PART;
             let (origin, direction) = (own([from_center(0), from_center(1), from_center(2)]), own(self.direction));
-            let norm = (0..9).map(|k| entry(k) * entry(k)).sum::<f32>().sqrt() * side;
             let square = dot(direction, direction);
             let along = -dot(origin, direction) / square;
             let beside = [0, 1, 2].map(|axis| origin[axis] + direction[axis] * along);
-            let radius = radii.0[lane] * (1.0 + RELATIVE) + self.rounding * norm;
+            let radius = radii.0[lane] * self.unit * scale * (1.0 + RELATIVE) + self.rounding;
             let half = radius / square.sqrt();
             let misses = dot(beside, beside) > radius * radius || along + half <= from || along - half >= to;
             lanes |= u32::from(!misses) << lane;
@@ -182,7 +184,7 @@ impl SimilarBlock {
 impl AffineBlock {
     const EMPTY: AffineBlock = AffineBlock {
         position: [[0; LANES]; 3],
-        inverse: [Eight([0.0; LANES]); 9],
+        inverse: [Eight([1.0; LANES]); 9],
         prototype: [NONE; LANES],
         variation: [0; LANES],
     };
@@ -267,6 +269,12 @@ impl Placements {
             Placements::Affine(blocks) => Some(blocks[block].get(lane).instance(cube, center)),
             Placements::Exact(blocks) => Some(blocks[block][lane]),
         }
+    }
+
+    /// What is placed at all places that are not empty.
+    pub(super) fn prototypes(&self) -> impl Iterator<Item = u16> + '_ {
+        let places = (0..self.blocks()).flat_map(|block| (0..LANES).map(move |lane| (block, lane)));
+        places.filter_map(|(block, lane)| self.prototype(block, lane))
     }
 
     /// What is placed at a place; none where that is empty.

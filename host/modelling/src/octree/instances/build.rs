@@ -15,6 +15,7 @@ use crate::memory;
 use crate::numeric::bounds::Bounds;
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
+use serde::Serialize;
 use std::sync::Arc;
 use wide::f32x4;
 
@@ -30,6 +31,8 @@ const BATCH: usize = 64;
 const NODE_BYTES: usize = 16;
 /// A sphere is so much larger than it would be without rounding.
 const SPHERE_ROUNDING: f64 = 1e-9;
+/// The cube of positions reaches this part of the radius of an instance about each.
+const POSITION_MARGIN: f64 = 1.0 / 65_536.0;
 /// A placement flattens if the volume of a unit cube becomes this part of the cube of its longest edge.
 const FLAT: f64 = 1e-12;
 /// Edges of a cube that is rotated and scaled are as long and as upright to each other as this.
@@ -83,6 +86,14 @@ impl Prototype {
         Prototype { content, bounds, sphere, levels }
     }
 
+    /// How many triangles it is made of, each as often as it is placed.
+    fn triangles(&self) -> u64 {
+        match &self.content {
+            Content::Surface { octree, .. } => octree.triangle_count() as u64,
+            Content::Instances(instances) => instances.triangles,
+        }
+    }
+
     /// The box around it, in its own coordinates; empty without triangles.
     pub fn bounds(&self) -> Bounds {
         self.bounds
@@ -103,17 +114,21 @@ pub struct InstanceOctree {
     pub(super) nodes: Vec<BvhNode>,
     bounds: Bounds,
     count: usize,
+    /// Triangles that are placed.
+    triangles: u64,
     /// How many times over instances are placed by instances.
     levels: usize,
 }
 
 /// What an instance octree says of itself.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct InstanceCosts {
-    /// Instances that it holds, each of which may place many more.
+    /// Instances that are kept, each of which may place many more.
     pub instances: usize,
-    /// Bytes of their placements and of the index, without the prototypes.
+    /// Bytes of their placements and of the index, without what is placed.
     pub bytes: usize,
+    /// Triangles that are placed, each as often as it is; as many as can be counted.
+    pub triangles: u64,
 }
 
 impl InstanceOctree {
@@ -160,7 +175,7 @@ impl InstanceOctree {
         if let Some(error) = instances.clone().into_par_iter().find_map_first(|number| builder.check(number).err()) {
             return Err(error);
         }
-        let position = |number| Bounds::of([builder.center(&instance(number))]);
+        let position = |number| builder.around_center(&instance(number));
         builder.positions = cube_around(union(instances.clone().into_par_iter().map(position)));
         let spoilt = |number| builder.check_rounded(number).err();
         if let Some(error) = instances.clone().into_par_iter().find_map_first(spoilt) {
@@ -171,7 +186,9 @@ impl InstanceOctree {
         builder.sort(count);
         let (nodes, placements) = builder.index();
         let (positions, cube, count) = (builder.positions, builder.cube, builder.keys.len());
-        Ok(InstanceOctree { prototypes, spheres, positions, placements, cube, nodes, bounds, count, levels })
+        let triangles = placements.prototypes().map(|of| prototypes[usize::from(of)].triangles());
+        let triangles = triangles.fold(0_u64, u64::saturating_add);
+        Ok(InstanceOctree { prototypes, spheres, positions, placements, cube, nodes, bounds, count, triangles, levels })
     }
 
     /// The box around all instances; empty without any.
@@ -211,9 +228,10 @@ impl InstanceOctree {
         placed
     }
 
-    /// What it costs.
+    /// What it costs, without the instances that its prototypes may be made of.
     pub fn costs(&self) -> InstanceCosts {
-        InstanceCosts { instances: self.count, bytes: self.placements.bytes() + size_of_val(self.nodes.as_slice()) }
+        let bytes = self.placements.bytes() + size_of_val(self.nodes.as_slice());
+        InstanceCosts { instances: self.count, bytes, triangles: self.triangles }
     }
 }
 
@@ -288,6 +306,15 @@ impl<F: Fn(usize) -> Instance + Sync> Builder<'_, F> {
     /// Where the centre of the sphere of an instance is.
     fn center(&self, instance: &Instance) -> DVec3 {
         instance.placement.transform_point3(self.spheres[usize::from(instance.prototype)].center)
+    }
+
+    /// A box around the centre of the sphere of an instance, so small a part of it that positions are rounded to less than
+    /// the digits of the sphere, and so large that these are numbers of single precision, in sides of it.
+    fn around_center(&self, instance: &Instance) -> Bounds {
+        let radius = f64::from(self.spheres[usize::from(instance.prototype)].radius);
+        let margin = DVec3::splat(radius * longest(&instance.placement.matrix3) * POSITION_MARGIN);
+        let center = self.center(instance);
+        Bounds { min: center - margin, max: center + margin }
     }
 
     fn rounded(&self, number: usize) -> Instance {

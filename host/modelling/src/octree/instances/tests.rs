@@ -229,8 +229,9 @@ fn ten_thousand_instances_at_one_place_are_one_hit_after_another() {
 fn an_instance_costs_less_than_32_bytes_and_with_an_affine_map_less_than_64() {
     for (form, most) in [(PlacementForm::Similar, 32), (PlacementForm::Affine, 64)] {
         for count in [1_000, 30_000, 100_000] {
-            let InstanceCosts { instances, bytes } = of(vec![surface()], form, count, 31).costs();
-            assert!(instances == count && bytes <= most * count, "{count}: {}", bytes as f64 / count as f64);
+            let InstanceCosts { instances, bytes, triangles } = of(vec![surface()], form, count, 31).costs();
+            assert!(instances == count && triangles == 4 * count as u64);
+            assert!(bytes <= most * count, "{count}: {}", bytes as f64 / count as f64);
         }
     }
 }
