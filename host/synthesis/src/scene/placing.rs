@@ -201,7 +201,10 @@ impl CopiedInstances {
         let prototypes = instances.prototypes.iter().map(|group| group.iter().map(copied).collect());
         let prototypes = prototypes.collect::<Result<Vec<Vec<Copied>>, SceneError>>()?;
         let places = whole.places(name, instances, geometry)?;
-        let placements = (0..places.count()).map(|number| places.instance(number)).collect();
+        let count = places.count();
+        memory::reserve(count as u64 * size_of::<Instance>() as u64, || format!("copying {count} instances"))
+            .map_err(|error| failed(name, error))?;
+        let placements = (0..count).map(|number| places.instance(number)).collect();
         Ok(CopiedInstances { prototypes, placements })
     }
 

@@ -8,13 +8,15 @@ use super::placement::{
 use crate::numeric::ray::Ray;
 use glam::{DAffine3, DVec3};
 
-/// Stands for the prototype of a place that is empty.
+/// Stands for the prototype of a place that is empty: there are fewer.
 const NONE: u16 = u16::MAX;
 /// One of 2^24 parts.
 const PART: f32 = 1.0 / (1_u32 << 24) as f32;
 /// Rounding of what is compared in single precision, sides of the cube of positions: positions are cut to 2^-24, and
 /// what is added to them is off by less than ten times that.
 const ROUNDING: f32 = 1.0 / (1_u32 << 20) as f32;
+/// Rounding of a point of a ray in double precision, as a part of how far away the ray begins.
+const DOUBLE_ROUNDING: f32 = 1.0 / (1_u64 << 48) as f32;
 /// Rounding of radii and lengths in single precision, parts of them.
 const RELATIVE: f32 = 1.0 / (1_u32 << 20) as f32;
 
@@ -71,7 +73,8 @@ impl SphereTest {
         let origin = cube.local(ray.at(first)).as_vec3();
         let direction = (ray.direction / square.sqrt()).as_vec3();
         let rate = square.sqrt() * cube.unit();
-        let rounding = ROUNDING * (1.0 + origin.abs().max_element());
+        let far = cube.local(ray.origin).abs().max_element() as f32;
+        let rounding = ROUNDING * (1.0 + origin.abs().max_element()) + DOUBLE_ROUNDING * far;
         let is_sound = square.is_normal() && rate.is_normal() && rounding.is_finite() && first.is_finite();
         let (origin, direction) = (origin.to_array(), direction.to_array());
         is_sound.then_some(SphereTest { origin, direction, unit: cube.unit() as f32, rounding, rate, first })

@@ -6,7 +6,7 @@ use crate::memory::MemoryExceeded;
 /// Most instances of one instance octree; one of them may place another octree as large.
 pub const MOST_INSTANCES: usize = 1 << 28;
 /// Most prototypes of one instance octree.
-pub const MOST_PROTOTYPES: usize = 1 << 16;
+pub const MOST_PROTOTYPES: usize = u16::MAX as usize;
 /// Instances may be placed by instances so many times over.
 pub const MOST_LEVELS: usize = 8;
 

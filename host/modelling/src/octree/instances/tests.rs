@@ -211,6 +211,27 @@ fn a_hit_tells_which_surface_it_is_on_and_how_that_is_placed() {
 }
 
 #[test]
+fn rays_that_begin_far_away_hit_what_they_hit_when_every_instance_is_asked() {
+    for form in [PlacementForm::Similar, PlacementForm::Affine, PlacementForm::Exact] {
+        let octree = of(vec![surface()], form, 200, 13);
+        let (mut hits, vertices) = (0, tetrahedron().0);
+        for (number, ray) in rays(14, 1500, 1.0).enumerate() {
+            // Just within the corners, along the spheres about instances, which go through these.
+            let (_, placed) = octree.instances().nth(number % 200).expect("an instance");
+            let corner = placed.placement.transform_point3(vertices[number % 4] * (1.0 - 1e-7));
+            let out = corner - placed.placement.translation;
+            let direction = ray.direction - out * (ray.direction.dot(out) / out.length_squared());
+            let far = 10_f64.powi(number as i32 % 14);
+            let ray = Ray { origin: corner - direction * far, direction };
+            let expected = asked(&octree, &ray, InstancePath::default()).0;
+            assert_eq!(octree.closest(&ray, 0.0, f64::INFINITY), expected, "{far} {ray:?}");
+            hits += usize::from(expected.is_some());
+        }
+        assert!(hits > 100, "{form:?}: {hits}");
+    }
+}
+
+#[test]
 fn ten_thousand_instances_at_one_place_are_one_hit_after_another() {
     let there = |number: usize| Instance { variation: number as u16, ..scattered(1, 0, 1.0, 0.5) };
     let octree = InstanceOctree::new(vec![surface()], PlacementForm::Similar, 10_000, there).expect("sound placements");
