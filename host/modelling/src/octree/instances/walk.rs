@@ -68,6 +68,8 @@ impl InstanceOctree {
 
 /// What is asked of the surfaces along a ray.
 trait Query {
+    /// Whether an answer brings the limits closer, so that the order counts.
+    const NARROWS: bool;
     /// The lengths between which hits count.
     fn limits(&self) -> [f64; 2];
     /// Asks a surface; returns whether the answer is known.
@@ -82,6 +84,8 @@ struct Nearest {
 }
 
 impl Query for Nearest {
+    const NARROWS: bool = true;
+
     fn limits(&self) -> [f64; 2] {
         self.limits
     }
@@ -106,6 +110,8 @@ struct Any {
 }
 
 impl Query for Any {
+    const NARROWS: bool = false;
+
     fn limits(&self) -> [f64; 2] {
         self.limits
     }
@@ -122,6 +128,8 @@ struct Each<F> {
 }
 
 impl<F: FnMut(InstanceHit) -> bool> Query for Each<F> {
+    const NARROWS: bool = false;
+
     fn limits(&self) -> [f64; 2] {
         self.limits
     }
@@ -188,23 +196,26 @@ impl<L: Lanes, Q: Query> LeafVisitor for Visitor<'_, L, Q> {
             // The nearer ones first, so that those behind a hit are not asked.
             while lanes != 0 {
                 let mut lane = lanes.trailing_zeros() as usize & (LANES - 1);
-                let mut others = lanes & (lanes - 1);
+                let mut others = if Q::NARROWS { lanes & (lanes - 1) } else { 0 };
                 while others != 0 {
                     let other = others.trailing_zeros() as usize & (LANES - 1);
                     others &= others - 1;
                     lane = if enter.0[other] < enter.0[lane] { other } else { lane };
                 }
                 lanes &= !(1 << lane);
-                if enter.0[lane] > to {
+                if Q::NARROWS && enter.0[lane] > to {
                     continue;
                 }
                 if self.ask(block, lane) {
                     return true;
                 }
-                to = self.to();
+                if Q::NARROWS {
+                    to = self.to();
+                }
             }
-            let length = self.prepared.single.limit(self.query.limits()[1]);
-            self.limit = self.limit.min(length);
+            if Q::NARROWS {
+                self.limit = self.limit.min(self.prepared.single.limit(self.query.limits()[1]));
+            }
         }
         false
     }
