@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use tests::notices::{self, Locked, carried};
 
 /// Files whose names end so are code, documents or settings of the project.
-const OWN: [&str; 8] = ["rs", "toml", "lock", "md", "py", "cpp", "gitignore", "wgsl"];
+const OWN: [&str; 9] = ["rs", "toml", "lock", "md", "py", "c", "cpp", "gitignore", "wgsl"];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
