@@ -9,7 +9,7 @@ pub const LANES: usize = 8;
 pub struct Eight(pub [f32; LANES]);
 
 /// One of 2^24 parts.
-const PART: f32 = 1.0 / (1_u32 << 24) as f32;
+pub const PART: f32 = 1.0 / (1_u32 << 24) as f32;
 /// The bits of the number 1.
 const ONE: i32 = 127 << 23;
 

@@ -20,7 +20,7 @@ pub(in crate::script) struct PlacesKind;
 /// A place as a script tells it.
 pub(in crate::script) struct PlaceValue {
     pub(in crate::script) placement: DAffine3,
-    /// Which of several groups.
+    /// The number of its group, where there are several.
     pub(in crate::script) which: u16,
     /// 0 to 1; none where it is drawn.
     pub(in crate::script) variation: Option<f64>,

@@ -227,11 +227,14 @@ fn a_material_varies_by_instance_placed_and_copied() {
     let lights = vec![Light::Directional { direction: DVec3::NEG_Z, irradiance: Color::grey(std::f64::consts::PI) }];
     let mut scene =
         Scene { objects: vec![row], lights, settings, camera: Some(camera(DVec3::Z * 20.5, 2.86)), ..Scene::default() };
-    for copies in [false, true] {
+    // Hardly anything: copies that move are carried from where they are kept.
+    let motion = Motion { by: DVec3::X * 1e-9, through: DVec3::ZERO, axis: DVec3::Y, angle: 0.0 };
+    for (copies, moves) in [(false, false), (true, false), (false, true), (true, true)] {
         scene.settings.geometry.copies_instances = copies;
+        scene.motions = if moves { vec![(0, motion)] } else { Vec::new() };
         let found = green(&render(&scene, Technique::RayTracing.row()));
         for (found, expected) in found.iter().zip([0.0, 0.5, 1.0]) {
-            assert!((found - expected).abs() < 1e-3, "{copies}: {found} {expected}");
+            assert!((found - expected).abs() < 1e-3, "{copies} {moves}: {found} {expected}");
         }
     }
 }

@@ -125,13 +125,21 @@ impl Instances {
         Ok(whole)
     }
 
-    /// Checks all numbers but those of placements, which are checked where they are used; the problem in words.
+    /// Checks all numbers but the maps of placements, which are checked where they are used; the problem in words.
     pub(super) fn check(&self) -> Result<(), String> {
         if self.prototypes.len() > MOST_PROTOTYPES {
             return Err(format!("more than {MOST_PROTOTYPES} prototypes"));
         }
         let count = match &self.placing {
-            Placing::Listed(list) => list.0.len(),
+            Placing::Listed(list) => {
+                let count = self.prototypes.len();
+                let unknown = list.0.iter().position(|instance| usize::from(instance.prototype) >= count);
+                if let Some(number) = unknown {
+                    let prototype = list.0[number].prototype;
+                    return Err(format!("instance {number} places prototype {prototype}, but there are only {count}"));
+                }
+                list.0.len()
+            }
             Placing::Scattered(scatter) => {
                 scatter.check(self.prototypes.len())?;
                 scatter.count

@@ -57,16 +57,11 @@ impl Contents {
 
     /// Octrees over the moving objects that are included, one for each motion.
     fn moving(&self, kept: &AccelerationKey) -> Result<Vec<(Motion, SceneOctree)>, OctreeError> {
-        let mut groups: Vec<(Motion, Vec<u32>)> = Vec::new();
-        for (object, is_kept) in self.objects.iter().zip(&kept.objects) {
-            let Some(motion) = object.motion.filter(|_| *is_kept && object.count > 0) else { continue };
-            let triangles = object.first..object.first + object.count;
-            match groups.iter_mut().find(|(other, _)| *other == motion) {
-                Some((_, of)) => of.extend(triangles),
-                None => groups.push((motion, triangles.collect())),
-            }
-        }
-        let made = |(motion, triangle_of): (Motion, Vec<u32>)| {
+        let moving = self.objects.iter().zip(&kept.objects).filter(|(object, is_kept)| **is_kept && object.count > 0);
+        let groups = by_motion(moving.filter_map(|(object, _)| Some((object.motion?, object))));
+        let made = |(motion, objects): (Motion, Vec<&PreparedObject>)| {
+            let triangles = objects.iter().flat_map(|object| object.first..object.first + object.count);
+            let triangle_of: Vec<u32> = triangles.collect();
             let octree = self.octree_over(triangle_of.iter().copied())?;
             Ok((motion, SceneOctree { octree, triangle_of }))
         };
@@ -102,16 +97,22 @@ impl Contents {
 
     /// Octrees over the instances of objects that are included and move, one for each motion.
     fn placed_moving(&self, kept: &AccelerationKey) -> Result<Vec<(Motion, InstanceOctree)>, InstanceError> {
-        let mut groups: Vec<(Motion, Vec<&PlacedInstances>)> = Vec::new();
-        for placed in self.placed.iter().filter(|placed| kept.objects[placed.object as usize]) {
-            let Some(motion) = self.objects[placed.object as usize].motion else { continue };
-            match groups.iter_mut().find(|(other, _)| *other == motion) {
-                Some((_, of)) => of.push(placed),
-                None => groups.push((motion, vec![placed])),
-            }
-        }
+        let kept = self.placed.iter().filter(|placed| kept.objects[placed.object as usize]);
+        let groups = by_motion(kept.filter_map(|placed| Some((self.objects[placed.object as usize].motion?, placed))));
         groups.into_iter().map(|(motion, all)| Ok((motion, placed_together(&all)?))).collect()
     }
+}
+
+/// What has the same motion, together, in the order of the first of each.
+fn by_motion<T>(all: impl Iterator<Item = (Motion, T)>) -> Vec<(Motion, Vec<T>)> {
+    let mut groups: Vec<(Motion, Vec<T>)> = Vec::new();
+    for (motion, one) in all {
+        match groups.iter_mut().find(|(other, _)| *other == motion) {
+            Some((_, of)) => of.push(one),
+            None => groups.push((motion, vec![one])),
+        }
+    }
+    groups
 }
 
 /// One octree over the instances of several objects.

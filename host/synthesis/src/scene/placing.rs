@@ -22,12 +22,11 @@ const TRIANGLE_BYTES: u64 = 64;
 const COPY_BYTES: u64 = 1024;
 
 /// What a group of objects becomes part of.
-#[derive(Clone, Copy)]
-struct Whole<'a> {
+struct Whole {
     /// Number of the object whose instances are prepared.
     object: u32,
     /// That of objects that have none.
-    material: &'a Option<Material>,
+    material: Option<Material>,
     /// How much longer what is placed may become at the most.
     stretch: f64,
 }
@@ -60,14 +59,13 @@ impl Contents {
     ) -> Result<(), SceneError> {
         let _stage = stage!("placing instances");
         let geometry = &settings.geometry;
-        let stretch = largest_stretch(&object.transform);
-        let whole = Whole { object: index, material: &object.material, stretch };
+        let whole = Whole { object: index, material: None, stretch: 1.0 }.within(object);
         let transform = DAffine3::from_mat4(object.transform);
         if settings.copies_instances() {
-            let copied = CopiedInstances::new(&object.name, instances, whole, geometry)?;
+            let copied = CopiedInstances::new(&object.name, instances, &whole, geometry)?;
             return copied.add_to(self, &object.name, transform, self.objects[index as usize].motion, geometry);
         }
-        let octree = self.instance_octree(&object.name, instances, whole, geometry)?;
+        let octree = self.instance_octree(&object.name, instances, &whole, geometry)?;
         let corners = octree.bounds().corners().map(|corner| transform.transform_point3(corner));
         let still = if octree.bounds().is_empty() { Bounds::EMPTY } else { Bounds::of(corners) };
         let is_near = still.is_empty() || still.min.abs().max(still.max.abs()).max_element() <= MAX_MAGNITUDE;
@@ -92,15 +90,15 @@ impl Contents {
         &mut self,
         name: &str,
         instances: &Instances,
-        whole: Whole<'_>,
+        whole: &Whole,
         geometry: &GeometrySettings,
     ) -> Result<InstanceOctree, SceneError> {
         let places = whole.places(name, instances, geometry)?;
-        let whole = Whole { stretch: whole.stretch * instances.largest_stretch(), ..whole };
-        let prototypes = instances.prototypes.iter().map(|group| self.prototype(name, group, whole, geometry));
+        let placed = whole.placed_by(instances);
+        let prototypes = instances.prototypes.iter().map(|group| self.prototype(name, group, &placed, geometry));
         let prototypes = prototypes.collect::<Result<Vec<Prototype>, SceneError>>()?;
-        let placed = |number: usize| places.instance(number);
-        let octree = InstanceOctree::new(prototypes, places.form(), places.count(), placed);
+        let instance = |number: usize| places.instance(number);
+        let octree = InstanceOctree::new(prototypes, places.form(), places.count(), instance);
         let octree = octree.map_err(|error| failed(name, error))?;
         let InstanceCosts { instances, bytes, .. } = octree.costs();
         self.instance_costs.instances += instances;
@@ -113,7 +111,7 @@ impl Contents {
         &mut self,
         name: &str,
         group: &[Object],
-        whole: Whole<'_>,
+        whole: &Whole,
         geometry: &GeometrySettings,
     ) -> Result<Prototype, SceneError> {
         let first = self.triangles.len() as u32;
@@ -131,10 +129,7 @@ impl Contents {
         }
         for object in group {
             let Shape::Instances(inner) = &object.shape else { continue };
-            let material = object.material.clone().or_else(|| whole.material.clone());
-            let stretch = whole.stretch * largest_stretch(&object.transform);
-            let within = Whole { material: &material, stretch, ..whole };
-            let octree = self.instance_octree(&object.name, inner, within, geometry)?;
+            let octree = self.instance_octree(&object.name, inner, &whole.within(object), geometry)?;
             parts.push((Prototype::instances(Arc::new(octree)), DAffine3::from_mat4(object.transform)));
         }
         if let [(alone, placement)] = &parts[..]
@@ -151,7 +146,24 @@ impl Contents {
     }
 }
 
-impl Whole<'_> {
+impl Whole {
+    /// An object that instances place, for those that it has itself.
+    fn within(&self, object: &Object) -> Whole {
+        let material = object.material.clone().or_else(|| self.material.clone());
+        Whole { material, stretch: self.stretch * largest_stretch(&object.transform), ..*self }
+    }
+
+    /// This, for what its instances place.
+    fn placed_by(&self, instances: &Instances) -> Whole {
+        let stretch = self.stretch * instances.largest_stretch();
+        Whole { material: self.material.clone(), stretch, ..*self }
+    }
+
+    /// The tolerance of the scene, in coordinates of what is placed.
+    fn tolerance(&self, geometry: &GeometrySettings) -> Option<f64> {
+        geometry.tolerance.map(|tolerance| tolerance / self.stretch)
+    }
+
     /// Where the instances of an object of a group are.
     fn places<'a>(
         &self,
@@ -159,16 +171,14 @@ impl Whole<'_> {
         instances: &'a Instances,
         geometry: &GeometrySettings,
     ) -> Result<Places<'a>, SceneError> {
-        let tolerance = geometry.tolerance.map(|tolerance| tolerance / self.stretch);
-        instances.places(tolerance, geometry.angle).map_err(|error| failed(name, error))
+        instances.places(self.tolerance(geometry), geometry.angle).map_err(|error| failed(name, error))
     }
 
     /// An object of a group, and its triangles in its own coordinates.
     fn made(&self, object: &Object, geometry: &GeometrySettings) -> Result<(Object, ShapeMesh), SceneError> {
-        let mut object = object.within(self.material).into_owned();
+        let mut object = object.within(&self.material).into_owned();
         object.tolerance = object.tolerance.map(|tolerance| tolerance / self.stretch);
-        let tolerance = geometry.tolerance.map(|tolerance| tolerance / self.stretch);
-        let made = object.tessellate(tolerance, geometry.angle)?;
+        let made = object.tessellate(self.tolerance(geometry), geometry.angle)?;
         Ok((object, made))
     }
 }
@@ -177,24 +187,17 @@ impl CopiedInstances {
     fn new(
         name: &str,
         instances: &Instances,
-        whole: Whole<'_>,
+        whole: &Whole,
         geometry: &GeometrySettings,
     ) -> Result<CopiedInstances, SceneError> {
-        let stretch = whole.stretch * instances.largest_stretch();
+        let placed = whole.placed_by(instances);
         let copied = |object: &Object| match &object.shape {
             Shape::Instances(inner) => {
-                let material = object.material.clone().or_else(|| whole.material.clone());
-                let stretch = stretch * largest_stretch(&object.transform);
-                let inner = CopiedInstances::new(
-                    &object.name,
-                    inner,
-                    Whole { material: &material, stretch, ..whole },
-                    geometry,
-                )?;
+                let inner = CopiedInstances::new(&object.name, inner, &placed.within(object), geometry)?;
                 Ok(Copied::Instances(DAffine3::from_mat4(object.transform), inner))
             }
             _ => {
-                let (object, made) = Whole { stretch, ..whole }.made(object, geometry)?;
+                let (object, made) = placed.made(object, geometry)?;
                 Ok(Copied::Object(Box::new(object), made))
             }
         };
@@ -217,7 +220,7 @@ impl CopiedInstances {
         let sum = |[a, b]: [u64; 2], [c, d]: [u64; 2]| [a.saturating_add(c), b.saturating_add(d)];
         let groups: Vec<[u64; 2]> =
             self.prototypes.iter().map(|group| group.iter().map(of).fold([0; 2], sum)).collect();
-        let group = |instance: &Instance| groups.get(usize::from(instance.prototype)).copied().unwrap_or_default();
+        let group = |instance: &Instance| groups[usize::from(instance.prototype)];
         self.placements.iter().map(group).fold([0; 2], sum)
     }
 
@@ -239,7 +242,7 @@ impl CopiedInstances {
             added.variation = variation;
             check_emission(added)
         };
-        self.each(transform, 0, name, &mut add)
+        self.each(transform, 0, &mut add)
     }
 
     /// Gives all copies, placed.
@@ -247,19 +250,12 @@ impl CopiedInstances {
         &mut self,
         to_scene: DAffine3,
         variation: u16,
-        name: &str,
         give: &mut impl FnMut(&Object, &ShapeMesh, u16) -> Result<(), SceneError>,
     ) -> Result<(), SceneError> {
         let CopiedInstances { prototypes, placements } = self;
-        for (number, instance) in placements.iter().enumerate() {
-            let count = prototypes.len();
-            let Some(group) = prototypes.get_mut(usize::from(instance.prototype)) else {
-                let problem =
-                    format!("instance {number} places prototype {}, but there are {count}", instance.prototype);
-                return Err(SceneError::Object { object: name.to_owned(), problem });
-            };
+        for instance in placements.iter() {
             let (placement, variation) = (to_scene * instance.placement, variation.wrapping_add(instance.variation));
-            for copied in group {
+            for copied in &mut prototypes[usize::from(instance.prototype)] {
                 match copied {
                     Copied::Object(object, made) => {
                         let own = object.transform;
@@ -269,7 +265,7 @@ impl CopiedInstances {
                         given?;
                     }
                     Copied::Instances(transform, inner) => {
-                        inner.each(placement * *transform, variation, name, give)?;
+                        inner.each(placement * *transform, variation, give)?;
                     }
                 }
             }

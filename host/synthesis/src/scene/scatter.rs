@@ -63,23 +63,24 @@ impl<'a> ScatteredPlaces<'a> {
     ) -> Result<ScatteredPlaces<'a>, ShapeError> {
         let on = &scatter.on;
         let made = on.shape.tessellate(on.own_tolerance(scene_tolerance, angle))?;
-        let needs_parameters = scatter.density.needs_parameters();
-        let parameters = if needs_parameters { parameters(&made.mesh, &made.surfaces, false) } else { Vec::new() };
+        // A mirrored object is turned inside out in place: its second and third corners change places.
+        let is_mirrored = on.transform.determinant() < 0.0;
+        let parameters = match scatter.density.needs_parameters() {
+            true => parameters(&made.mesh, &made.surfaces, is_mirrored),
+            false => Vec::new(),
+        };
+        let turned = |[a, b, c]: [DVec3; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
         let triangles = 0..made.mesh.triangles.len();
-        let own = if scatter.density.is_varying() {
-            triangles.clone().map(|triangle| made.mesh.corners(triangle)).collect()
-        } else {
-            Vec::new()
+        let own = match scatter.density.is_varying() {
+            true => triangles.clone().map(|triangle| turned(made.mesh.corners(triangle))).collect(),
+            false => Vec::new(),
         };
         let ShapeMesh { mut mesh, .. } = on.in_place(ShapeMesh { surfaces: Vec::new(), ..made });
-        // Parameters and own coordinates are those before a mirrored object was turned inside out.
-        let is_mirrored = on.transform.determinant() < 0.0;
-        let turned = |corners: [DVec3; 3]| if is_mirrored { [corners[0], corners[2], corners[1]] } else { corners };
         if mesh.corner_normals.is_empty() {
             mesh.corner_normals = flat_normals(&mesh);
         }
-        let corners: Vec<[DVec3; 3]> = triangles.map(|triangle| turned(mesh.corners(triangle))).collect();
-        let normals = mesh.corner_normals.into_iter().map(turned).collect();
+        let corners: Vec<[DVec3; 3]> = triangles.map(|triangle| mesh.corners(triangle)).collect();
+        let normals = mesh.corner_normals;
         let area = |[a, b, c]: &[DVec3; 3]| 0.5 * (*b - *a).cross(*c - *a).length();
         let areas = parts_below(corners.iter().map(area));
         let shares = parts_below(scatter.shares.iter().copied());
@@ -143,8 +144,7 @@ impl<'a> ScatteredPlaces<'a> {
         let is_within = (*flattest..=*steepest).contains(&slope) && (*lowest..=*highest).contains(&at.y);
         // Numbers of its own, so that a place stays where it is when the density changes.
         let chance = || RandomStream::new(!seed, number).uniform();
-        (is_within && (!density.is_varying() && density.mean() >= 1.0 || chance() < density.at(&footprint)))
-            .then_some(at)
+        (is_within && chance() < density.at(&footprint)).then_some(at)
     }
 
     /// Finds the places that count, in the order of their numbers.
@@ -348,12 +348,19 @@ mod tests {
             paints: vec![Paint::grey(0.0), Paint::grey(1.0)],
         };
         let density = Varying { pattern: checker, band: Band::Mean, from: 0.0, to: 1.0 };
-        let all = all(&Scatter { density: NumberTexture::Varying(Box::new(density)), ..scatter(2000) });
-        let [mut one, mut other] = [0, 0];
-        for Instance { placement, .. } in &all {
-            if placement.translation.x * placement.translation.z > 0.0 { one += 1 } else { other += 1 }
+        let density = NumberTexture::Varying(Box::new(density));
+        let mut sides = Vec::new();
+        for mirror in [1.0, -1.0] {
+            let on = on(Shape::Ground { size: 10.0 }, DMat4::from_scale(DVec3::new(mirror, 1.0, 1.0)));
+            let all = all(&Scatter { density: density.clone(), on, ..scatter(2000) });
+            let is_first =
+                |instance: &&Instance| instance.placement.translation.x * instance.placement.translation.z > 0.0;
+            let first = all.iter().filter(is_first).count();
+            assert!(all.len() == 2000 && (first == 0 || first == 2000), "{first}: two of four squares");
+            assert!(all.iter().all(|instance| instance.placement.matrix3.y_axis.y > 0.999), "they stand on top");
+            sides.push(first);
         }
-        assert!(all.len() == 2000 && one.min(other) == 0, "{one} {other}: two of four squares");
+        assert_eq!(sides[0] + sides[1], 2000, "a mirrored square has a mirrored pattern");
     }
 
     #[test]

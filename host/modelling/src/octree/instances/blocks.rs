@@ -1,7 +1,7 @@
 //! Placements in blocks of eight: what a leaf has, so that a ray looks at its spheres all at once.
 
 use super::super::cube::Cube;
-use super::super::lanes::{Eight, LANES, Lanes};
+use super::super::lanes::{Eight, LANES, Lanes, PART};
 use super::placement::{
     AffinePlacement, Instance, OwnFrame, PlacementForm, PrototypeSphere, SimilarPlacement, longest,
 };
@@ -10,8 +10,6 @@ use glam::{DAffine3, DVec3};
 
 /// Stands for the prototype of a place that is empty: there are fewer.
 const NONE: u16 = u16::MAX;
-/// One of 2^24 parts.
-const PART: f32 = 1.0 / (1_u32 << 24) as f32;
 /// Rounding of what is compared in single precision, sides of the cube of positions: positions are cut to 2^-24, and
 /// what is added to them is off by less than ten times that.
 const ROUNDING: f32 = 1.0 / (1_u32 << 20) as f32;
@@ -116,7 +114,7 @@ impl SphereTest {
         (!(beside | before | behind) & 0xff, enter)
     }
 
-    /// As [`SphereTest::meets`], in the coordinates of each prototype, where its sphere is one.
+    /// What [`SphereTest::meets`] tells, found in the coordinates of each prototype, where its sphere is one.
     ///
     /// These are scaled, so that the inverse map has the norm 1, for placements and cubes of any size.
     #[inline(always)]

@@ -256,7 +256,7 @@ impl<'a> World<'a> {
         let mut place = prepared.texture_place(triangle, weights(hit), own);
         place.sides.iter_mut().zip(sides).for_each(|(side, scene)| side.scene = scene);
         place.along = place.along.map(|along| carrier.vector(along));
-        place.variation = carrier.variation;
+        place.variation = place.variation.wrapping_add(carrier.variation);
         place
     }
 
