@@ -44,7 +44,15 @@ pub(super) const FUNCTIONS: &[Function] = &[
         scatter(
             objects: OBJECTS,
             on: required(ObjectKind, "the object on whose surface they stand, as it is now"),
-            count: required(Integer(0, MOST_INSTANCES), "how many; fewer where they find no room"),
+            count: required(
+                Integer(0, MOST_INSTANCES),
+                "how many, or with cells how many in each; fewer where they find no room",
+            ),
+            cell: optional(
+                NumberKind(1e-9, 1e12),
+                "none",
+                "side of square cells on a ground: what is in a cell is drawn when a ray comes to it, and nothing is stored",
+            ),
             distance: with_default(NumberKind(0.0, f64::INFINITY), 0.0, "of each two the least distance"),
             density: with_default(
                 AmountKind(0.0, 1.0),
@@ -85,7 +93,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             let on = builder.object(on)?.clone();
             let shares = shares.unwrap_or_else(|| vec![1.0; objects.len()]);
             let height = height.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
-            let scatter = Scatter { on, count, distance, density, slope, height, scale, turn, lean, upright, shares, seed, sink };
+            let scatter = Scatter { on, count, cell, distance, density, slope, height, scale, turn, lean, upright, shares, seed, sink };
             let all = add(builder, objects, Placing::Scattered(Box::new(scatter)))?;
             if !stays {
                 builder.use_up(surface);

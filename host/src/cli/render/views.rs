@@ -228,9 +228,10 @@ impl ViewBatch<'_> {
             say!("{seconds:>9.3} s  {:indent$}{name}{times}", "", indent = 2 * depth);
         }
         say!("{} triangles", self.prepared.triangles.len());
-        if let Some(InstanceCosts { instances, bytes, triangles }) = self.prepared.instance_costs() {
-            let each = bytes as f64 / instances as f64;
-            say!("{instances} instances of {each:.1} bytes each; with them {triangles} triangles are placed");
+        if let Some(InstanceCosts { instances, stored, bytes, triangles }) = self.prepared.instance_costs() {
+            let (each, memory) = (bytes as f64 / stored.max(1) as f64, memory::readable(bytes as u64));
+            let stored = if stored < instances { format!(", {stored} of them stored") } else { String::new() };
+            say!("{instances} instances{stored} in {memory}, {each:.1} bytes each; they place {triangles} triangles");
         }
         if let Some(balance) = &rendering.flux_balance {
             say!("{balance}");

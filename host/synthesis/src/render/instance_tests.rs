@@ -3,12 +3,12 @@
 use super::{RENDERERS, RenderOrder, RendererRow, Rendering, Task, Technique, Watch};
 use crate::color::Color;
 use crate::illumination::material::{Classic, Material, MaterialKind, RefractiveIndex, Transparent};
-use crate::illumination::texture::{Motif, Pattern, TextureMapping};
+use crate::illumination::texture::{Motif, NumberTexture, Pattern, TextureMapping};
 use crate::illumination::{Light, Paint};
 use crate::octree::Instance;
 use crate::plan::Plan;
 use crate::scene::{
-    Camera, Instances, Motion, Object, PlacementList, Placing, Prepared, Scene, SceneError, Settings, Shape,
+    Camera, Instances, Motion, Object, PlacementList, Placing, Prepared, Scatter, Scene, SceneError, Settings, Shape,
 };
 use crate::solid::Primitive;
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
@@ -209,6 +209,56 @@ fn glass_instances_lose_no_light() {
     let found = green(&render(&scene, Technique::RayTracing.row()));
     let mean = found.iter().sum::<f64>() / found.len() as f64;
     assert!((mean - 1.0).abs() < 0.01, "{mean}");
+}
+
+/// What is scattered in the cells of a ground that is placed in some way.
+fn in_cells(ground: DMat4, cell: f64, change: impl Fn(&mut Scatter)) -> Object {
+    let on = object(Shape::Ground { size: 9.0 }, ground, diffuse(Paint::grey(0.5)));
+    let mut scatter = Scatter {
+        on,
+        count: 2,
+        cell: Some(cell),
+        distance: 0.0,
+        density: NumberTexture::Constant(0.8),
+        slope: [0.0, 180.0],
+        height: [f64::NEG_INFINITY, f64::INFINITY],
+        scale: [0.3, 0.8],
+        turn: 360.0,
+        lean: 0.0,
+        upright: 0.0,
+        sink: 0.1,
+        shares: vec![1.0],
+        seed: 5,
+    };
+    change(&mut scatter);
+    let shape = Shape::Instances(Box::new(Instances {
+        prototypes: vec![group()],
+        placing: Placing::Scattered(Box::new(scatter)),
+    }));
+    Object { name: "cells".into(), shape, transform: DMat4::IDENTITY, material: None, tolerance: None }
+}
+
+#[test]
+fn instances_in_cells_look_as_copies_do() {
+    let tilted = DMat4::from_rotation_z(0.3) * DMat4::from_scale(DVec3::new(-1.0, 1.0, 0.5));
+    let cases = [
+        in_cells(DMat4::IDENTITY, 1.5, |_| {}),
+        in_cells(DMat4::IDENTITY, 0.7, |scatter| (scatter.lean, scatter.sink) = (60.0, 0.8)),
+        in_cells(tilted, 1.5, |scatter| (scatter.lean, scatter.upright) = (20.0, 1.0)),
+        in_cells(DMat4::from_rotation_x(2.5), 4.0, |scatter| (scatter.count, scatter.turn) = (9, 0.0)),
+    ];
+    for (number, cells) in cases.into_iter().enumerate() {
+        let mut scene = lit(vec![cells]);
+        let of = |scene: &Scene| render(scene, Technique::RayTracing.row());
+        let placed = of(&scene);
+        scene.settings.geometry.copies_instances = true;
+        let differing = differing(&placed, &of(&scene));
+        assert!(differing <= 12, "case {number}: {differing}");
+        scene.objects.pop();
+        let without = of(&scene);
+        let seen = self::differing(&placed, &without);
+        assert!(seen > 300, "case {number}: {seen} pixels are theirs");
+    }
 }
 
 #[test]

@@ -112,6 +112,12 @@ pub enum ShapeError {
         /// What keeps the edges from being rounded.
         source: RoundingError,
     },
+    /// Cells for instances cannot lie on it.
+    #[error("cells for instances lie on a ground that is not skewed, which {object} is not")]
+    NoCells {
+        /// Name of the object.
+        object: String,
+    },
 }
 
 /// A reason for which rays have no octree to go through.

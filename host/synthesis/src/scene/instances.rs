@@ -2,48 +2,79 @@
 
 use super::ShapeError;
 use super::object::{Instances, Object, Placing, Shape};
-use super::scatter::ScatteredPlaces;
+use super::scatter::{FoundPlaces, ScatterCells, ScatterParts};
 use super::shape_mesh::{ShapeMesh, flat_normals};
 use super::stretch::largest_stretch;
 use crate::memory;
-use crate::octree::{Instance, MOST_INSTANCES, MOST_LEVELS, MOST_PROTOTYPES, PlacementForm};
+use crate::octree::{
+    Instance, InstanceError, InstanceOctree, MOST_INSTANCES, MOST_LEVELS, MOST_PROTOTYPES, PlacementForm, Prototype,
+};
 use crate::surface::Tolerance;
-use glam::DMat4;
+use glam::{DAffine3, DMat4};
+use std::sync::Arc;
 
+/// So many instances of a surface or fewer are stored at once, more when rays come to them.
+const MOST_AT_ONCE: usize = 1 << 16;
 /// Bytes of a triangle of a mesh: corners, normals, numbers, and half a vertex.
 const BYTES: u64 = 140;
 
 /// The places of some instances.
 pub(super) enum Places<'a> {
     Listed(&'a [Instance]),
-    Scattered(ScatteredPlaces<'a>),
+    Found(FoundPlaces),
+    Parts(ScatterParts),
+    Cells(ScatterCells),
 }
 
 impl Places<'_> {
-    /// How many there are.
+    /// How many there are, some of which may be missing.
     pub(super) fn count(&self) -> usize {
         match self {
             Places::Listed(all) => all.len(),
-            Places::Scattered(places) => places.count(),
+            Places::Found(places) => places.count(),
+            Places::Parts(parts) => parts.count_of_all(),
+            Places::Cells(cells) => cells.count_of_all(),
         }
     }
 
-    /// An instance by its number.
+    /// All instances, one after another.
+    pub(super) fn all(&self) -> impl Iterator<Item = Instance> + '_ {
+        (0..self.count()).filter_map(|number| match self {
+            Places::Listed(all) => Some(all[number]),
+            Places::Found(places) => Some(places.instance(number)),
+            Places::Parts(parts) => Some(parts.instance_of_all(number)),
+            Places::Cells(cells) => cells.instance_of_all(number),
+        })
+    }
+
+    /// The octree over these instances.
     ///
-    /// # Panics
-    /// If there is none of this number.
-    pub(super) fn instance(&self, number: usize) -> Instance {
+    /// # Errors
+    /// [`InstanceError`], for those that cannot be placed.
+    pub(super) fn octree(self, prototypes: Vec<Prototype>) -> Result<InstanceOctree, InstanceError> {
+        let count = self.count();
         match self {
-            Places::Listed(all) => all[number],
-            Places::Scattered(places) => places.instance(number),
-        }
-    }
-
-    /// How renderers keep the placements.
-    pub(super) fn form(&self) -> PlacementForm {
-        match self {
-            Places::Listed(_) => PlacementForm::Affine,
-            Places::Scattered(_) => PlacementForm::Similar,
+            Places::Listed(all) => InstanceOctree::new(prototypes, PlacementForm::Affine, count, |n| all[n]),
+            Places::Found(places) => {
+                InstanceOctree::new(prototypes, PlacementForm::Similar, count, |n| places.instance(n))
+            }
+            Places::Parts(parts) if count <= MOST_AT_ONCE => {
+                InstanceOctree::new(prototypes, PlacementForm::Similar, count, |n| parts.instance_of_all(n))
+            }
+            Places::Parts(parts) => {
+                let parts = parts.placing(&prototypes);
+                InstanceOctree::on_demand(prototypes, PlacementForm::Similar, Arc::new(parts))
+            }
+            Places::Cells(cells) => {
+                let placement = cells.to_instances();
+                let grid = cells.grid(&prototypes);
+                let octree = InstanceOctree::in_cells(prototypes, grid, Arc::new(cells))?;
+                if placement == DAffine3::IDENTITY {
+                    return Ok(octree);
+                }
+                let ground = Instance { prototype: 0, variation: 0, placement };
+                InstanceOctree::new(vec![Prototype::instances(Arc::new(octree))], PlacementForm::Exact, 1, |_| ground)
+            }
         }
     }
 }
@@ -59,7 +90,11 @@ impl Instances {
     pub(super) fn places(&self, scene_tolerance: Option<f64>, angle: f64) -> Result<Places<'_>, ShapeError> {
         Ok(match &self.placing {
             Placing::Listed(list) => Places::Listed(&list.0),
-            Placing::Scattered(scatter) => Places::Scattered(ScatteredPlaces::new(scatter, scene_tolerance, angle)?),
+            Placing::Scattered(scatter) => match scatter.cell {
+                Some(side) => Places::Cells(ScatterCells::new(scatter, side, angle)?),
+                None if scatter.takes_all() => Places::Parts(ScatterParts::new(scatter, scene_tolerance, angle)?),
+                None => Places::Found(FoundPlaces::new(scatter, scene_tolerance, angle)?),
+            },
         })
     }
 
@@ -110,15 +145,19 @@ impl Instances {
             parts.push(part);
         }
         let places = self.places(chord, tolerance.angle)?;
-        let part = |number: usize| {
-            let Instance { prototype, placement, .. } = places.instance(number);
-            parts.get(usize::from(prototype)).map(|part| (part, placement))
+        let part = |Instance { prototype, placement, .. }| Some((parts.get(usize::from(prototype))?, placement));
+        let count = places.count();
+        let most = parts.iter().map(|part| part.mesh.triangles.len() as u64).max().unwrap_or(0);
+        let bytes = |triangles: u64| triangles.saturating_mul(BYTES);
+        let refused = |triangles: u64| format!("{count} instances of {triangles} triangles");
+        // Not counted one by one where there are too many for that.
+        let triangles = match count <= MOST_AT_ONCE {
+            true => places.all().filter_map(part).map(|(part, _)| part.mesh.triangles.len() as u64).sum(),
+            false => (count as u64).saturating_mul(most),
         };
-        let count = |number| part(number).map_or(0, |(part, _)| part.mesh.triangles.len() as u64);
-        let triangles = (0..places.count()).map(count).sum::<u64>();
-        memory::reserve(triangles * BYTES, || format!("{} instances of {triangles} triangles", places.count()))?;
+        memory::reserve(bytes(triangles), || refused(triangles))?;
         let mut whole = ShapeMesh::default();
-        for (part, placement) in (0..places.count()).filter_map(part) {
+        for (part, placement) in places.all().filter_map(part) {
             whole.mesh.append(&part.mesh.transformed(&placement), 0);
             whole.operand_of.extend(&part.operand_of);
         }
@@ -130,7 +169,7 @@ impl Instances {
         if self.prototypes.len() > MOST_PROTOTYPES {
             return Err(format!("more than {MOST_PROTOTYPES} prototypes"));
         }
-        let count = match &self.placing {
+        match &self.placing {
             Placing::Listed(list) => {
                 let count = self.prototypes.len();
                 let unknown = list.0.iter().position(|instance| usize::from(instance.prototype) >= count);
@@ -138,15 +177,11 @@ impl Instances {
                     let prototype = list.0[number].prototype;
                     return Err(format!("instance {number} places prototype {prototype}, but there are only {count}"));
                 }
-                list.0.len()
+                if list.0.len() > MOST_INSTANCES {
+                    return Err(format!("more than {MOST_INSTANCES} instances; place groups of them"));
+                }
             }
-            Placing::Scattered(scatter) => {
-                scatter.check(self.prototypes.len())?;
-                scatter.count
-            }
-        };
-        if count > MOST_INSTANCES {
-            return Err(format!("more than {MOST_INSTANCES} instances; place groups of them"));
+            Placing::Scattered(scatter) => scatter.check(self.prototypes.len())?,
         }
         // One level is that of the scene.
         let most = MOST_LEVELS - 1;

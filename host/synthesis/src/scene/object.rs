@@ -115,8 +115,11 @@ pub enum Placing {
 pub struct Scatter {
     /// The object, in coordinates of the instances.
     pub on: Object,
-    /// How many instances; there are fewer where these do not find room.
+    /// How many instances, or how many in each cell; there are fewer where these do not find room.
     pub count: usize,
+    /// Side of square cells, units of the instances: those in a cell are a function of the cell and the seed, and stored
+    /// nowhere. The object must be a ground then.
+    pub cell: Option<f64>,
     /// Of each two instances the least distance, 0 and more.
     pub distance: f64,
     /// The part of the instances that stay, 0 to 1, by place.

@@ -11,7 +11,7 @@ use crate::illumination::Material;
 use crate::memory;
 use crate::numeric::bounds::Bounds;
 use crate::numeric::triangle::MAX_MAGNITUDE;
-use crate::octree::{Instance, InstanceCosts, InstanceOctree, PlacementForm, Prototype};
+use crate::octree::{Instance, InstanceOctree, PlacementForm, Prototype};
 use crate::stages::stage;
 use glam::{DAffine3, DMat4};
 use std::sync::Arc;
@@ -77,10 +77,9 @@ impl Contents {
         let group = &mut self.objects[index as usize];
         group.bounds = group.motion.map_or(still, |motion| motion.swept(&still, [-half, half]));
         group.instances = octree.count();
-        let placed = octree.costs().triangles;
-        self.instance_costs.triangles = self.instance_costs.triangles.saturating_add(placed);
+        self.placed_triangles = self.placed_triangles.saturating_add(octree.costs().triangles);
         self.bounds = self.bounds.union(group.bounds);
-        let prototype = Prototype::instances(Arc::new(octree));
+        let prototype = Prototype::instances(octree);
         self.placed.push(PlacedInstances { object: index, prototype, transform });
         Ok(())
     }
@@ -92,17 +91,13 @@ impl Contents {
         instances: &Instances,
         whole: &Whole,
         geometry: &GeometrySettings,
-    ) -> Result<InstanceOctree, SceneError> {
+    ) -> Result<Arc<InstanceOctree>, SceneError> {
         let places = whole.places(name, instances, geometry)?;
         let placed = whole.placed_by(instances);
         let prototypes = instances.prototypes.iter().map(|group| self.prototype(name, group, &placed, geometry));
         let prototypes = prototypes.collect::<Result<Vec<Prototype>, SceneError>>()?;
-        let instance = |number: usize| places.instance(number);
-        let octree = InstanceOctree::new(prototypes, places.form(), places.count(), instance);
-        let octree = octree.map_err(|error| failed(name, error))?;
-        let InstanceCosts { instances, bytes, .. } = octree.costs();
-        self.instance_costs.instances += instances;
-        self.instance_costs.bytes += bytes;
+        let octree = Arc::new(places.octree(prototypes).map_err(|error| failed(name, error))?);
+        self.instanced.push(octree.clone());
         Ok(octree)
     }
 
@@ -130,7 +125,7 @@ impl Contents {
         for object in group {
             let Shape::Instances(inner) = &object.shape else { continue };
             let octree = self.instance_octree(&object.name, inner, &whole.within(object), geometry)?;
-            parts.push((Prototype::instances(Arc::new(octree)), DAffine3::from_mat4(object.transform)));
+            parts.push((Prototype::instances(octree), DAffine3::from_mat4(object.transform)));
         }
         if let [(alone, placement)] = &parts[..]
             && *placement == DAffine3::IDENTITY
@@ -205,10 +200,11 @@ impl CopiedInstances {
         let prototypes = prototypes.collect::<Result<Vec<Vec<Copied>>, SceneError>>()?;
         let places = whole.places(name, instances, geometry)?;
         let count = places.count();
-        memory::reserve(count as u64 * size_of::<Instance>() as u64, || format!("copying {count} instances"))
-            .map_err(|error| failed(name, error))?;
-        let placements = (0..count).map(|number| places.instance(number)).collect();
-        Ok(CopiedInstances { prototypes, placements })
+        memory::reserve((count as u64).saturating_mul(size_of::<Instance>() as u64), || {
+            format!("copying {count} instances")
+        })
+        .map_err(|error| failed(name, error))?;
+        Ok(CopiedInstances { prototypes, placements: places.all().collect() })
     }
 
     /// Objects and triangles of all copies.

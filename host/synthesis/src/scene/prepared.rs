@@ -14,7 +14,7 @@ use crate::illumination::{Light, Material, RgbPower};
 use crate::mesh::Mesh;
 use crate::numeric::bounds::Bounds;
 use crate::numeric::triangle::MAX_MAGNITUDE;
-use crate::octree::InstanceCosts;
+use crate::octree::{InstanceCosts, InstanceOctree};
 use crate::stages::stage;
 use glam::{DMat3, DMat4, DVec2, DVec3, Vec3};
 use rustc_hash::FxHashMap;
@@ -64,8 +64,10 @@ pub struct Contents {
     pub bounds: Bounds,
     /// The instances that stand in it, each group of an object.
     pub(super) placed: Vec<PlacedInstances>,
-    /// What these cost, all levels together.
-    pub(super) instance_costs: InstanceCosts,
+    /// Their octrees, those within prototypes too.
+    pub(super) instanced: Vec<Arc<InstanceOctree>>,
+    /// Triangles that they place, each as often as it is.
+    pub(super) placed_triangles: u64,
     /// Its octrees, as far as they were asked for.
     pub(super) octrees: AccelerationCache,
 }
@@ -165,7 +167,8 @@ impl Contents {
             camera: Camera::framing(&Bounds::EMPTY),
             bounds: Bounds::EMPTY,
             placed: Vec::new(),
-            instance_costs: InstanceCosts::default(),
+            instanced: Vec::new(),
+            placed_triangles: 0,
             octrees: AccelerationCache::default(),
         };
         let mut shared = SharedMeshes::of(scene);
@@ -357,9 +360,19 @@ impl Contents {
         object.parameters_from.map(|from| &self.parameters[(from + triangle - object.first) as usize])
     }
 
-    /// What all placed instances cost, those within prototypes too; nothing without any.
+    /// What all placed instances cost by now, those within prototypes too; nothing without any.
     pub fn instance_costs(&self) -> Option<InstanceCosts> {
-        (self.instance_costs.instances > 0).then_some(self.instance_costs)
+        let none = InstanceCosts { triangles: self.placed_triangles, ..InstanceCosts::default() };
+        let all = self.instanced.iter().fold(none, |all, octree| {
+            let InstanceCosts { instances, stored, bytes, .. } = octree.costs();
+            InstanceCosts {
+                instances: all.instances.saturating_add(instances),
+                stored: all.stored + stored,
+                bytes: all.bytes + bytes,
+                ..all
+            }
+        });
+        (all.instances > 0).then_some(all)
     }
 
     /// An object whose instances are placed, if there is one: renderers that go through triangles one by one do not see

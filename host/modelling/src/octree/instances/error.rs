@@ -9,6 +9,14 @@ pub const MOST_INSTANCES: usize = 1 << 28;
 pub const MOST_PROTOTYPES: usize = u16::MAX as usize;
 /// Instances may be placed by instances so many times over.
 pub const MOST_LEVELS: usize = 8;
+/// Most parts of instances that are known part by part.
+pub const MOST_PARTS: usize = MOST_PROTOTYPES;
+/// Most cells of a grid along an axis.
+pub const MOST_CELLS: u32 = 1 << 21;
+/// Most instances of a cell.
+pub const MOST_IN_CELL: u32 = 1 << 22;
+/// What is placed in a cell may come this many sides of the cell out of it.
+pub const MOST_OVERHANG: f64 = 8.0;
 
 /// A reason for which instances cannot be placed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -60,6 +68,34 @@ pub enum InstanceError {
     NotSimilar {
         /// Number of the instance.
         instance: usize,
+    },
+    /// More parts than [`MOST_PARTS`].
+    #[error("{parts} parts are more than {MOST_PARTS}")]
+    TooManyParts {
+        /// Number of parts.
+        parts: usize,
+    },
+    /// More cells along an axis than [`MOST_CELLS`].
+    #[error("{} by {} cells are more than {MOST_CELLS} along an axis; place groups of objects in larger cells", cells[0], cells[1])]
+    TooManyCells {
+        /// Along both axes.
+        cells: [u32; 2],
+    },
+    /// More instances in a cell than [`MOST_IN_CELL`].
+    #[error("{instances} instances in a cell are more than {MOST_IN_CELL}; divide the cells")]
+    TooManyInCell {
+        /// In each cell.
+        instances: u32,
+    },
+    /// Cells so small beside what is placed in them that rays would ask very many.
+    #[error(
+        "what is placed reaches {overhang} out of its cell, more than {MOST_OVERHANG} times its side {side}; enlarge the cells"
+    )]
+    SmallCells {
+        /// How far at the most.
+        overhang: f64,
+        /// Side of a cell.
+        side: f64,
     },
     /// More memory than is left.
     #[error(transparent)]

@@ -10,13 +10,20 @@ mod error;
 mod placement;
 mod path;
 mod blocks;
-mod build;
+mod stored;
+mod parts;
+mod cells;
+mod octree;
 mod walk;
 
 #[cfg(test)]
 mod tests;
 
-pub use build::{InstanceCosts, InstanceOctree, Prototype};
-pub use error::{InstanceError, MOST_INSTANCES, MOST_LEVELS, MOST_PROTOTYPES};
+pub use cells::{CellGrid, CellInstances};
+pub use error::{
+    InstanceError, MOST_CELLS, MOST_IN_CELL, MOST_INSTANCES, MOST_LEVELS, MOST_OVERHANG, MOST_PARTS, MOST_PROTOTYPES,
+};
+pub use octree::{InstanceCosts, InstanceOctree, Prototype};
+pub use parts::InstanceParts;
 pub use path::{InstanceHit, InstancePath, PlacedSurface};
 pub use placement::{Instance, PlacementForm};

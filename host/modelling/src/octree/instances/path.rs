@@ -7,23 +7,37 @@ use glam::DAffine3;
 /// The instances that a surface is placed by, the outermost first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct InstancePath {
-    numbers: [u32; MOST_LEVELS],
+    numbers: [u64; MOST_LEVELS],
     levels: u8,
 }
 
 impl InstancePath {
-    /// This path, by one more instance; what is deeper than [`MOST_LEVELS`] is cut off.
-    pub(super) fn and(mut self, number: u32) -> InstancePath {
-        if let Some(place) = self.numbers.get_mut(usize::from(self.levels)) {
-            *place = number;
-            self.levels += 1;
-        }
-        self
-    }
-
     /// The numbers of the instances in their octrees, which count them in an order of their own.
-    pub fn numbers(&self) -> &[u32] {
+    pub fn numbers(&self) -> &[u64] {
         &self.numbers[..usize::from(self.levels)]
+    }
+}
+
+/// An instance that a ray has been taken into, and those around it: a path that is not written down before it is asked
+/// for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Descent<'d> {
+    pub(super) number: u64,
+    pub(super) outer: Option<&'d Descent<'d>>,
+}
+
+impl Descent<'_> {
+    /// The path to here; none is longer than [`MOST_LEVELS`].
+    pub(super) fn path(&self) -> InstancePath {
+        let mut path = match self.outer {
+            Some(outer) => outer.path(),
+            None => InstancePath::default(),
+        };
+        if let Some(place) = path.numbers.get_mut(usize::from(path.levels)) {
+            *place = self.number;
+            path.levels += 1;
+        }
+        path
     }
 }
 

@@ -1,6 +1,7 @@
 //! Where an instance stands, and how few bytes say so.
 
 use super::super::cube::Cube;
+use crate::numeric::bounds::Bounds;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
@@ -69,6 +70,22 @@ pub(super) struct PrototypeSphere {
     pub(super) center: DVec3,
     /// Rounded up.
     pub(super) radius: f32,
+}
+
+/// A sphere is so much larger than it would be without rounding.
+const SPHERE_ROUNDING: f64 = 1e-9;
+
+impl PrototypeSphere {
+    /// The sphere of a radius about the centre of a box.
+    pub(super) fn new(bounds: &Bounds, radius: f64) -> PrototypeSphere {
+        match bounds.is_empty() {
+            true => PrototypeSphere { center: DVec3::ZERO, radius: 0.0 },
+            false => PrototypeSphere {
+                center: bounds.center(),
+                radius: ((radius * (1.0 + SPHERE_ROUNDING)) as f32).next_up(),
+            },
+        }
+    }
 }
 
 /// A placement by position, rotation and scale.

@@ -2,10 +2,14 @@
 
 use super::super::lanes::LANES;
 use super::super::{Octree, OctreeSettings, Ray, Walk};
-use super::build::Content;
+use super::octree::{Arrangement, Content};
+use super::path::Descent;
+use super::stored::StoredInstances;
 use super::*;
+use crate::numeric::bounds::Bounds;
 use crate::numeric::sampling::{RandomStream, sphere};
-use glam::{DAffine3, DMat3, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3};
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// A tetrahedron about the origin, as large as 1.
@@ -54,16 +58,29 @@ fn rays(seed: u64, count: usize, reach: f64) -> impl Iterator<Item = Ray> {
     })
 }
 
+fn stored(octree: &InstanceOctree) -> &StoredInstances {
+    let Arrangement::Stored(stored) = &octree.arrangement else { panic!("all are stored") };
+    stored
+}
+
+/// All instances that are stored, with their numbers.
+fn all(octree: &InstanceOctree) -> impl Iterator<Item = (u64, Instance)> {
+    let places = (stored(octree).placements.blocks() * LANES) as u64;
+    (0..places).filter_map(|number| Some((number, octree.instance(number)?)))
+}
+
 /// The nearest hit by asking every instance, and how many there are.
-fn asked(octree: &InstanceOctree, ray: &Ray, path: InstancePath) -> (Option<InstanceHit>, usize) {
+fn asked(octree: &InstanceOctree, ray: &Ray, outer: Option<&Descent<'_>>) -> (Option<InstanceHit>, usize) {
     let (mut best, mut count): (Option<InstanceHit>, usize) = (None, 0);
-    for (number, Instance { prototype, placement, .. }) in octree.instances() {
+    let StoredInstances { placements, positions, .. } = stored(octree);
+    for (number, Instance { prototype, placement, .. }) in all(octree) {
         let (block, lane) = (number as usize / LANES, number as usize % LANES);
-        let center = octree.spheres[usize::from(prototype)].center;
-        let inner = octree.placements.own_ray(&octree.positions, block, lane, center, ray);
+        let center = octree.extents.spheres[usize::from(prototype)].center;
+        let inner = placements.own_ray(positions, block, lane, center, ray);
         let far = placement.transform_point3(inner.at(0.7)).distance(ray.at(0.7));
         assert!(far < 1e-9 * (ray.at(0.7).length() + placement.translation.length()), "{far}");
-        let path = path.and(number);
+        let descent = Descent { number, outer };
+        let path = descent.path();
         let (found, hits) = match &octree.prototypes[usize::from(prototype)].content {
             Content::Surface { octree: surface, .. } => {
                 let mut hits = 0;
@@ -73,7 +90,7 @@ fn asked(octree: &InstanceOctree, ray: &Ray, path: InstancePath) -> (Option<Inst
                 });
                 (surface.closest(&inner, 0.0, f64::INFINITY).map(|hit| InstanceHit { hit, path }), hits)
             }
-            Content::Instances(below) => asked(below, &inner, path),
+            Content::Instances(below) => asked(below, &inner, Some(&descent)),
         };
         count += hits;
         best = match (best, found) {
@@ -87,7 +104,7 @@ fn asked(octree: &InstanceOctree, ray: &Ray, path: InstancePath) -> (Option<Inst
 fn check(octree: &InstanceOctree, seed: u64, count: usize, reach: f64) -> usize {
     let mut hits = 0;
     for ray in rays(seed, count, reach) {
-        let (expected, all) = asked(octree, &ray, InstancePath::default());
+        let (expected, count) = asked(octree, &ray, None);
         let found = octree.closest(&ray, 0.0, f64::INFINITY);
         assert_eq!(found.map(|found| found.hit), expected.map(|expected| expected.hit), "{ray:?}");
         assert_eq!(found.map(|found| found.path), expected.map(|expected| expected.path), "{ray:?}");
@@ -97,12 +114,12 @@ fn check(octree: &InstanceOctree, seed: u64, count: usize, reach: f64) -> usize 
             given += 1;
             false
         });
-        assert_eq!(given, all, "{ray:?}");
+        assert_eq!(given, count, "{ray:?}");
         if let Some(found) = found {
             hits += 1;
             // What is nearer is free, up to the hit itself.
             assert!(!octree.occluded(&ray, 0.0, found.hit.t));
-            assert_eq!(octree.closest(&ray, found.hit.t, f64::INFINITY).is_some(), all > 1);
+            assert_eq!(octree.closest(&ray, found.hit.t, f64::INFINITY).is_some(), count > 1);
         }
     }
     hits
@@ -127,15 +144,15 @@ fn instances_are_where_one_mesh_of_all_is() {
 
 fn are_where_one_mesh_is(placed: &InstanceOctree) {
     let (vertices, triangles) = tetrahedron();
-    let (mut all, mut corners) = (Vec::new(), Vec::new());
+    let (mut points, mut corners) = (Vec::new(), Vec::new());
     let mut firsts = std::collections::HashMap::new();
-    for (number, Instance { placement, .. }) in placed.instances() {
-        let first = all.len() as u32;
+    for (number, Instance { placement, .. }) in all(placed) {
+        let first = points.len() as u32;
         firsts.insert(number, corners.len() as u32);
-        all.extend(vertices.iter().map(|vertex| placement.transform_point3(*vertex)));
+        points.extend(vertices.iter().map(|vertex| placement.transform_point3(*vertex)));
         corners.extend(triangles.iter().map(|triangle| triangle.map(|vertex| vertex + first)));
     }
-    let flat = octree(&all, &corners);
+    let flat = octree(&points, &corners);
     let mut hits = 0;
     for ray in rays(12, 2000, 1.2) {
         let (found, expected) = (placed.closest(&ray, 0.0, f64::INFINITY), flat.closest(&ray, 0.0, f64::INFINITY));
@@ -217,13 +234,13 @@ fn rays_that_begin_far_away_hit_what_they_hit_when_every_instance_is_asked() {
         let (mut hits, vertices) = (0, tetrahedron().0);
         for (number, ray) in rays(14, 1500, 1.0).enumerate() {
             // Just within the corners, along the spheres about instances, which go through these.
-            let (_, placed) = octree.instances().nth(number % 200).expect("an instance");
+            let (_, placed) = all(&octree).nth(number % 200).expect("an instance");
             let corner = placed.placement.transform_point3(vertices[number % 4] * (1.0 - 1e-7));
             let out = corner - placed.placement.translation;
             let direction = ray.direction - out * (ray.direction.dot(out) / out.length_squared());
             let far = 10_f64.powi(number as i32 % 14);
             let ray = Ray { origin: corner - direction * far, direction };
-            let expected = asked(&octree, &ray, InstancePath::default()).0;
+            let expected = asked(&octree, &ray, None).0;
             assert_eq!(octree.closest(&ray, 0.0, f64::INFINITY), expected, "{far} {ray:?}");
             hits += usize::from(expected.is_some());
         }
@@ -250,7 +267,7 @@ fn ten_thousand_instances_at_one_place_are_one_hit_after_another() {
 fn an_instance_costs_less_than_32_bytes_and_with_an_affine_map_less_than_64() {
     for (form, most) in [(PlacementForm::Similar, 32), (PlacementForm::Affine, 64)] {
         for count in [1_000, 30_000, 100_000] {
-            let InstanceCosts { instances, bytes, triangles } = of(vec![surface()], form, count, 31).costs();
+            let InstanceCosts { instances, bytes, triangles, .. } = of(vec![surface()], form, count, 31).costs();
             assert!(instances == count && triangles == 4 * count as u64);
             assert!(bytes <= most * count, "{count}: {}", bytes as f64 / count as f64);
         }
@@ -261,7 +278,7 @@ fn an_instance_costs_less_than_32_bytes_and_with_an_affine_map_less_than_64() {
 fn placements_take_as_many_bytes_as_their_form_tells() {
     for form in [PlacementForm::Similar, PlacementForm::Affine, PlacementForm::Exact] {
         let octree = of(vec![surface()], form, 8, 3);
-        assert_eq!(octree.costs().bytes - size_of_val(octree.nodes.as_slice()), 8 * form.bytes());
+        assert_eq!(octree.costs().bytes - size_of_val(stored(&octree).nodes.as_slice()), 8 * form.bytes());
     }
 }
 
@@ -317,4 +334,211 @@ fn what_cannot_be_placed_is_told_by_its_number() {
         }
     }
     assert_eq!(refusal, Some(InstanceError::TooManyLevels { levels: MOST_LEVELS + 1 }));
+}
+
+/// Instances by chance in parts along x, boxes of which are larger than they need be.
+#[derive(Debug)]
+struct Rows {
+    parts: usize,
+    count: usize,
+}
+
+impl InstanceParts for Rows {
+    fn parts(&self) -> usize {
+        self.parts
+    }
+
+    fn count(&self, part: usize) -> usize {
+        if part == 3 { 0 } else { self.count }
+    }
+
+    fn bounds(&self, part: usize) -> Bounds {
+        let at = DVec3::X * (part as f64 * 2.0);
+        Bounds { min: at - 1.3, max: at + 1.3 }
+    }
+
+    fn instance(&self, part: usize, number: usize) -> Instance {
+        let mut instance = scattered(71 + part as u64, number, 1.0, 0.1);
+        instance.placement.translation.x += part as f64 * 2.0;
+        instance
+    }
+
+    fn shares(&self) -> &[f64] {
+        &[1.0]
+    }
+}
+
+#[test]
+fn instances_in_parts_are_hit_as_if_all_were_stored_and_only_the_parts_that_rays_come_to_are() {
+    let rows = Rows { parts: 40, count: 30 };
+    let numbers: Vec<[usize; 2]> =
+        (0..40).filter(|part| *part != 3).flat_map(|part| (0..30).map(move |own| [part, own])).collect();
+    let instance = |number: usize| rows.instance(numbers[number][0], numbers[number][1]);
+    let whole = InstanceOctree::new(vec![surface()], PlacementForm::Affine, numbers.len(), instance).expect("sound");
+    let made = || {
+        let parts = Arc::new(Rows { parts: 40, count: 30 });
+        InstanceOctree::on_demand(vec![surface()], PlacementForm::Affine, parts).expect("sound parts")
+    };
+    let parts = made();
+    assert_eq!((parts.count(), parts.costs().triangles), (whole.count(), whole.costs().triangles));
+    let untouched = parts.costs().bytes;
+    let down = Ray { origin: DVec3::new(20.0, 5.0, 0.0), direction: DVec3::NEG_Y };
+    let hit = parts.closest(&down, 0.0, f64::INFINITY);
+    let one_part = parts.costs().bytes;
+    assert!(one_part > untouched && one_part < untouched + 2 * 32 * 72, "{one_part} {untouched}");
+    let mut hits = 0;
+    for ray in rays(72, 3000, 1.0) {
+        let ray = Ray { origin: ray.origin * DVec3::new(20.0, 1.0, 1.0) + DVec3::X * 40.0, direction: ray.direction };
+        let (found, expected) = (parts.closest(&ray, 0.0, f64::INFINITY), whole.closest(&ray, 0.0, f64::INFINITY));
+        assert_eq!(found.map(|found| found.hit.triangle), expected.map(|expected| expected.hit.triangle), "{ray:?}");
+        assert_eq!(parts.occluded(&ray, 0.0, f64::INFINITY), expected.is_some());
+        let (Some(found), Some(expected)) = (found, expected) else { continue };
+        hits += 1;
+        // Positions are rounded in cubes of different sizes.
+        assert!((found.hit.t - expected.hit.t).abs() < 1e-6);
+        let (one, other) = (parts.placed(&found.path), whole.placed(&expected.path));
+        assert_eq!(one.variation, other.variation);
+        assert!(one.placement.abs_diff_eq(other.placement, 1e-6));
+    }
+    assert!(hits > 100, "{hits}");
+    // Another order of the rays changes nothing, whatever their threads.
+    let again = made();
+    let all: Vec<Ray> = rays(72, 600, 40.0).chain([down]).collect();
+    let ask = |ray: &Ray| again.closest(ray, 0.0, f64::INFINITY);
+    let together: Vec<Option<InstanceHit>> = all.par_iter().rev().map(ask).collect();
+    assert!(all.iter().zip(together.iter().rev()).all(|(ray, hit)| parts.closest(ray, 0.0, f64::INFINITY) == *hit));
+    assert_eq!(together[0], hit);
+}
+
+/// Instances by chance in cells.
+#[derive(Clone, Debug)]
+struct Tufts {
+    grid: CellGrid,
+    count: u32,
+}
+
+impl CellInstances for Tufts {
+    fn count(&self) -> u32 {
+        self.count
+    }
+
+    fn place(&self, [x, z]: [u32; 2], number: u32) -> Option<DVec2> {
+        let mut random = RandomStream::new(u64::from(x) << 32 | u64::from(z), u64::from(number));
+        let at = DVec2::from(random.point()) + DVec2::new(f64::from(x), f64::from(z));
+        (random.uniform() < 0.7).then_some(self.grid.corner + at * self.grid.side)
+    }
+
+    fn instance(&self, cell: [u32; 2], number: u32) -> Instance {
+        let seed = u64::from(cell[0]) * 7919 + u64::from(cell[1]);
+        let mut instance = scattered(seed, number as usize, 0.0, 0.6);
+        if let Some(at) = self.place(cell, number) {
+            instance.placement.translation = DVec3::new(at.x, 0.1, at.y);
+        }
+        instance
+    }
+
+    fn shares(&self) -> &[f64] {
+        &[1.0]
+    }
+}
+
+impl Tufts {
+    fn new(cells: [u32; 2], side: f64, count: u32) -> Tufts {
+        let corner = DVec2::new(-3.0, 5.0);
+        Tufts { grid: CellGrid { cells, corner, side, overhang: 0.8, heights: [-0.7, 0.9] }, count }
+    }
+
+    fn octree(&self) -> InstanceOctree {
+        InstanceOctree::in_cells(vec![surface()], self.grid, Arc::new(self.clone())).expect("sound cells")
+    }
+
+    fn stored(&self) -> InstanceOctree {
+        let CellGrid { cells: [x, z], .. } = self.grid;
+        let all = (0..x)
+            .flat_map(|x| (0..z).map(move |z| [x, z]))
+            .flat_map(|cell| (0..self.count).map(move |own| (cell, own)));
+        let all: Vec<([u32; 2], u32)> = all.filter(|(cell, own)| self.place(*cell, *own).is_some()).collect();
+        let instance = |number: usize| self.instance(all[number].0, all[number].1);
+        InstanceOctree::new(vec![surface()], PlacementForm::Exact, all.len(), instance).expect("sound")
+    }
+}
+
+#[test]
+fn instances_in_cells_are_hit_as_if_all_were_stored() {
+    for (cells, side, count) in [([7, 5], 1.0, 3), ([1, 1], 4.0, 30), ([40, 3], 0.25, 1), ([3, 40], 0.11, 1)] {
+        let tufts = Tufts::new(cells, side, count);
+        let (cells, whole) = (tufts.octree(), tufts.stored());
+        assert_eq!(cells.costs().bytes, 0);
+        let bounds = whole.bounds();
+        assert_eq!(bounds.union(cells.bounds()), cells.bounds());
+        let mut hits = 0;
+        let level = |number: usize, along: DVec3| match number % 5 {
+            0 => DVec3::new(along.x, 0.0, along.z),
+            1 => DVec3::NEG_Y,
+            2 => DVec3::X,
+            3 => DVec3::new(0.0, along.y * 1e-3, 1.0),
+            _ => along,
+        };
+        for (number, ray) in rays(81, 2000, 1.0).enumerate() {
+            let middle = bounds.min + bounds.size() * (ray.at(1.0) * 0.5 + 0.5);
+            let direction = level(number, ray.direction);
+            let far = [3.0, 100.0, 0.0][number % 3];
+            let ray = Ray { origin: middle - direction * far, direction };
+            let (found, expected) = (cells.closest(&ray, 0.0, f64::INFINITY), whole.closest(&ray, 0.0, f64::INFINITY));
+            let told = |hit: Option<InstanceHit>| hit.map(|InstanceHit { hit, .. }| hit.triangle);
+            assert_eq!(told(found), told(expected), "{ray:?}");
+            assert_eq!(cells.occluded(&ray, 0.0, f64::INFINITY), expected.is_some());
+            let count = |octree: &InstanceOctree| {
+                let mut count = 0;
+                octree.each_hit(&ray, 0.0, f64::INFINITY, |_| {
+                    count += 1;
+                    false
+                });
+                count
+            };
+            assert_eq!(count(&cells), count(&whole), "{ray:?}");
+            let (Some(found), Some(expected)) = (found, expected) else { continue };
+            hits += 1;
+            assert!((found.hit.t - expected.hit.t).abs() < 1e-12 * (1.0 + far));
+            let (one, other) = (cells.placed(&found.path), whole.placed(&expected.path));
+            assert_eq!(one.variation, other.variation);
+            assert!(one.placement.abs_diff_eq(other.placement, 1e-12));
+        }
+        assert!(hits > 200, "{hits}");
+    }
+}
+
+#[test]
+fn a_grid_of_a_million_million_cells_is_asked_along_rays_only() {
+    let most = MOST_CELLS;
+    let grid =
+        CellGrid { cells: [most, most], corner: DVec2::splat(-1e6), side: 1.0, overhang: 0.8, heights: [-0.7, 0.9] };
+    let tufts = Tufts { grid, count: 4 };
+    let octree = tufts.octree();
+    let counted = u64::from(most) * u64::from(most) * 4;
+    assert_eq!((octree.count() as u64, octree.costs().stored), (counted, 0));
+    let mut hits = 0;
+    for ray in rays(91, 500, 1.0) {
+        let ray = Ray { origin: ray.origin * DVec3::new(1e5, 0.0, 1e5) + DVec3::Y * 30.0, direction: ray.direction };
+        let Some(hit) = octree.closest(&ray, 0.0, f64::INFINITY) else { continue };
+        hits += 1;
+        let placed = octree.placed(&hit.path).placement;
+        assert!(placed.translation.distance(ray.at(hit.hit.t)) < 0.8);
+    }
+    assert!(hits > 150, "{hits}");
+}
+
+#[test]
+fn cells_out_of_range_are_told() {
+    let refused = |grid: CellGrid, count: u32| {
+        InstanceOctree::in_cells(vec![surface()], grid, Arc::new(Tufts { grid, count })).expect_err("a problem")
+    };
+    let sound = Tufts::new([3, 3], 1.0, 2).grid;
+    let cells = [MOST_CELLS + 1, 2];
+    assert_eq!(refused(CellGrid { cells, ..sound }, 1), InstanceError::TooManyCells { cells });
+    assert_eq!(refused(sound, u32::MAX), InstanceError::TooManyInCell { instances: u32::MAX });
+    let small = CellGrid { side: 0.01, ..sound };
+    assert_eq!(refused(small, 1), InstanceError::SmallCells { overhang: 0.8, side: 0.01 });
+    let infinite = CellGrid { heights: [0.0, f64::INFINITY], ..sound };
+    assert_eq!(refused(infinite, 1), InstanceError::NotFinite { instance: 0 });
 }

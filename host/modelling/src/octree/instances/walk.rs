@@ -7,8 +7,13 @@ use super::super::prepared_ray::PreparedRay;
 use super::super::visit::{LeafVisitor, visit_leaves};
 use super::super::{Hit, Octree, Ray};
 use super::blocks::SphereTest;
-use super::build::{Content, InstanceOctree};
-use super::path::{InstanceHit, InstancePath};
+use super::cells::{self, Cells};
+use super::octree::{Arrangement, Content, InstanceOctree};
+use super::parts::PartsOnDemand;
+use super::path::{Descent, InstanceHit};
+use super::placement::Instance;
+use super::stored::{Extents, StoredInstances};
+use glam::DVec2;
 use std::ops::Range;
 
 impl InstanceOctree {
@@ -17,53 +22,190 @@ impl InstanceOctree {
     /// Of several hits with the same `t`, one counts, always the same.
     pub fn closest(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<InstanceHit> {
         let mut query = Nearest { limits: [t_min, t_max], best: None };
-        self.ask(ray, InstancePath::default(), &mut query);
+        self.ask(ray, None, &mut query);
         query.best
     }
 
     /// Says whether anything is hit with `t_min < t < t_max`.
     pub fn occluded(&self, ray: &Ray, t_min: f64, t_max: f64) -> bool {
-        self.ask(ray, InstancePath::default(), &mut Any { limits: [t_min, t_max] })
+        self.ask(ray, None, &mut Any { limits: [t_min, t_max] })
     }
 
     /// Gives all hits with `t_min < t < t_max`, in no order, until one is enough; says whether one was.
     pub fn each_hit(&self, ray: &Ray, t_min: f64, t_max: f64, enough: impl FnMut(InstanceHit) -> bool) -> bool {
-        self.ask(ray, InstancePath::default(), &mut Each { limits: [t_min, t_max], enough })
+        self.ask(ray, None, &mut Each { limits: [t_min, t_max], enough })
     }
 
-    /// Asks all surfaces along a ray, the nearer ones first, until the answer is known; says whether it is.
-    fn ask(&self, ray: &Ray, path: InstancePath, query: &mut impl Query) -> bool {
-        #[cfg(target_arch = "x86_64")]
-        {
-            #[target_feature(enable = "avx2,fma")]
-            fn ask_wide(
-                avx: Avx,
-                octree: &InstanceOctree,
-                ray: &Ray,
-                path: InstancePath,
-                query: &mut impl Query,
-            ) -> bool {
-                octree.ask_by::<AvxLanes>(avx, ray, path, query)
+    /// Asks all surfaces along a ray, about the nearer ones first, until the answer is known; says whether it is.
+    fn ask(&self, ray: &Ray, outer: Option<&Descent<'_>>, query: &mut impl Query) -> bool {
+        match &self.arrangement {
+            Arrangement::Stored(stored) => {
+                ask_stored(stored, &self.extents, ray, &Placed { octree: self, stored, base: 0, outer }, query)
             }
-            if let Some(avx) = Avx::detected() {
-                // SAFETY: `avx` proves that the processor has AVX2 and FMA, all that this function asks for.
-                return unsafe { ask_wide(avx, self, ray, path, query) };
+            Arrangement::Parts(parts) => {
+                ask_stored(&parts.above, &parts.extents, ray, &Parts { octree: self, parts, outer }, query)
+            }
+            Arrangement::Cells(cells) => self.ask_cells(cells, ray, outer, query),
+        }
+    }
+
+    /// Asks a prototype.
+    ///
+    /// - `ray`: in its coordinates.
+    #[inline(always)]
+    fn ask_prototype(&self, prototype: usize, ray: &Ray, descent: &Descent<'_>, query: &mut impl Query) -> bool {
+        match &self.prototypes[prototype].content {
+            Content::Surface { octree, first } => query.ask(octree, *first, ray, descent),
+            Content::Instances(inner) => inner.ask(ray, Some(descent), query),
+        }
+    }
+
+    /// Asks what is placed in the cells along a ray.
+    fn ask_cells(&self, cells: &Cells, ray: &Ray, outer: Option<&Descent<'_>>, query: &mut impl Query) -> bool {
+        let square = ray.direction.length_squared();
+        let (reach, level) = (cells.reach(ray), DVec2::new(ray.direction.x, ray.direction.z));
+        let most = reach * reach * level.length_squared() * (1.0 + ROUNDING);
+        for row in cells.rows(ray, query.limits()) {
+            if row.enter >= query.limits()[1] {
+                break;
+            }
+            let near = ray.at(row.enter);
+            for cell in row.cells() {
+                for number in 0..cells.source.count() {
+                    // Seen from above first: that needs no more than the place.
+                    let Some(at) = cells.source.place(cell, number) else { continue };
+                    let beside = level.perp_dot(at - DVec2::new(near.x, near.z));
+                    if beside * beside > most {
+                        continue;
+                    }
+                    let Instance { prototype, placement, .. } = cells.source.instance(cell, number);
+                    let Some(sphere) = self.extents.spheres.get(usize::from(prototype)) else { continue };
+                    let scale = placement.matrix3.x_axis.length_squared();
+                    let center = placement.transform_point3(sphere.center);
+                    let radius =
+                        f64::from(sphere.radius) * scale.sqrt() * (1.0 + ROUNDING) + (reach - cells.overhang());
+                    let to_center = center - near;
+                    let along = to_center.dot(ray.direction) / square;
+                    let beside = to_center - ray.direction * along;
+                    let half = radius / square.sqrt();
+                    let [from, to] = query.limits();
+                    let is_between = row.enter + along - half <= to && row.enter + along + half >= from;
+                    if !(is_between && beside.length_squared() <= radius * radius) {
+                        continue;
+                    }
+                    // Of a rotation with a scale.
+                    let inverse = placement.matrix3.transpose() * scale.recip();
+                    let own = Ray {
+                        origin: inverse * (ray.origin - placement.translation),
+                        direction: inverse * ray.direction,
+                    };
+                    let descent = Descent { number: cells::number_of(cell, number), outer };
+                    if self.ask_prototype(usize::from(prototype), &own, &descent, query) {
+                        return true;
+                    }
+                }
             }
         }
-        self.ask_by::<ScalarLanes>((), ray, path, query)
+        false
     }
+}
 
+/// What is computed of a sphere is off by less than this part of it.
+const ROUNDING: f64 = 1e-9;
+
+/// What is behind the leaves of an index.
+trait Below {
+    /// Asks what is at a place; returns whether the answer is known.
+    fn ask(&self, block: usize, lane: usize, ray: &Ray, query: &mut impl Query) -> bool;
+}
+
+/// Prototypes that are placed.
+struct Placed<'p> {
+    octree: &'p InstanceOctree,
+    stored: &'p StoredInstances,
+    /// What the numbers of instances begin with.
+    base: u64,
+    outer: Option<&'p Descent<'p>>,
+}
+
+impl Below for Placed<'_> {
     #[inline(always)]
-    fn ask_by<L: Lanes>(&self, proof: L::Proof, ray: &Ray, path: InstancePath, query: &mut impl Query) -> bool {
-        let [t_min, t_max] = query.limits();
-        let Some(prepared) = PreparedRay::new(ray, &self.cube, t_min, t_max) else { return false };
-        let limit = prepared.single.limit_of(prepared.chord.length());
-        let test = SphereTest::new(ray, &self.positions);
-        let from = test.as_ref().map_or(0.0, |test| test.from(t_min));
-        let mut visitor =
-            Visitor::<L, _> { proof, octree: self, ray, prepared: &prepared, test, from, path, query, limit };
-        visit_leaves::<L>(proof, &self.nodes, &prepared.single, &mut visitor)
+    fn ask(&self, block: usize, lane: usize, ray: &Ray, query: &mut impl Query) -> bool {
+        let StoredInstances { placements, positions, .. } = self.stored;
+        let Some(prototype) = placements.prototype(block, lane).map(usize::from) else { return false };
+        let ray = placements.own_ray(positions, block, lane, self.octree.extents.spheres[prototype].center, ray);
+        let descent = Descent { number: self.base | (block * LANES + lane) as u64, outer: self.outer };
+        self.octree.ask_prototype(prototype, &ray, &descent, query)
     }
+}
+
+/// Parts of instances.
+struct Parts<'p> {
+    octree: &'p InstanceOctree,
+    parts: &'p PartsOnDemand,
+    outer: Option<&'p Descent<'p>>,
+}
+
+impl Below for Parts<'_> {
+    fn ask(&self, block: usize, lane: usize, ray: &Ray, query: &mut impl Query) -> bool {
+        let Parts { octree, parts, outer } = *self;
+        let Some(part) = parts.above.placements.prototype(block, lane) else { return false };
+        // The sphere about a part is often far larger than its box.
+        if ray.within(&parts.extents.boxes[usize::from(part)], query.limits()).is_none() {
+            return false;
+        }
+        let stored = parts.part(&octree.extents, usize::from(part));
+        let base = ((block * LANES + lane) as u64) << 32;
+        ask_stored(stored, &octree.extents, ray, &Placed { octree, stored, base, outer }, query)
+    }
+}
+
+/// Asks what is placed along a ray.
+fn ask_stored(
+    stored: &StoredInstances,
+    extents: &Extents,
+    ray: &Ray,
+    below: &impl Below,
+    query: &mut impl Query,
+) -> bool {
+    #[cfg(target_arch = "x86_64")]
+    {
+        #[target_feature(enable = "avx2,fma")]
+        fn ask_wide(
+            avx: Avx,
+            stored: &StoredInstances,
+            extents: &Extents,
+            ray: &Ray,
+            below: &impl Below,
+            query: &mut impl Query,
+        ) -> bool {
+            ask_by::<AvxLanes>(avx, stored, extents, ray, below, query)
+        }
+        if let Some(avx) = Avx::detected() {
+            // SAFETY: `avx` proves that the processor has AVX2 and FMA, all that this function asks for.
+            return unsafe { ask_wide(avx, stored, extents, ray, below, query) };
+        }
+    }
+    ask_by::<ScalarLanes>((), stored, extents, ray, below, query)
+}
+
+#[inline(always)]
+fn ask_by<L: Lanes>(
+    proof: L::Proof,
+    stored: &StoredInstances,
+    extents: &Extents,
+    ray: &Ray,
+    below: &impl Below,
+    query: &mut impl Query,
+) -> bool {
+    let [t_min, t_max] = query.limits();
+    let Some(prepared) = PreparedRay::new(ray, &stored.cube, t_min, t_max) else { return false };
+    let limit = prepared.single.limit_of(prepared.chord.length());
+    let test = SphereTest::new(ray, &stored.positions);
+    let from = test.as_ref().map_or(0.0, |test| test.from(t_min));
+    let mut visitor =
+        Visitor::<L, _, _> { proof, stored, extents, ray, prepared: &prepared, test, from, below, query, limit };
+    visit_leaves::<L>(proof, &stored.nodes, &prepared.single, &mut visitor)
 }
 
 /// What is asked of the surfaces along a ray.
@@ -75,7 +217,7 @@ trait Query {
     /// Asks a surface; returns whether the answer is known.
     ///
     /// - `first`: the number of its first triangle in hits.
-    fn ask(&mut self, surface: &Octree, first: u32, ray: &Ray, path: InstancePath) -> bool;
+    fn ask(&mut self, surface: &Octree, first: u32, ray: &Ray, descent: &Descent<'_>) -> bool;
 }
 
 struct Nearest {
@@ -91,10 +233,10 @@ impl Query for Nearest {
     }
 
     #[inline(always)]
-    fn ask(&mut self, surface: &Octree, first: u32, ray: &Ray, path: InstancePath) -> bool {
+    fn ask(&mut self, surface: &Octree, first: u32, ray: &Ray, descent: &Descent<'_>) -> bool {
         if let Some(hit) = surface.closest(ray, self.limits[0], self.limits[1]) {
             self.limits[1] = hit.t;
-            self.best = Some(InstanceHit { hit: numbered(hit, first), path });
+            self.best = Some(InstanceHit { hit: numbered(hit, first), path: descent.path() });
         }
         false
     }
@@ -117,7 +259,7 @@ impl Query for Any {
     }
 
     #[inline(always)]
-    fn ask(&mut self, surface: &Octree, _: u32, ray: &Ray, _: InstancePath) -> bool {
+    fn ask(&mut self, surface: &Octree, _: u32, ray: &Ray, _: &Descent<'_>) -> bool {
         surface.occluded(ray, self.limits[0], self.limits[1])
     }
 }
@@ -135,49 +277,37 @@ impl<F: FnMut(InstanceHit) -> bool> Query for Each<F> {
     }
 
     #[inline(always)]
-    fn ask(&mut self, surface: &Octree, first: u32, ray: &Ray, path: InstancePath) -> bool {
-        let enough = |hit: Hit| (self.enough)(InstanceHit { hit: numbered(hit, first), path });
+    fn ask(&mut self, surface: &Octree, first: u32, ray: &Ray, descent: &Descent<'_>) -> bool {
+        let enough = |hit: Hit| (self.enough)(InstanceHit { hit: numbered(hit, first), path: descent.path() });
         surface.each_hit(ray, self.limits[0], self.limits[1], enough)
     }
 }
 
-/// Takes a ray into the coordinates of prototypes.
-struct Visitor<'v, L: Lanes, Q> {
+/// Takes a ray to what is behind leaves.
+struct Visitor<'v, L: Lanes, B, Q> {
     proof: L::Proof,
-    octree: &'v InstanceOctree,
+    stored: &'v StoredInstances,
+    extents: &'v Extents,
     ray: &'v Ray,
     prepared: &'v PreparedRay,
     /// None where spheres about instances cannot be compared with the ray.
     test: Option<SphereTest>,
     /// The length of the ray from which on hits count.
     from: f32,
-    path: InstancePath,
+    below: &'v B,
     query: &'v mut Q,
     limit: f32,
 }
 
-impl<L: Lanes, Q: Query> Visitor<'_, L, Q> {
+impl<L: Lanes, B: Below, Q: Query> Visitor<'_, L, B, Q> {
     /// The length of the ray up to which hits count.
     #[inline(always)]
     fn to(&self) -> f32 {
         self.test.as_ref().map_or(0.0, |test| test.to(self.query.limits()[1]))
     }
-
-    /// Asks what is placed at a place; returns whether the answer is known.
-    #[inline(always)]
-    fn ask(&mut self, block: usize, lane: usize) -> bool {
-        let InstanceOctree { placements, positions, prototypes, spheres, .. } = self.octree;
-        let Some(prototype) = placements.prototype(block, lane).map(usize::from) else { return false };
-        let ray = placements.own_ray(positions, block, lane, spheres[prototype].center, self.ray);
-        let path = self.path.and((block * LANES + lane) as u32);
-        match &prototypes[prototype].content {
-            Content::Surface { octree, first } => self.query.ask(octree, *first, &ray, path),
-            Content::Instances(inner) => inner.ask(&ray, path, self.query),
-        }
-    }
 }
 
-impl<L: Lanes, Q: Query> LeafVisitor for Visitor<'_, L, Q> {
+impl<L: Lanes, B: Below, Q: Query> LeafVisitor for Visitor<'_, L, B, Q> {
     #[inline(always)]
     fn limit(&self) -> f32 {
         self.limit
@@ -188,7 +318,8 @@ impl<L: Lanes, Q: Query> LeafVisitor for Visitor<'_, L, Q> {
 
     #[inline(always)]
     fn visit(&mut self, blocks: Range<usize>) -> bool {
-        let InstanceOctree { placements, positions, spheres, .. } = self.octree;
+        let StoredInstances { placements, positions, .. } = self.stored;
+        let spheres = &self.extents.spheres;
         for block in blocks {
             let mut to = self.to();
             let (mut lanes, enter) =
@@ -206,7 +337,7 @@ impl<L: Lanes, Q: Query> LeafVisitor for Visitor<'_, L, Q> {
                 if Q::NARROWS && enter.0[lane] > to {
                     continue;
                 }
-                if self.ask(block, lane) {
+                if self.below.ask(block, lane, self.ray, self.query) {
                     return true;
                 }
                 if Q::NARROWS {

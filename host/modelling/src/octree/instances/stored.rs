@@ -1,4 +1,4 @@
-//! Instances and the index above them.
+//! Instances that are stored, and the index above them.
 
 use super::super::bvh::{DIGITS, radix_sorted};
 use super::super::cube::Cube;
@@ -6,17 +6,14 @@ use super::super::items::Item;
 use super::super::lanes::LANES;
 use super::super::partition::ItemGroup;
 use super::super::wide_bvh::{BvhNode, CellGroup, Child, divide_cells};
-use super::super::{LocationalCode, MAX_DEPTH, Octree};
+use super::super::{LocationalCode, MAX_DEPTH};
 use super::blocks::Placements;
-use super::error::{InstanceError, MOST_INSTANCES, MOST_LEVELS, MOST_PROTOTYPES};
-use super::path::{InstancePath, PlacedSurface};
+use super::error::InstanceError;
 use super::placement::{Instance, PlacementForm, PrototypeSphere, longest, rounded};
 use crate::memory;
 use crate::numeric::bounds::Bounds;
-use glam::{DAffine3, DVec3};
+use glam::DVec3;
 use rayon::prelude::*;
-use serde::Serialize;
-use std::sync::Arc;
 use wide::f32x4;
 
 /// So many instances or fewer are a leaf.
@@ -29,148 +26,66 @@ const CELL: usize = 16;
 const BATCH: usize = 64;
 /// Bytes of nodes for each instance, at the most.
 const NODE_BYTES: usize = 16;
-/// A sphere is so much larger than it would be without rounding.
-const SPHERE_ROUNDING: f64 = 1e-9;
 /// The cube of positions reaches this part of the radius of an instance about each.
 const POSITION_MARGIN: f64 = 1.0 / 65_536.0;
 /// A placement flattens if the volume of a unit cube becomes this part of the cube of its longest edge.
 const FLAT: f64 = 1e-12;
 /// Edges of a cube that is rotated and scaled are as long and as upright to each other as this.
 const SIMILAR: f64 = 1e-6;
+/// Of so many instances or fewer, each is told once and kept until all are placed: 29 MB.
+const FEW: usize = 1 << 18;
 
-/// What instances place.
+/// How large prototypes are, by their numbers.
 #[derive(Clone, Debug)]
-pub struct Prototype {
-    pub(super) content: Content,
-    bounds: Bounds,
-    sphere: PrototypeSphere,
-    /// How many times over it is made of instances.
-    levels: usize,
-}
-
-#[derive(Clone, Debug)]
-pub(super) enum Content {
-    /// Hits name its triangles by their numbers from `first` on.
-    Surface {
-        octree: Arc<Octree>,
-        first: u32,
-    },
-    Instances(Arc<InstanceOctree>),
-}
-
-impl Prototype {
-    /// A surface.
-    ///
-    /// - `first`: the number by which hits name its first triangle, where triangles of several surfaces are told apart.
-    pub fn surface(octree: Arc<Octree>, first: u32) -> Prototype {
-        let bounds = Bounds::of(octree.triangles.iter().flatten().map(|vertex| octree.vertices[*vertex as usize]));
-        let corners = octree.triangles.iter().flatten().map(|vertex| octree.vertices[*vertex as usize]);
-        let radius = corners.map(|corner| corner.distance(bounds.center())).fold(0.0, f64::max);
-        Prototype::new(Content::Surface { octree, first }, bounds, radius, 0)
-    }
-
-    /// Instances.
-    pub fn instances(instances: Arc<InstanceOctree>) -> Prototype {
-        let (bounds, levels) = (instances.bounds, instances.levels);
-        Prototype::new(Content::Instances(instances), bounds, 0.5 * bounds.diagonal(), levels)
-    }
-
-    fn new(content: Content, bounds: Bounds, radius: f64, levels: usize) -> Prototype {
-        let sphere = match bounds.is_empty() {
-            true => PrototypeSphere { center: DVec3::ZERO, radius: 0.0 },
-            false => PrototypeSphere {
-                center: bounds.center(),
-                radius: ((radius * (1.0 + SPHERE_ROUNDING)) as f32).next_up(),
-            },
-        };
-        Prototype { content, bounds, sphere, levels }
-    }
-
-    /// How many triangles it is made of, each as often as it is placed.
-    fn triangles(&self) -> u64 {
-        match &self.content {
-            Content::Surface { octree, .. } => octree.triangle_count() as u64,
-            Content::Instances(instances) => instances.triangles,
-        }
-    }
-
-    /// The box around it, in its own coordinates; empty without triangles.
-    pub fn bounds(&self) -> Bounds {
-        self.bounds
-    }
-}
-
-/// An octree over instances. Threads share it freely.
-#[derive(Clone, Debug)]
-pub struct InstanceOctree {
-    pub(super) prototypes: Vec<Prototype>,
-    /// Of the prototypes.
+pub(super) struct Extents {
+    /// The boxes around them, in their own coordinates; an empty one places nothing.
+    pub(super) boxes: Vec<Bounds>,
     pub(super) spheres: Vec<PrototypeSphere>,
+}
+
+/// Placements in blocks of eight, and a wide BVH over their boxes.
+#[derive(Clone, Debug)]
+pub(super) struct StoredInstances {
     /// Around all positions.
     pub(super) positions: Cube,
     pub(super) placements: Placements,
     /// Around all instances.
     pub(super) cube: Cube,
     pub(super) nodes: Vec<BvhNode>,
-    bounds: Bounds,
-    count: usize,
-    /// Triangles that are placed.
-    triangles: u64,
-    /// How many times over instances are placed by instances.
-    levels: usize,
+    pub(super) bounds: Bounds,
+    pub(super) count: usize,
 }
 
-/// What an instance octree says of itself.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct InstanceCosts {
-    /// Instances that are kept, each of which may place many more.
-    pub instances: usize,
-    /// Bytes of their placements and of the index, without what is placed.
-    pub bytes: usize,
-    /// Triangles that are placed, each as often as it is; as many as can be counted.
-    pub triangles: u64,
-}
-
-impl InstanceOctree {
-    /// Places instances.
+impl StoredInstances {
+    /// Stores instances by as many threads as there are.
     ///
     /// Instances of empty prototypes are left out. The result is the same for any number of threads. Cost: as
-    /// n log n; beside the result, 16 bytes each for a while.
-    ///
-    /// - `count`: of instances. `instance`: tells them by number; it is asked several times for the same, and may not
-    ///   change its mind.
+    /// n log n; beside the result, 16 bytes each for a while, or 128 if they are few.
     ///
     /// # Errors
-    /// [`InstanceError`]. Of several instances that cannot be placed it tells the first, but those that only rounding spoils
-    /// come last.
-    pub fn new(
-        prototypes: Vec<Prototype>,
+    /// [`InstanceError`], see [`super::InstanceOctree::new`].
+    pub(super) fn new(
+        extents: &Extents,
         form: PlacementForm,
         count: usize,
-        instance: impl Fn(usize) -> Instance + Sync,
-    ) -> Result<InstanceOctree, InstanceError> {
-        if prototypes.len() > MOST_PROTOTYPES {
-            return Err(InstanceError::TooManyPrototypes { prototypes: prototypes.len() });
-        }
-        if count > MOST_INSTANCES {
-            return Err(InstanceError::TooManyInstances { instances: count });
-        }
-        let levels = 1 + prototypes.iter().map(|prototype| prototype.levels).max().unwrap_or(0);
-        if levels > MOST_LEVELS {
-            return Err(InstanceError::TooManyLevels { levels });
-        }
+        instance: &(impl Fn(usize) -> Instance + Sync),
+    ) -> Result<StoredInstances, InstanceError> {
         let bytes = count * (form.bytes() + NODE_BYTES + 2 * size_of::<u64>());
         memory::reserve(bytes as u64, || format!("placing {count} instances"))?;
-        let spheres: Vec<PrototypeSphere> = prototypes.iter().map(|prototype| prototype.sphere).collect();
-        let mut builder = Builder {
-            prototypes: &prototypes,
-            spheres: &spheres,
-            form,
-            positions: EMPTY,
-            cube: EMPTY,
-            instance: &instance,
-            keys: Vec::new(),
-        };
+        if count > FEW {
+            return StoredInstances::built(extents, form, count, instance);
+        }
+        let all: Vec<Instance> = (0..count).into_par_iter().map(instance).collect();
+        StoredInstances::built(extents, form, count, &|number: usize| all[number])
+    }
+
+    fn built(
+        extents: &Extents,
+        form: PlacementForm,
+        count: usize,
+        instance: &(impl Fn(usize) -> Instance + Sync),
+    ) -> Result<StoredInstances, InstanceError> {
+        let mut builder = Builder { extents, form, positions: EMPTY, cube: EMPTY, instance, keys: Vec::new() };
         let instances = 0..count;
         if let Some(error) = instances.clone().into_par_iter().find_map_first(|number| builder.check(number).err()) {
             return Err(error);
@@ -186,52 +101,54 @@ impl InstanceOctree {
         builder.sort(count);
         let (nodes, placements) = builder.index();
         let (positions, cube, count) = (builder.positions, builder.cube, builder.keys.len());
-        let triangles = placements.prototypes().map(|of| prototypes[usize::from(of)].triangles());
-        let triangles = triangles.fold(0_u64, u64::saturating_add);
-        Ok(InstanceOctree { prototypes, spheres, positions, placements, cube, nodes, bounds, count, triangles, levels })
+        Ok(StoredInstances { positions, placements, cube, nodes, bounds, count })
     }
 
-    /// The box around all instances; empty without any.
-    pub fn bounds(&self) -> Bounds {
-        self.bounds
-    }
-
-    /// Number of instances, those of empty prototypes left out.
-    pub fn count(&self) -> usize {
-        self.count
-    }
-
-    /// An instance as it is kept; the number is that of an [`InstancePath`]. None if there is none of this number.
-    pub fn instance(&self, number: u32) -> Option<Instance> {
-        self.placements.get(&self.positions, &self.spheres, number as usize)
-    }
-
-    /// All instances as they are kept, with their numbers.
-    pub fn instances(&self) -> impl Iterator<Item = (u32, Instance)> + '_ {
-        (0..(self.placements.blocks() * LANES) as u32).filter_map(|number| Some((number, self.instance(number)?)))
-    }
-
-    /// How the surface at the end of a path of this octree is placed.
-    pub fn placed(&self, path: &InstancePath) -> PlacedSurface {
-        let mut octree = self;
-        let mut placed = PlacedSurface { placement: DAffine3::IDENTITY, variation: 0, largest: 0.0 };
-        for number in path.numbers() {
-            let Some(Instance { prototype, variation, placement }) = octree.instance(*number) else { break };
-            let outer = placed.placement;
-            placed.largest += longest(&outer.matrix3) * placement.translation.length();
-            placed.placement = outer * placement;
-            if let Content::Instances(inner) = &octree.prototypes[usize::from(prototype)].content {
-                octree = inner;
-            }
-            placed.variation = placed.variation.wrapping_add(variation);
+    /// Stores instances by this thread alone, those left out that cannot be placed: while a ray waits for them, no other
+    /// work may come between.
+    pub(super) fn of_part(extents: &Extents, form: PlacementForm, instances: &[Instance]) -> StoredInstances {
+        let instance = |number: usize| instances[number];
+        let mut builder =
+            Builder { extents, form, positions: EMPTY, cube: EMPTY, instance: &instance, keys: Vec::new() };
+        let mut numbers: Vec<usize> = (0..instances.len()).filter(|number| builder.check(*number).is_ok()).collect();
+        let around = numbers.iter().map(|number| builder.around_center(&instances[*number]));
+        builder.positions = cube_around(around.fold(Bounds::EMPTY, Bounds::union));
+        numbers.retain(|number| builder.check_rounded(*number).is_ok());
+        let bounds = numbers.iter().map(|number| builder.bounds(*number)).fold(Bounds::EMPTY, Bounds::union);
+        builder.cube = cube_around(bounds);
+        numbers.retain(|number| !builder.bounds(*number).is_empty());
+        let mut placements = Placements::with_capacity(form, numbers.len());
+        let mut index = GroupIndex::default();
+        if !numbers.is_empty() {
+            let mut items: Vec<Item> = numbers.iter().map(|number| builder.item(*number as u64)).collect();
+            divide_items(&mut items, &mut index);
         }
-        placed
+        for leaf in &index.leaves {
+            let numbers = leaf.iter().filter(|number| **number != NONE);
+            placements.push(&builder.positions, &extents.spheres, numbers.map(|number| instances[*number as usize]));
+        }
+        let (positions, cube, count) = (builder.positions, builder.cube, numbers.len());
+        StoredInstances { positions, placements, cube, nodes: index.nodes, bounds, count }
     }
 
-    /// What it costs, without the instances that its prototypes may be made of.
-    pub fn costs(&self) -> InstanceCosts {
-        let bytes = self.placements.bytes() + size_of_val(self.nodes.as_slice());
-        InstanceCosts { instances: self.count, bytes, triangles: self.triangles }
+    /// How many bytes a placement and the index take at the most, beside what is stored for a while.
+    pub(super) fn most_bytes(form: PlacementForm) -> usize {
+        form.bytes() + NODE_BYTES
+    }
+
+    /// Bytes of the placements and of the index.
+    pub(super) fn bytes(&self) -> usize {
+        self.placements.bytes() + size_of_val(self.nodes.as_slice())
+    }
+
+    /// How often each prototype is placed.
+    pub(super) fn prototypes(&self) -> impl Iterator<Item = u16> + '_ {
+        self.placements.prototypes()
+    }
+
+    /// An instance as it is kept, by its place; none if there is none.
+    pub(super) fn instance(&self, extents: &Extents, place: u32) -> Option<Instance> {
+        self.placements.get(&self.positions, &extents.spheres, place as usize)
     }
 }
 
@@ -249,8 +166,7 @@ fn union(boxes: impl ParallelIterator<Item = Bounds>) -> Bounds {
 }
 
 struct Builder<'b, F> {
-    prototypes: &'b [Prototype],
-    spheres: &'b [PrototypeSphere],
+    extents: &'b Extents,
     form: PlacementForm,
     positions: Cube,
     cube: Cube,
@@ -262,8 +178,8 @@ struct Builder<'b, F> {
 impl<F: Fn(usize) -> Instance + Sync> Builder<'_, F> {
     fn check(&self, number: usize) -> Result<(), InstanceError> {
         let Instance { prototype, placement, .. } = (self.instance)(number);
-        if usize::from(prototype) >= self.prototypes.len() {
-            let prototypes = self.prototypes.len();
+        if usize::from(prototype) >= self.extents.boxes.len() {
+            let prototypes = self.extents.boxes.len();
             return Err(InstanceError::UnknownPrototype { instance: number, prototype, prototypes });
         }
         if !placement.is_finite() {
@@ -305,13 +221,13 @@ impl<F: Fn(usize) -> Instance + Sync> Builder<'_, F> {
 
     /// Where the centre of the sphere of an instance is.
     fn center(&self, instance: &Instance) -> DVec3 {
-        instance.placement.transform_point3(self.spheres[usize::from(instance.prototype)].center)
+        instance.placement.transform_point3(self.extents.spheres[usize::from(instance.prototype)].center)
     }
 
     /// A box around the centre of the sphere of an instance, so small a part of it that positions are rounded to less than
     /// the digits of the sphere, and so large that these are numbers of single precision, in sides of it.
     fn around_center(&self, instance: &Instance) -> Bounds {
-        let radius = f64::from(self.spheres[usize::from(instance.prototype)].radius);
+        let radius = f64::from(self.extents.spheres[usize::from(instance.prototype)].radius);
         let margin = DVec3::splat(radius * longest(&instance.placement.matrix3) * POSITION_MARGIN);
         let center = self.center(instance);
         Bounds { min: center - margin, max: center + margin }
@@ -319,13 +235,13 @@ impl<F: Fn(usize) -> Instance + Sync> Builder<'_, F> {
 
     fn rounded(&self, number: usize) -> Instance {
         let instance = (self.instance)(number);
-        rounded(self.form, &self.positions, &instance, self.spheres[usize::from(instance.prototype)].center)
+        rounded(self.form, &self.positions, &instance, self.extents.spheres[usize::from(instance.prototype)].center)
     }
 
     /// The box around an instance.
     fn bounds(&self, number: usize) -> Bounds {
         let Instance { prototype, placement, .. } = self.rounded(number);
-        match self.prototypes[usize::from(prototype)].bounds {
+        match self.extents.boxes[usize::from(prototype)] {
             own if own.is_empty() => own,
             own => Bounds::of(own.corners().map(|corner| placement.transform_point3(corner))),
         }
@@ -414,7 +330,7 @@ impl<F: Fn(usize) -> Instance + Sync> Builder<'_, F> {
                 for leaf in &made.leaves {
                     let numbers = leaf.iter().filter(|number| **number != NONE);
                     let instances = numbers.map(|number| (self.instance)(*number as usize));
-                    placements.push(&self.positions, self.spheres, instances);
+                    placements.push(&self.positions, &self.extents.spheres, instances);
                 }
                 if let Some(place) = place {
                     place.attach(&mut nodes, Child(above as u32));

@@ -1,0 +1,228 @@
+//! Tests of scattered instances: how many, where, and how they stand.
+
+use super::super::object::{Instances, Object, Placing, Scatter, Shape};
+use super::ScatterParts;
+use crate::illumination::Paint;
+use crate::illumination::texture::{Band, Motif, NumberTexture, Pattern, TextureMapping, Varying};
+use crate::numeric::bounds::Bounds;
+use crate::octree::{Instance, InstanceParts};
+use crate::solid::Primitive;
+use glam::{DMat3, DMat4, DVec3};
+
+/// Everything about the origin, on a level square of 10 or on something else.
+fn scatter(count: usize) -> Scatter {
+    Scatter {
+        on: on(Shape::Ground { size: 10.0 }, DMat4::IDENTITY),
+        count,
+        cell: None,
+        distance: 0.0,
+        density: NumberTexture::Constant(1.0),
+        slope: [0.0, 180.0],
+        height: [f64::NEG_INFINITY, f64::INFINITY],
+        scale: [1.0, 1.0],
+        turn: 360.0,
+        lean: 0.0,
+        upright: 0.0,
+        sink: 0.0,
+        shares: vec![1.0],
+        seed: 7,
+    }
+}
+
+fn on(shape: Shape, transform: DMat4) -> Object {
+    Object { name: "ground".into(), shape, transform, material: None, tolerance: Some(1e-3) }
+}
+
+fn instances(scatter: &Scatter) -> Instances {
+    let placing = Placing::Scattered(Box::new(scatter.clone()));
+    Instances { prototypes: vec![Vec::new(); scatter.shares.len()], placing }
+}
+
+fn all(scatter: &Scatter) -> Vec<Instance> {
+    scatter.check(scatter.shares.len()).expect("in range");
+    instances(scatter).places(None, 45.0).expect("a surface").all().collect()
+}
+
+#[test]
+fn every_part_of_an_area_gets_as_many() {
+    let mut counts = [0; 16];
+    for Instance { placement, .. } in all(&scatter(16_000)) {
+        let at = placement.translation;
+        assert!(at.y == 0.0 && at.x.abs() <= 5.0 && at.z.abs() <= 5.0);
+        let cell = |x: f64| ((x + 5.0) / 2.5) as usize;
+        counts[cell(at.x).min(3) * 4 + cell(at.z).min(3)] += 1;
+    }
+    // Five standard deviations.
+    assert!(counts.iter().all(|count| (840..1160).contains(count)), "{counts:?}");
+}
+
+#[test]
+fn instances_stand_square_to_the_surface_or_upright_and_turn_and_lean_as_far_as_told() {
+    let ball = || on(Shape::from(Primitive::Sphere { radius: 2.0 }), DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0)));
+    for Instance { placement, .. } in all(&Scatter { on: ball(), scale: [0.5, 2.0], ..scatter(500) }) {
+        let [x, y, z] = [placement.matrix3.x_axis, placement.matrix3.y_axis, placement.matrix3.z_axis];
+        let scale = y.length();
+        assert!((0.5..=2.0).contains(&scale) && (x.length() / scale - 1.0).abs() < 1e-12);
+        assert!((x.cross(y).dot(z) / scale.powi(3) - 1.0).abs() < 1e-12, "right-handed");
+        assert!(y.dot(placement.translation) / (2.0 * scale) > 0.999);
+    }
+    let straight = Scatter { on: ball(), upright: 1.0, turn: 0.0, sink: 0.25, ..scatter(50) };
+    for Instance { placement, .. } in all(&straight) {
+        assert!((placement.matrix3 - DMat3::IDENTITY).to_cols_array().iter().all(|x| x.abs() < 1e-12));
+        assert!(((placement.translation + DVec3::Y * 0.25).length() - 2.0).abs() < 1e-3);
+    }
+    let leaning = all(&Scatter { lean: 20.0, turn: 10.0, ..scatter(2000) });
+    let angles: Vec<f64> = leaning.iter().map(|i| i.placement.matrix3.y_axis.y.acos().to_degrees()).collect();
+    let most = angles.iter().copied().fold(0.0, f64::max);
+    assert!(most <= 20.0 + 1e-9 && most > 19.0, "{most}");
+}
+
+#[test]
+fn distance_slope_height_and_density_are_kept() {
+    let apart = all(&Scatter { distance: 0.4, ..scatter(300) });
+    assert_eq!(apart.len(), 300);
+    for (number, one) in apart.iter().enumerate() {
+        let far = |other: &Instance| one.placement.translation.distance(other.placement.translation) >= 0.4;
+        assert!(apart[..number].iter().all(far));
+    }
+    let full = all(&Scatter { distance: 1.0, ..scatter(1_000) }).len();
+    assert!((60..120).contains(&full), "no room for more: {full}");
+    let ball = || on(Shape::from(Primitive::Sphere { radius: 2.0 }), DMat4::IDENTITY);
+    for Instance { placement, .. } in all(&Scatter { on: ball(), slope: [30.0, 60.0], ..scatter(500) }) {
+        let slope = (placement.translation.y / 2.0).acos().to_degrees();
+        assert!((29.0..61.0).contains(&slope), "{slope}");
+    }
+    let band = all(&Scatter { on: ball(), height: [-0.5, 0.25], ..scatter(500) });
+    assert!(band.len() == 500 && band.iter().all(|i| (-0.5..=0.25).contains(&i.placement.translation.y)));
+    assert!(all(&Scatter { height: [5.0, 6.0], ..scatter(500) }).is_empty());
+}
+
+/// Nothing on two of four squares, everything on the others.
+fn checkered() -> NumberTexture {
+    let checker = Pattern {
+        motif: Motif::Checker,
+        laying: TextureMapping::default(),
+        paints: vec![Paint::grey(0.0), Paint::grey(1.0)],
+    };
+    let density = Varying { pattern: checker, band: Band::Mean, from: 0.0, to: 1.0 };
+    NumberTexture::Varying(Box::new(density))
+}
+
+#[test]
+fn a_pattern_of_density_lies_as_a_paint_does() {
+    let density = checkered();
+    let mut sides = Vec::new();
+    for mirror in [1.0, -1.0] {
+        let on = on(Shape::Ground { size: 10.0 }, DMat4::from_scale(DVec3::new(mirror, 1.0, 1.0)));
+        let all = all(&Scatter { density: density.clone(), on, ..scatter(2000) });
+        let is_first = |instance: &&Instance| instance.placement.translation.x * instance.placement.translation.z > 0.0;
+        let first = all.iter().filter(is_first).count();
+        assert!(all.len() == 2000 && (first == 0 || first == 2000), "{first}: two of four squares");
+        assert!(all.iter().all(|instance| instance.placement.matrix3.y_axis.y > 0.999), "they stand on top");
+        sides.push(first);
+    }
+    assert_eq!(sides[0] + sides[1], 2000, "a mirrored square has a mirrored pattern");
+}
+
+#[test]
+fn prototypes_come_as_often_as_their_shares_tell_and_all_is_drawn_from_the_seed() {
+    let shares = || Scatter { shares: vec![1.0, 0.0, 3.0], ..scatter(4000) };
+    let first = all(&shares());
+    let count = |which: u16| first.iter().filter(|instance| instance.prototype == which).count();
+    assert!(count(1) == 0 && (850..1150).contains(&count(0)), "{}", count(0));
+    assert_eq!(first, all(&shares()));
+    assert_ne!(first, all(&Scatter { seed: 8, ..shares() }));
+    let of = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        pool.install(|| all(&Scatter { distance: 0.05, slope: [0.0, 10.0], ..scatter(3000) }))
+    };
+    assert_eq!(of(1), of(3));
+}
+
+#[test]
+fn a_part_of_a_surface_has_as_many_as_its_area_tells_and_they_are_in_its_box() {
+    for (shape, transform) in [
+        (Shape::Ground { size: 10.0 }, DMat4::IDENTITY),
+        (Shape::from(Primitive::Sphere { radius: 3.0 }), DMat4::from_scale(DVec3::new(-1.0, 2.0, 1.0))),
+    ] {
+        let scatter = Scatter { on: on(shape, transform), ..scatter(100_000) };
+        let parts = ScatterParts::new(&scatter, None, 10.0).expect("a surface");
+        assert!((25..60).contains(&parts.parts()), "{}", parts.parts());
+        let (mut next, mut sizes) = (0, 0.0);
+        for part in 0..parts.parts() {
+            let count = parts.count(part);
+            assert!((1..=4096).contains(&count), "{count}");
+            let Bounds { min, max } = parts.bounds(part);
+            sizes += (max - min).max_element();
+            for own in (0..count).step_by(7) {
+                let instance = parts.instance(part, own);
+                let at = instance.placement.translation;
+                assert!(at.cmpge(min - 1e-9).all() && at.cmple(max + 1e-9).all(), "{at} {min} {max}");
+                assert_eq!(parts.instance_of_all(next + own), instance);
+            }
+            next += count;
+        }
+        let mean = sizes / parts.parts() as f64;
+        assert!(next == 100_000 && mean < 4.5, "{next} {mean}");
+    }
+}
+
+#[test]
+fn no_instances_and_a_single_one_are_parts_too() {
+    for count in [0, 1, 2] {
+        assert_eq!(all(&scatter(count)).len(), count);
+    }
+    let flat = on(Shape::from(Primitive::Sphere { radius: 1.0 }), DMat4::from_scale(DVec3::new(1.0, 1e-12, 1.0)));
+    assert_eq!(all(&Scatter { on: flat, ..scatter(50) }).len(), 50);
+}
+
+#[test]
+fn cells_have_as_many_each_as_density_height_and_the_end_of_the_ground_leave() {
+    let in_cells = |cell: f64, count: usize| Scatter { cell: Some(cell), ..scatter(count) };
+    assert_eq!(all(&in_cells(2.5, 7)).len(), 4 * 4 * 7);
+    // The last cells are cut in half.
+    let cut = all(&in_cells(4.0, 100));
+    assert!((cut.len() as f64 / 625.0 - 1.0).abs() < 0.1, "{}", cut.len());
+    assert!(cut.iter().all(|instance| instance.placement.translation.abs().max_element() <= 5.0));
+    let half = all(&Scatter { density: NumberTexture::Constant(0.5), ..in_cells(0.5, 10) });
+    assert!((half.len() as f64 / 2000.0 - 1.0).abs() < 0.08, "{}", half.len());
+    // Those that are left are as they were.
+    let full = all(&in_cells(0.5, 10));
+    assert!(half.iter().all(|instance| full.contains(instance)));
+    let turned = DMat4::from_translation(DVec3::Y * 3.0) * DMat4::from_rotation_z(0.5);
+    let slope = Scatter { on: on(Shape::Ground { size: 10.0 }, turned), height: [3.0, 9.0], ..in_cells(0.5, 10) };
+    let above = all(&slope);
+    assert!(above.len() > 1500 && above.iter().all(|instance| instance.placement.translation.y >= 3.0));
+    assert!(above.iter().all(|instance| (instance.placement.matrix3.y_axis.y - 0.5_f64.cos()).abs() < 1e-12));
+    assert!(all(&Scatter { slope: [0.0, 20.0], ..slope }).is_empty());
+}
+
+#[test]
+fn a_pattern_of_density_lies_in_cells_as_a_paint_does() {
+    for mirror in [1.0, -1.0] {
+        let transform = DMat4::from_rotation_y(0.3) * DMat4::from_scale(DVec3::new(mirror, 1.0, 2.0));
+        let on = on(Shape::Ground { size: 10.0 }, transform);
+        let patterned = Scatter { density: checkered(), on: on.clone(), ..scatter(2000) };
+        let [found, cells] = [patterned.clone(), Scatter { cell: Some(0.5), count: 5, ..patterned }].map(|of| all(&of));
+        let own = |instance: &Instance| transform.inverse().transform_point3(instance.placement.translation);
+        let first = |all: &[Instance]| all.iter().filter(|instance| own(instance).x * own(instance).z > 0.0).count();
+        assert!(cells.len() > 1500 && (first(&cells) == 0 || first(&cells) == cells.len()));
+        assert_eq!(first(&found) == 0, first(&cells) == 0);
+        assert!(cells.iter().all(|instance| instance.placement.matrix3.y_axis.y > 0.999), "they stand on top");
+    }
+}
+
+#[test]
+fn cells_that_cannot_be_are_refused() {
+    let refusal = |scatter: Scatter| scatter.check(1).expect_err("a problem");
+    let in_cells = |cell: f64| Scatter { cell: Some(cell), ..scatter(4) };
+    let ball = on(Shape::from(Primitive::Sphere { radius: 1.0 }), DMat4::IDENTITY);
+    let skewed =
+        DMat4::from_rotation_y(0.4) * DMat4::from_scale(DVec3::new(1.0, 1.0, 2.0)) * DMat4::from_rotation_y(0.4);
+    assert_eq!(refusal(in_cells(0.0)), "cell is out of range");
+    assert!(refusal(in_cells(1e-9)).contains("1.000e10 cells along a side are more than"));
+    assert!(refusal(Scatter { on: ball, ..in_cells(1.0) }).contains("which ground is not"));
+    assert!(refusal(Scatter { on: on(Shape::Ground { size: 10.0 }, skewed), ..in_cells(1.0) }).contains("not skewed"));
+    assert!(refusal(Scatter { distance: 0.1, ..in_cells(1.0) }).contains("a distance is not kept"));
+    assert!(refusal(Scatter { count: 1 << 23, ..in_cells(1.0) }).contains("instances in a cell"));
+}
