@@ -232,7 +232,7 @@ fn write(
     sets.iter().try_for_each(|set| put(&[set.rays.len() as f64, f64::from(u8::from(set.any))]))?;
     vertices.iter().try_for_each(|vertex| put(&vertex.to_array()))?;
     triangles.iter().try_for_each(|triangle| put(&triangle.map(f64::from)))?;
-    tree.instances().try_for_each(|(_, instance)| put(&instance.placement.to_cols_array()))?;
+    tree.stored_instances().try_for_each(|(_, instance)| put(&instance.placement.to_cols_array()))?;
     for (Ray { origin, direction }, t_max) in sets.iter().flat_map(|set| &set.rays) {
         put(&origin.to_array())?;
         put(&direction.to_array())?;

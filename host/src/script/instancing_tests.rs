@@ -71,6 +71,20 @@ fn instances_of_scattered_instances_stand_where_their_surface_is() {
 }
 
 #[test]
+fn what_stands_in_cells_is_stored_nowhere() {
+    let made = run("
+        let tuft = scatter(box(0.02, 0.2, 0.02), ground(0.5), #{ count: 30, lean: 20, stays: false });
+        scatter(tuft, ground(100000), #{ count: 40, cell: 0.5, scale: [0.5, 1] });
+    ");
+    let costs = Prepared::new(&made.scene).expect("a scene").instance_costs().expect("instances");
+    assert_eq!((costs.instances, costs.stored), (200_000 * 200_000 * 40 + 30, 30));
+    assert_eq!(costs.triangles, 200_000 * 200_000 * 40 * 30 * 12);
+    let crowded = run("scatter(cube(1), ground(10), #{ count: 4, cell: 0.05 });");
+    let error = Prepared::new(&crowded.scene).expect_err("cells that are too small").to_string();
+    assert!(error.contains("out of its cell, more than 8 times its side 0.05; enlarge the cells"), "{error}");
+}
+
+#[test]
 fn what_cannot_be_placed_is_told_with_its_place() {
     for (text, expected) in [
         (
@@ -88,6 +102,11 @@ fn what_cannot_be_placed_is_told_with_its_place() {
         ("scatter(cube(1), half_space(\"y\"), 10);", (1, 1, "has no surface of its own")),
         ("scatter(cube(1), cube(4), #{ count: 10, shares: [1, 2] });", (1, 1, "shares is out of range")),
         ("scatter(cube(1), cube(4), #{ count: 10, slope: [40, 20] });", (1, 1, "slope must be a number from 0 to 180")),
+        ("scatter(cube(1), cube(4), #{ count: 10, cell: 1 });", (1, 1, "cells lie on a ground")),
+        (
+            "scatter(cube(1), ground(4), #{ count: 10, cell: 1, distance: 1 });",
+            (1, 1, "a distance is not kept in cells"),
+        ),
         ("let b = cube(1); for i in 0..8 { b = instances(b, [[0, 0, 0]]); }", (1, 38, "nested more than 7 times")),
     ] {
         let (line, column, message) = problem(text);

@@ -99,7 +99,7 @@ pub(super) enum Arrangement {
 pub struct InstanceCosts {
     /// Instances, each of which may place many more.
     pub instances: usize,
-    /// Those of them that are stored when they are needed, or were.
+    /// Those of them that are stored by now.
     pub stored: usize,
     /// Bytes of the placements that are stored by now and of the index, without what is placed.
     pub bytes: usize,
@@ -112,7 +112,8 @@ impl InstanceOctree {
     /// Places instances, and stores them all.
     ///
     /// Instances of empty prototypes are left out. The result is the same for any number of threads. Cost: as
-    /// n log n; beside the result, 16 bytes each for a while, or 128 if they are few.
+    /// n log n; beside the result, 16 to 176 bytes each for a while, the fewer
+    /// the more.
     ///
     /// - `count`: of instances. `instance`: tells them by number; it is asked several times for the same, and may not
     ///   change its mind.
@@ -198,6 +199,15 @@ impl InstanceOctree {
         }
     }
 
+    /// All instances that are stored from the beginning, with their numbers.
+    pub fn stored_instances(&self) -> impl Iterator<Item = (u64, Instance)> + '_ {
+        let places = match &self.arrangement {
+            Arrangement::Stored(stored) => stored.places(),
+            Arrangement::Parts(_) | Arrangement::Cells(_) => 0,
+        };
+        (0..u64::from(places)).filter_map(|number| Some((number, self.instance(number)?)))
+    }
+
     /// How the surface at the end of a path of this octree is placed.
     pub fn placed(&self, path: &InstancePath) -> PlacedSurface {
         let mut octree = self;
@@ -220,7 +230,7 @@ impl InstanceOctree {
         let InstanceOctree { count: instances, triangles, .. } = *self;
         let (stored, bytes) = match &self.arrangement {
             Arrangement::Stored(stored) => (instances, stored.bytes()),
-            Arrangement::Parts(parts) => (instances, parts.bytes()),
+            Arrangement::Parts(parts) => (parts.stored(), parts.bytes()),
             Arrangement::Cells(_) => (0, 0),
         };
         InstanceCosts { instances, stored, bytes, triangles }

@@ -93,6 +93,11 @@ impl PartsOnDemand {
         (0..self.made.len()).map(|part| self.source.count(part)).sum()
     }
 
+    /// How many of them are stored by now.
+    pub(super) fn stored(&self) -> usize {
+        self.made.iter().filter_map(OnceLock::get).map(|part| part.count).sum()
+    }
+
     /// Bytes of all parts that have been stored, and of what is above them.
     pub(super) fn bytes(&self) -> usize {
         let of = |part: &OnceLock<StoredInstances>| part.get().map_or(0, StoredInstances::bytes);

@@ -155,31 +155,23 @@ impl SimilarPlacement {
         let (c, b, a) = (component(bits), component(bits >> STEP_BITS), component(bits >> (2 * STEP_BITS)));
         bits >>= 3 * STEP_BITS;
         let largest = (1.0 - (a * a + b * b + c * c)).max(0.0).sqrt();
-        let all = match bits & 3 {
-            0 => [largest, a, b, c],
-            1 => [a, largest, b, c],
-            2 => [a, b, largest, c],
-            _ => [a, b, c, largest],
-        };
-        (DQuat::from_array(all), if bits & 4 == 0 { 1.0 } else { -1.0 })
-    }
-
-    #[inline(always)]
-    pub(super) fn scale(&self) -> f64 {
-        let (octaves, part) = (i32::from(self.scale >> 10), self.scale as usize & (OCTAVE_STEPS - 1));
-        SCALES[part] * f64::from_bits(((octaves + 1023) as u64) << 52)
+        // Looked up, since which one it is cannot be foreseen: a branch would be taken wrong most of the time.
+        let (parts, order) = ([a, b, c, largest], &ORDER[(bits & 3) as usize]);
+        let all = order.map(|place| parts[usize::from(place & 3)]);
+        let sign = f64::from_bits(1.0_f64.to_bits() | (bits & 4) << 61);
+        (DQuat::from_array(all), sign)
     }
 
     pub(super) fn instance(&self, cube: &Cube, center: DVec3) -> Instance {
         let (rotation, sign) = self.rotation_and_sign();
-        let matrix3 = DMat3::from_quat(rotation) * (sign * self.scale());
+        let matrix3 = DMat3::from_quat(rotation) * (sign * power(self.scale));
         placed(matrix3, position(cube, self.position), center, self.prototype, self.variation)
     }
 
     #[inline(always)]
     pub(super) fn frame(&self, cube: &Cube) -> OwnFrame {
         let (rotation, sign) = self.rotation_and_sign();
-        let inverse = DMat3::from_quat(rotation).transpose() * (sign / self.scale());
+        let inverse = DMat3::from_quat(rotation).transpose() * (sign * power(-self.scale));
         OwnFrame { center: position(cube, self.position), inverse }
     }
 }
@@ -212,6 +204,16 @@ impl AffinePlacement {
 /// The instance that brings the centre of a prototype to a place.
 fn placed(matrix3: DMat3, at: DVec3, center: DVec3, prototype: u16, variation: u16) -> Instance {
     Instance { prototype, variation, placement: DAffine3 { matrix3, translation: at - matrix3 * center } }
+}
+
+/// Where the components of a rotation stand among those that are kept and the largest, by which one is left out.
+const ORDER: [[u8; 4]; 4] = [[3, 0, 1, 2], [0, 3, 1, 2], [0, 1, 3, 2], [0, 1, 2, 3]];
+
+/// The scale that so many steps make.
+#[inline(always)]
+fn power(steps: i16) -> f64 {
+    let (octaves, part) = (i32::from(steps >> 10), steps as usize & (OCTAVE_STEPS - 1));
+    SCALES[part] * f64::from_bits(((octaves + 1023) as u64) << 52)
 }
 
 /// The scales of one octave from 1 on: a table, since a ray asks for those of many instances.

@@ -12,7 +12,7 @@ use super::error::InstanceError;
 use super::placement::{Instance, PlacementForm, PrototypeSphere, longest, rounded};
 use crate::memory;
 use crate::numeric::bounds::Bounds;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 use wide::f32x4;
 
@@ -32,8 +32,12 @@ const POSITION_MARGIN: f64 = 1.0 / 65_536.0;
 const FLAT: f64 = 1e-12;
 /// Edges of a cube that is rotated and scaled are as long and as upright to each other as this.
 const SIMILAR: f64 = 1e-6;
+/// A box is so much larger than it would be without rounding, parts of its largest coordinates.
+const ROUNDING: f64 = 1e-14;
 /// Of so many instances or fewer, each is told once and kept until all are placed: 29 MB.
 const FEW: usize = 1 << 18;
+/// Of so many instances or fewer, the boxes are kept until all are placed: 200 MB.
+const BOXED: usize = 1 << 22;
 
 /// How large prototypes are, by their numbers.
 #[derive(Clone, Debug)]
@@ -60,7 +64,8 @@ impl StoredInstances {
     /// Stores instances by as many threads as there are.
     ///
     /// Instances of empty prototypes are left out. The result is the same for any number of threads. Cost: as
-    /// n log n; beside the result, 16 bytes each for a while, or 128 if they are few.
+    /// n log n; beside the result, 16 to 176 bytes each for a while, the fewer
+    /// the more.
     ///
     /// # Errors
     /// [`InstanceError`], see [`super::InstanceOctree::new`].
@@ -85,16 +90,21 @@ impl StoredInstances {
         count: usize,
         instance: &(impl Fn(usize) -> Instance + Sync),
     ) -> Result<StoredInstances, InstanceError> {
-        let mut builder = Builder { extents, form, positions: EMPTY, cube: EMPTY, instance, keys: Vec::new() };
+        let mut builder = Builder::new(extents, form, instance);
         let instances = 0..count;
         if let Some(error) = instances.clone().into_par_iter().find_map_first(|number| builder.check(number).err()) {
             return Err(error);
         }
         let position = |number| builder.around_center(&instance(number));
         builder.positions = cube_around(union(instances.clone().into_par_iter().map(position)));
-        let spoilt = |number| builder.check_rounded(number).err();
-        if let Some(error) = instances.clone().into_par_iter().find_map_first(spoilt) {
-            return Err(error);
+        if count <= BOXED {
+            let boxes = instances.clone().into_par_iter().map(|number| builder.check_rounded(number));
+            builder.boxes = boxes.collect::<Vec<_>>().into_iter().collect::<Result<Vec<Bounds>, InstanceError>>()?;
+        } else {
+            let spoilt = |number| builder.check_rounded(number).err();
+            if let Some(error) = instances.clone().into_par_iter().find_map_first(spoilt) {
+                return Err(error);
+            }
         }
         let bounds = union(instances.into_par_iter().map(|number| builder.bounds(number)));
         builder.cube = cube_around(bounds);
@@ -108,15 +118,17 @@ impl StoredInstances {
     /// work may come between.
     pub(super) fn of_part(extents: &Extents, form: PlacementForm, instances: &[Instance]) -> StoredInstances {
         let instance = |number: usize| instances[number];
-        let mut builder =
-            Builder { extents, form, positions: EMPTY, cube: EMPTY, instance: &instance, keys: Vec::new() };
+        let mut builder = Builder::new(extents, form, &instance);
         let mut numbers: Vec<usize> = (0..instances.len()).filter(|number| builder.check(*number).is_ok()).collect();
         let around = numbers.iter().map(|number| builder.around_center(&instances[*number]));
         builder.positions = cube_around(around.fold(Bounds::EMPTY, Bounds::union));
-        numbers.retain(|number| builder.check_rounded(*number).is_ok());
-        let bounds = numbers.iter().map(|number| builder.bounds(*number)).fold(Bounds::EMPTY, Bounds::union);
-        builder.cube = cube_around(bounds);
-        numbers.retain(|number| !builder.bounds(*number).is_empty());
+        let mut boxes = vec![Bounds::EMPTY; instances.len()];
+        numbers.retain(|number| {
+            boxes[*number] = builder.check_rounded(*number).unwrap_or(Bounds::EMPTY);
+            !boxes[*number].is_empty()
+        });
+        let bounds = boxes.iter().copied().fold(Bounds::EMPTY, Bounds::union);
+        (builder.cube, builder.boxes) = (cube_around(bounds), boxes);
         let mut placements = Placements::with_capacity(form, numbers.len());
         let mut index = GroupIndex::default();
         if !numbers.is_empty() {
@@ -127,6 +139,7 @@ impl StoredInstances {
             let numbers = leaf.iter().filter(|number| **number != NONE);
             placements.push(&builder.positions, &extents.spheres, numbers.map(|number| instances[*number as usize]));
         }
+        index.nodes.shrink_to_fit();
         let (positions, cube, count) = (builder.positions, builder.cube, numbers.len());
         StoredInstances { positions, placements, cube, nodes: index.nodes, bounds, count }
     }
@@ -144,6 +157,11 @@ impl StoredInstances {
     /// How often each prototype is placed.
     pub(super) fn prototypes(&self) -> impl Iterator<Item = u16> + '_ {
         self.placements.prototypes()
+    }
+
+    /// How many places there are, some of which are empty.
+    pub(super) fn places(&self) -> u32 {
+        (self.placements.blocks() * LANES) as u32
     }
 
     /// An instance as it is kept, by its place; none if there is none.
@@ -171,11 +189,18 @@ struct Builder<'b, F> {
     positions: Cube,
     cube: Cube,
     instance: &'b F,
+    /// Around each instance; none if there are too many.
+    boxes: Vec<Bounds>,
     /// In the upper halves the codes of the middles of instances, in the lower ones their numbers.
     keys: Vec<u64>,
 }
 
-impl<F: Fn(usize) -> Instance + Sync> Builder<'_, F> {
+impl<'b, F: Fn(usize) -> Instance + Sync> Builder<'b, F> {
+    fn new(extents: &'b Extents, form: PlacementForm, instance: &'b F) -> Builder<'b, F> {
+        let (boxes, keys) = (Vec::new(), Vec::new());
+        Builder { extents, form, positions: EMPTY, cube: EMPTY, instance, boxes, keys }
+    }
+
     fn check(&self, number: usize) -> Result<(), InstanceError> {
         let Instance { prototype, placement, .. } = (self.instance)(number);
         if usize::from(prototype) >= self.extents.boxes.len() {
@@ -206,17 +231,18 @@ impl<F: Fn(usize) -> Instance + Sync> Builder<'_, F> {
         Ok(())
     }
 
-    /// What rounding makes of an instance may be too large or too small.
-    fn check_rounded(&self, number: usize) -> Result<(), InstanceError> {
-        let (rounded, bounds) = (self.rounded(number).placement, self.bounds(number));
-        if !(rounded.is_finite() && (bounds.is_empty() || bounds.min.is_finite() && bounds.max.is_finite())) {
+    /// The box around an instance, if rounding does not make it too large or too small.
+    fn check_rounded(&self, number: usize) -> Result<Bounds, InstanceError> {
+        let rounded = self.rounded(number);
+        let (bounds, placement) = (self.around(&rounded), rounded.placement);
+        if !(placement.is_finite() && (bounds.is_empty() || bounds.min.is_finite() && bounds.max.is_finite())) {
             return Err(InstanceError::NotFinite { instance: number });
         }
-        let determinant = rounded.matrix3.determinant();
-        if determinant == 0.0 || !rounded.inverse().is_finite() {
+        let determinant = placement.matrix3.determinant();
+        if determinant == 0.0 || !placement.inverse().is_finite() {
             return Err(InstanceError::Flat { instance: number });
         }
-        Ok(())
+        Ok(bounds)
     }
 
     /// Where the centre of the sphere of an instance is.
@@ -240,11 +266,21 @@ impl<F: Fn(usize) -> Instance + Sync> Builder<'_, F> {
 
     /// The box around an instance.
     fn bounds(&self, number: usize) -> Bounds {
-        let Instance { prototype, placement, .. } = self.rounded(number);
-        match self.extents.boxes[usize::from(prototype)] {
-            own if own.is_empty() => own,
-            own => Bounds::of(own.corners().map(|corner| placement.transform_point3(corner))),
+        self.boxes.get(number).copied().unwrap_or_else(|| self.around(&self.rounded(number)))
+    }
+
+    /// The box around an instance that is rounded.
+    fn around(&self, &Instance { prototype, placement, .. }: &Instance) -> Bounds {
+        let own = self.extents.boxes[usize::from(prototype)];
+        if own.is_empty() {
+            return own;
         }
+        let (center, half) = (placement.transform_point3(own.center()), own.size() * 0.5);
+        let DMat3 { x_axis, y_axis, z_axis } = placement.matrix3;
+        let reach = x_axis.abs() * half.x + y_axis.abs() * half.y + z_axis.abs() * half.z;
+        // The corners, if they were computed, might be rounded away from it.
+        let rounding = (center.abs() + reach) * ROUNDING;
+        Bounds { min: center - reach - rounding, max: center + reach + rounding }
     }
 
     /// Sorts the instances that have a box.

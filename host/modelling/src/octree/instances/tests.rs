@@ -63,17 +63,11 @@ fn stored(octree: &InstanceOctree) -> &StoredInstances {
     stored
 }
 
-/// All instances that are stored, with their numbers.
-fn all(octree: &InstanceOctree) -> impl Iterator<Item = (u64, Instance)> {
-    let places = (stored(octree).placements.blocks() * LANES) as u64;
-    (0..places).filter_map(|number| Some((number, octree.instance(number)?)))
-}
-
 /// The nearest hit by asking every instance, and how many there are.
 fn asked(octree: &InstanceOctree, ray: &Ray, outer: Option<&Descent<'_>>) -> (Option<InstanceHit>, usize) {
     let (mut best, mut count): (Option<InstanceHit>, usize) = (None, 0);
     let StoredInstances { placements, positions, .. } = stored(octree);
-    for (number, Instance { prototype, placement, .. }) in all(octree) {
+    for (number, Instance { prototype, placement, .. }) in octree.stored_instances() {
         let (block, lane) = (number as usize / LANES, number as usize % LANES);
         let center = octree.extents.spheres[usize::from(prototype)].center;
         let inner = placements.own_ray(positions, block, lane, center, ray);
@@ -146,7 +140,7 @@ fn are_where_one_mesh_is(placed: &InstanceOctree) {
     let (vertices, triangles) = tetrahedron();
     let (mut points, mut corners) = (Vec::new(), Vec::new());
     let mut firsts = std::collections::HashMap::new();
-    for (number, Instance { placement, .. }) in all(placed) {
+    for (number, Instance { placement, .. }) in placed.stored_instances() {
         let first = points.len() as u32;
         firsts.insert(number, corners.len() as u32);
         points.extend(vertices.iter().map(|vertex| placement.transform_point3(*vertex)));
@@ -234,7 +228,7 @@ fn rays_that_begin_far_away_hit_what_they_hit_when_every_instance_is_asked() {
         let (mut hits, vertices) = (0, tetrahedron().0);
         for (number, ray) in rays(14, 1500, 1.0).enumerate() {
             // Just within the corners, along the spheres about instances, which go through these.
-            let (_, placed) = all(&octree).nth(number % 200).expect("an instance");
+            let (_, placed) = octree.stored_instances().nth(number % 200).expect("an instance");
             let corner = placed.placement.transform_point3(vertices[number % 4] * (1.0 - 1e-7));
             let out = corner - placed.placement.translation;
             let direction = ray.direction - out * (ray.direction.dot(out) / out.length_squared());
