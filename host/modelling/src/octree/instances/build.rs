@@ -86,6 +86,13 @@ impl Prototype {
         Prototype { content, bounds, sphere, levels }
     }
 
+    /// Adds its placements to a checksum; a surface has none.
+    pub fn add_to_checksum(&self, sum: &mut crc32fast::Hasher) {
+        if let Content::Instances(instances) = &self.content {
+            instances.add_to_checksum(sum);
+        }
+    }
+
     /// How many triangles it is made of, each as often as it is placed.
     fn triangles(&self) -> u64 {
         match &self.content {
@@ -226,6 +233,15 @@ impl InstanceOctree {
             placed.variation = placed.variation.wrapping_add(variation);
         }
         placed
+    }
+
+    /// Adds all placements to a checksum, those within prototypes too, as they are kept.
+    pub fn add_to_checksum(&self, sum: &mut crc32fast::Hasher) {
+        for (_, Instance { prototype, variation, placement }) in self.instances() {
+            [prototype, variation].iter().for_each(|number| sum.update(&number.to_le_bytes()));
+            placement.to_cols_array().iter().for_each(|number| sum.update(&number.to_le_bytes()));
+        }
+        self.prototypes.iter().for_each(|prototype| prototype.add_to_checksum(sum));
     }
 
     /// What it costs, without the instances that its prototypes may be made of.
