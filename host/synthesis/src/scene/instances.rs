@@ -9,6 +9,7 @@ use crate::memory;
 use crate::octree::{Instance, MOST_INSTANCES, MOST_LEVELS, MOST_PROTOTYPES, PlacementForm};
 use crate::surface::Tolerance;
 use glam::DMat4;
+use std::fmt;
 
 /// Bytes of a triangle of a mesh: corners, normals, numbers, and half a vertex.
 const BYTES: u64 = 140;
@@ -19,7 +20,34 @@ pub(super) enum Places<'a> {
     Scattered(ScatteredPlaces<'a>),
 }
 
+/// Instances by chance that did not all find room.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ShortScatter {
+    /// The object that they are.
+    pub object: String,
+    /// How many found room.
+    pub found: usize,
+    /// How many were asked for.
+    pub asked: usize,
+}
+
+impl fmt::Display for ShortScatter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ShortScatter { object, found, asked } = self;
+        write!(f, "{object}: scatter found room for {found} of {asked} instances")
+    }
+}
+
 impl Places<'_> {
+    /// What is to be told of instances by chance that did not all find room.
+    ///
+    /// - `name`: of the object that they are.
+    pub(super) fn short(&self, name: &str) -> Option<ShortScatter> {
+        let Places::Scattered(places) = self else { return None };
+        let (found, asked) = (places.count(), places.asked());
+        (found < asked).then(|| ShortScatter { object: name.to_owned(), found, asked })
+    }
+
     /// How many there are.
     pub(super) fn count(&self) -> usize {
         match self {

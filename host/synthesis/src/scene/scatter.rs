@@ -97,6 +97,11 @@ impl<'a> ScatteredPlaces<'a> {
         self.count
     }
 
+    /// How many there should be.
+    pub(super) fn asked(&self) -> usize {
+        self.scatter.count
+    }
+
     /// An instance by its number.
     pub(super) fn instance(&self, number: usize) -> Instance {
         let number = if self.found.is_empty() { number as u64 } else { self.found[number] };

@@ -17,12 +17,12 @@ mod accessor;
 mod nodes;
 mod meshes;
 mod read;
-#[cfg(test)]
-mod places_tests;
-#[cfg(test)]
-mod tests;
 mod written_nodes;
 mod write;
+#[cfg(test)]
+mod tests;
+#[cfg(test)]
+mod places_tests;
 
 pub(super) use read::{parse, parse_placed};
 pub(super) use write::{Written, print_binary, print_text};

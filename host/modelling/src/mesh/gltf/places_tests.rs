@@ -285,11 +285,12 @@ fn many_places_are_written_as_rows_but_skewed_ones_as_nodes() {
     let of_mesh = |placed: &PlacedMeshes, mesh: u32| {
         placed.places.iter().filter(|place| place.mesh == mesh).map(|place| place.placement).collect::<Vec<_>>()
     };
-    // The skewed one was the last, and comes first now.
+    // The skewed one was the last, and comes first now; so does its mesh.
+    assert_eq!(back.repeated[1].name, "ball");
     for (mesh, turned) in [(0, 0), (1, 1)] {
         let mut expected = of_mesh(&many, mesh);
         expected.rotate_right(turned);
-        let found = of_mesh(&back, mesh);
+        let found = of_mesh(&back, 1 - mesh);
         assert_eq!(found.len(), expected.len());
         for (found, expected) in found.iter().zip(&expected) {
             assert!(found.matrix3.abs_diff_eq(expected.matrix3, 2e-6));

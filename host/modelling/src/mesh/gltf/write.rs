@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::super::groups::{Grouped, MetallicRoughness, has_groups, name_of};
 use super::super::{Fault, FaultLocation, Mesh, MeshPlaces, MeshProblem, RepeatedMesh};
 use super::nodes::INSTANCING;
-use super::written_nodes::{Nodes, Tables};
+use super::written_nodes::{Tables, WrittenNodes};
 use super::{BINARY_CHUNK, JSON_CHUNK, MAGIC, base64};
 
 /// Types of components.
@@ -78,7 +78,7 @@ type Corner = ([u32; 3], [u32; 3], [u32; 2]);
 fn document(content: &Written<'_>) -> Result<(Value, Vec<u8>), Fault> {
     let Written { alone, repeated, places } = content;
     let mut file = File::default();
-    let mut nodes = Nodes::default();
+    let mut nodes = WrittenNodes::default();
     if !alone.mesh.triangles.is_empty() {
         let mesh = file.mesh(alone, "")?;
         nodes.push(json!({ "mesh": mesh }));

@@ -24,7 +24,7 @@ pub trait Tables {
 
 /// Nodes in the making.
 #[derive(Default)]
-pub struct Nodes {
+pub struct WrittenNodes {
     /// All of them.
     pub all: Vec<Value>,
     /// Those of the scene.
@@ -33,7 +33,7 @@ pub struct Nodes {
     pub uses_extension: bool,
 }
 
-impl Nodes {
+impl WrittenNodes {
     /// Adds a node of the scene.
     pub fn push(&mut self, node: Value) {
         self.roots.push(self.all.len());
