@@ -1,8 +1,9 @@
 //! `peris convert`: meshes, pictures and scenes from one file format to another.
 
 use super::display::DisplayArguments;
+use super::source::warn_of_short_scatters;
 use super::{CommandFailure, Exit, ScriptArguments, SubcommandRow, load, output};
-use crate::mesh::{self, Grouped};
+use crate::mesh::{self, Grouped, PlacedMeshes};
 use crate::picture::Picture;
 use crate::picture::display::{DisplayTransform, Exposure};
 use crate::render::metering::stops_of_picture;
@@ -84,20 +85,36 @@ fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
         return commands(arguments);
     }
     let destination = mesh::destination(output)?;
-    let mut grouped = triangles(input, &arguments.definitions)?;
-    if let Some(most) = most.filter(|most| *most < grouped.mesh.triangles.len()) {
-        grouped = grouped.mesh.simplified(most).into();
+    // What is placed many times stays there once where the file can tell it.
+    let is_placed = most.is_none() && mesh::Format::of(output).is_some_and(mesh::Format::has_places);
+    let mut placed = match is_placed {
+        true => placed(input, &arguments.definitions)?,
+        false => PlacedMeshes { alone: triangles(input, &arguments.definitions)?, ..PlacedMeshes::default() },
+    };
+    if let Some(most) = most.filter(|most| *most < placed.alone.mesh.triangles.len()) {
+        placed.alone = placed.alone.mesh.simplified(most).into();
     }
     if arguments.scale != 1.0 {
-        grouped.mesh = grouped.mesh.transformed(&DAffine3::from_scale(DVec3::splat(arguments.scale)));
+        let scale = DAffine3::from_scale(DVec3::splat(arguments.scale));
+        placed.alone.mesh = placed.alone.mesh.transformed(&scale);
+        placed.places = placed.places.within(&scale);
     }
-    mesh::write_grouped(&grouped, &destination)?;
-    let mesh = grouped.mesh;
-    let (vertices, triangles) = (mesh.vertices.len(), mesh.triangles.len());
-    if *json {
-        output::report(serde_json::json!({ "file": output, "vertices": vertices, "triangles": triangles }));
+    let instances = placed.places.count();
+    if instances > 0 {
+        mesh::write_placed(&placed, &destination)?;
     } else {
-        say!("{}: {vertices} vertices, {triangles} triangles", output.display());
+        mesh::write_grouped(&placed.alone, &destination)?;
+    }
+    let meshes = || std::iter::once(&placed.alone).chain(placed.repeated.iter().map(|repeated| &repeated.grouped));
+    let vertices = meshes().map(|grouped| grouped.mesh.vertices.len()).sum::<usize>();
+    let triangles = meshes().map(|grouped| grouped.mesh.triangles.len()).sum::<usize>();
+    if *json {
+        output::report(serde_json::json!({
+            "file": output, "vertices": vertices, "triangles": triangles, "instances": instances,
+        }));
+    } else {
+        let instances = output::of_instances(instances);
+        say!("{}: {vertices} vertices, {triangles} triangles{instances}", output.display());
     }
     Ok(())
 }
@@ -108,6 +125,7 @@ fn commands(arguments: &Arguments) -> Result<(), CommandFailure> {
     let destination = Destination::of(output)?;
     let scene = load(&input.to_string_lossy(), definitions)?.scene;
     let prepared = Prepared::new(&scene)?;
+    warn_of_short_scatters(&prepared);
     let drawing = Drawing { lines: *lines, tolerance: *tolerance, facets: true, ..Drawing::default() };
     let shown = InitialView::of(&prepared)
         .and_then(|initial| structure::commands(&scene, &initial, &prepared.subject(), &drawing))
@@ -145,6 +163,15 @@ fn shown(picture: &Picture, output: &Path, arguments: &DisplayArguments) -> Resu
 fn factor(text: &str) -> Result<f64, String> {
     let factor = text.parse().ok().filter(|factor| *factor > 0.0 && *factor < f64::INFINITY);
     factor.ok_or_else(|| "give a number above 0".to_string())
+}
+
+/// The meshes of a file, or of a whole scene, and where those are that are placed many times.
+fn placed(input: &Path, definitions: &ScriptArguments) -> Result<PlacedMeshes, CommandFailure> {
+    let scene = load(&input.to_string_lossy(), definitions)?.scene;
+    Ok(match mesh::Format::of(input) {
+        Some(_) => mesh::read_placed(input)?,
+        None => scene.tessellated_once()?,
+    })
 }
 
 /// The triangles of a mesh with their groups, or of a whole scene.

@@ -1,6 +1,6 @@
 //! `peris run` and `peris demo`: the main job from a scene to the image on the raster screen.
 
-use super::source::{load_lit, stem, warn_of_emptiness};
+use super::source::{load_lit, stem, warn_of_emptiness, warn_of_short_scatters};
 use super::timeouts::TimeoutArguments;
 use super::{CommandFailure, SCRIPT_HELP, ScriptArguments, SubcommandRow, interrupts, load, progress};
 use crate::{
@@ -191,6 +191,7 @@ impl Job<'_> {
         let session = Session::attach(&line, timeouts)?;
         let mut production = Production::begin(&self.scene, session, &Drawing::default())?;
         let (prepared, Sent { lines, points, seconds }) = (production.prepared(), production.sent());
+        warn_of_short_scatters(prepared);
         let (title, objects, triangles) = (self.title, prepared.objects.len(), prepared.triangles.len());
         let known = json!({ "objects": objects, "triangles": triangles, "vectors": lines, "points": points, "seconds": seconds });
         let text = format!(

@@ -87,6 +87,8 @@ fn build(arguments: &Arguments) -> Result<(Octree, f64), CommandFailure> {
     let mut scene = load(&arguments.scene, &arguments.definitions)?.scene;
     // Bodies of lamps are no geometry of the scene.
     scene.lights.clear();
+    // An octree that is kept is one mesh.
+    scene.settings.geometry.copies_instances = true;
     let prepared = Prepared::new(&scene)?;
     let defaults = OctreeSettings::default();
     let settings = OctreeSettings {

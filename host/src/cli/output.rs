@@ -59,6 +59,11 @@ pub(super) fn report(mut known: Value) {
     write(format_args!("{known:#}\n"));
 }
 
+/// How often what is told before is placed, for the end of an enumeration; nothing without instances.
+pub(super) fn of_instances(count: usize) -> String {
+    if count == 0 { String::new() } else { format!(", {count} instances") }
+}
+
 /// Writes a line to standard output.
 macro_rules! say {
     ($($text:tt)*) => {

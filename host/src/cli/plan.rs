@@ -1,6 +1,6 @@
 //! `peris plan`: what a scene needs, and why.
 
-use super::source::load_lit;
+use super::source::{load_lit, warn_of_short_scatters};
 use super::{CommandFailure, SCRIPT_HELP, ScriptArguments, SubcommandRow, progress};
 use crate::plan::Plan;
 use crate::render::{RenderOrder, Renderer, ray_tracer};
@@ -33,6 +33,7 @@ struct Arguments {
 
 fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let prepared = Prepared::new(&load_lit(&arguments.script, &arguments.definitions)?.scene)?;
+    warn_of_short_scatters(&prepared);
     let view = prepared.view();
     let mut plan = if arguments.everything { Plan::everything(&prepared, &view) } else { Plan::new(&prepared, &view) };
     if arguments.seconds {

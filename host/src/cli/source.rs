@@ -3,7 +3,7 @@
 use super::{CommandFailure, Exit, output};
 use crate::mesh;
 use crate::octree::Octree;
-use crate::scene::{Scene, Studio};
+use crate::scene::{Prepared, Scene, Studio};
 use crate::script::{self, Evaluated, Inputs, ParameterAssignment};
 use crate::stages::stage;
 use clap::Args;
@@ -69,6 +69,11 @@ pub(super) fn warn_of_emptiness(scene: &Scene) {
     if scene.objects.is_empty() {
         output::warn("the scene has no objects; only its background will be seen");
     }
+}
+
+/// Says on standard error which instances did not all find room.
+pub(super) fn warn_of_short_scatters(prepared: &Prepared) {
+    prepared.short_scatters.iter().for_each(|short| output::warn(&short.to_string()));
 }
 
 /// Runs the script that the command line names, or takes the mesh that it names as the only object of a scene; what the

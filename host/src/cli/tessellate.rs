@@ -1,7 +1,7 @@
 //! `peris tessellate`: the triangles of a scene, to a tolerance.
 
 use super::{CommandFailure, ScriptArguments, SubcommandRow, load, output};
-use crate::mesh;
+use crate::mesh::{self, Mesh, PlacedMeshes};
 use clap::{Args, FromArgMatches};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -20,7 +20,7 @@ struct Arguments {
     input: PathBuf,
     #[command(flatten)]
     definitions: ScriptArguments,
-    /// The file to write: .obj (groups), .gltf or .glb (a primitive with a material for each surface), .ply (a property of faces), .stl
+    /// The file to write: .obj (groups), .gltf or .glb (a primitive with a material for each surface, and what is placed many times once), .ply (a property of faces), .stl
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Largest distance between surface and triangles, scene units [default: that of the scene and its objects]
@@ -39,27 +39,41 @@ fn run(arguments: &Arguments) -> Result<(), CommandFailure> {
     let destination = mesh::destination(output)?;
     let scene = load(&input.to_string_lossy(), definitions)?.scene.within(*chord, *angle);
     let start = Instant::now();
-    let grouped = scene.tessellated()?;
+    let placed = match mesh::Format::of(output).is_some_and(mesh::Format::has_places) {
+        true => scene.tessellated_once()?,
+        false => PlacedMeshes { alone: scene.tessellated()?, ..PlacedMeshes::default() },
+    };
     let seconds = start.elapsed().as_secs_f64();
-    mesh::write_grouped(&grouped, &destination)?;
-    let mesh = grouped.mesh;
+    if placed.places.count() > 0 {
+        mesh::write_placed(&placed, &destination)?;
+    } else {
+        mesh::write_grouped(&placed.alone, &destination)?;
+    }
     let error = scene.chord_error()?;
-    let mut used = mesh.surfaces.clone();
-    used.sort_unstable();
-    used.dedup();
-    let (objects, surfaces) = (scene.objects.len(), used.len());
-    let (vertices, triangles) = (mesh.welded().vertices.len(), mesh.triangles.len());
+    let used = |mesh: &Mesh| {
+        let mut used = mesh.surfaces.clone();
+        used.sort_unstable();
+        used.dedup();
+        used.len()
+    };
+    let meshes = || std::iter::once(&placed.alone).chain(placed.repeated.iter().map(|repeated| &repeated.grouped));
+    let objects = scene.objects.len();
+    let surfaces = meshes().map(|grouped| used(&grouped.mesh)).sum::<usize>();
+    let vertices = meshes().map(|grouped| grouped.mesh.welded().vertices.len()).sum::<usize>();
+    let triangles = meshes().map(|grouped| grouped.mesh.triangles.len()).sum::<usize>();
+    let instances = placed.places.count();
     if *json {
         let known = serde_json::json!({
             "file": output, "objects": objects, "surfaces": surfaces, "vertices": vertices, "triangles": triangles,
-            "seconds": seconds, "chord_error": error,
+            "instances": instances, "seconds": seconds, "chord_error": error,
         });
         output::report(known);
     } else {
         say!(
-            "{}: {objects} objects, {surfaces} surfaces, {vertices} vertices, {triangles} triangles in {seconds:.3} s; \
+            "{}: {objects} objects, {surfaces} surfaces, {vertices} vertices, {triangles} triangles{} in {seconds:.3} s; \
              measured, no exact surface is more than {error:.3e} away",
-            output.display()
+            output.display(),
+            output::of_instances(instances)
         );
     }
     Ok(())
@@ -75,18 +89,62 @@ fn angle(text: &str) -> Result<f64, String> {
 mod tests {
     use super::*;
 
+    fn command(words: &[&str]) {
+        let matches = super::super::command().try_get_matches_from([&["peris"], words].concat());
+        let matches = matches.unwrap_or_else(|error| panic!("{error}"));
+        let (name, arguments) = matches.subcommand().expect("a command");
+        let row = super::super::COMMANDS.iter().find(|row| row.name == name).expect("known");
+        (row.run)(arguments).unwrap_or_else(|failure| panic!("{}", failure.error));
+    }
+
+    #[test]
+    fn what_is_placed_many_times_goes_once_through_gltf_files_and_as_copies_through_others() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = |name: &str| folder.path().join(name).display().to_string();
+        let script = "
+            let row = instances([cube(1), cylinder(0.2, 3)], [[0, 0, 0], [3, 0, 0], #{ at: [6, 0, 0], turn: 45, scale: 2 }]);
+            instances(row, [[0, 0, 0], #{ at: [0, 20, 0], scale: [1, -1, 1] }]);
+            sphere(1).translate(0, 10, 0);
+        ";
+        std::fs::write(file("a.rhai"), script).expect("written");
+        let placed = |name: &str| mesh::read_placed(file(name)).expect("meshes");
+        let once = |name: &str, scale: f64| {
+            let placed = placed(name);
+            assert_eq!((placed.repeated.len(), placed.places.count()), (2, 12));
+            assert_eq!(placed.repeated[0].grouped.mesh.triangles.len(), 12);
+            let bounds = placed.alone.mesh.bounds().expect("a sphere");
+            assert!((bounds.max.y - 11.0 * scale).abs() < 1e-2 * scale);
+            mesh::read(file(name)).expect("a mesh")
+        };
+        command(&["tessellate", &file("a.rhai"), "-o", &file("a.glb")]);
+        let made = once("a.glb", 1.0);
+        command(&["convert", &file("a.glb"), &file("b.gltf"), "--scale", "0.5"]);
+        let half = once("b.gltf", 0.5);
+        assert!((half.signed_volume() * 8.0 / made.signed_volume() - 1.0).abs() < 1e-9);
+        command(&["convert", &file("a.rhai"), &file("c.glb")]);
+        once("c.glb", 1.0);
+        for other in ["a.ply", "b.obj"] {
+            command(&["convert", &file("a.glb"), &file(other)]);
+            let read = mesh::read(file(other)).expect("a mesh");
+            assert_eq!(read.triangles.len(), made.triangles.len());
+            assert!((read.signed_volume() / made.signed_volume() - 1.0).abs() < 1e-9);
+        }
+        // Booleans take the copies.
+        std::fs::write(file("d.rhai"), "mesh(\"e.glb\") - box(100, 0.5, 100);").expect("written");
+        std::fs::write(file("e.rhai"), "instances(cube(1), [[0, 0, 0], [3, 0, 0]]);").expect("written");
+        command(&["tessellate", &file("e.rhai"), "-o", &file("e.glb")]);
+        command(&["tessellate", &file("d.rhai"), "-o", &file("d.ply")]);
+        let left = mesh::read(file("d.ply")).expect("a mesh").signed_volume();
+        assert!((left - 1.0).abs() < 1e-6, "{left}");
+        command(&["boolean", &file("e.glb"), "+", &file("e.glb"), "-o", &file("f.glb")]);
+        assert!((mesh::read(file("f.glb")).expect("a mesh").signed_volume() - 2.0).abs() < 1e-6);
+    }
+
     #[test]
     fn groups_go_through_tessellate_convert_and_boolean() {
         let folder = tempfile::tempdir().expect("a folder");
         let file = |name: &str| folder.path().join(name).display().to_string();
         std::fs::write(file("a.rhai"), "cylinder(1, parameter(\"height\", 2.0)).name(\"can\");").expect("written");
-        let command = |words: &[&str]| {
-            let matches = super::super::command().try_get_matches_from([&["peris"], words].concat());
-            let matches = matches.unwrap_or_else(|error| panic!("{error}"));
-            let (name, arguments) = matches.subcommand().expect("a command");
-            let row = super::super::COMMANDS.iter().find(|row| row.name == name).expect("known");
-            (row.run)(arguments).unwrap_or_else(|failure| panic!("{}", failure.error));
-        };
         let names = |name: &str| mesh::read_grouped(file(name)).expect("a mesh").names;
         command(&[
             "tessellate",

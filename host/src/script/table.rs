@@ -49,7 +49,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     },
     function! {
         mesh(file: required(TextKind, "its path; relative to the folder of the script"))
-        "Adds a mesh from an OBJ, STL, PLY or glTF file."
+        "Adds a mesh from an OBJ, STL, PLY or glTF file. What a glTF file places more than once is stored once and placed, as instances are; Booleans take its copies."
         "let bunny = mesh(\"bunny.ply\");"
         |builder| {
             let path = builder.folders.file(&file)?;

@@ -42,7 +42,9 @@ pub(super) fn depth(scene: &Scene, options: &Options, watch: &Watch<'_>) -> Resu
 
 impl OctreeStudy {
     fn new(scene: &Scene, options: &Options, what: OctreeParameter) -> Result<OctreeStudy, StudyError> {
-        let prepared = Prepared::new(scene)?;
+        let mut scene = scene.clone();
+        scene.settings.geometry.copies_instances = true;
+        let prepared = Prepared::new(&scene)?;
         if prepared.triangles.is_empty() {
             return Err(StudyError::Nothing("the scene has no triangles"));
         }

@@ -1,7 +1,7 @@
 //! Readers of meshes in each format, and of octrees.
 
 use super::sums;
-use host::mesh::{Format, parse_grouped, print_grouped};
+use host::mesh::{Format, MeshPlace, PlacedMeshes, parse_grouped, parse_placed, print_grouped, print_placed};
 use host::octree::Octree;
 
 pub fn obj(bytes: &[u8]) {
@@ -18,10 +18,12 @@ pub fn ply(bytes: &[u8]) {
 
 pub fn gltf(bytes: &[u8]) {
     mesh(bytes, Format::Gltf);
+    places(bytes, Format::Gltf);
 }
 
 pub fn glb(bytes: &[u8]) {
     mesh(bytes, Format::Glb);
+    places(bytes, Format::Glb);
 }
 
 pub fn compact(bytes: &[u8]) {
@@ -35,6 +37,20 @@ fn mesh(bytes: &[u8], format: Format) {
     let Ok(written) = print_grouped(&read, format) else { return };
     let again = parse_grouped(&written, format).unwrap_or_else(|fault| panic!("what was written is refused: {fault}"));
     assert_eq!(again.mesh.triangles.len(), read.mesh.triangles.len());
+}
+
+/// Meshes that are placed many times are sound; what is written of them is read again with as many triangles.
+fn places(bytes: &[u8], format: Format) {
+    let Ok(read) = parse_placed(bytes, format) else { return };
+    let meshes = read.repeated.iter().map(|repeated| &repeated.grouped.mesh);
+    std::iter::once(&read.alone.mesh).chain(meshes).for_each(|mesh| mesh.validate().expect("what is read is sound"));
+    let Ok(written) = print_placed(&read, format) else { return };
+    let again = parse_placed(&written, format).unwrap_or_else(|fault| panic!("what was written is refused: {fault}"));
+    let triangles = |placed: &PlacedMeshes| {
+        let of = |place: MeshPlace| placed.repeated[place.mesh as usize].grouped.mesh.triangles.len();
+        placed.alone.mesh.triangles.len() + placed.places.iter().map(of).sum::<usize>()
+    };
+    assert_eq!(triangles(&again), triangles(&read));
 }
 
 /// What is read is written as it is read.

@@ -137,6 +137,7 @@ pub const BOMBS: &[Bomb] = &[
     bomb("gltf: an accessor of 4 thousand million", "check a.gltf", "a.gltf", |f| gltf(f, 4_000_000_000, 1)),
     bomb("gltf: accessors without data", "check a.gltf", "", |f| gltf(f, 300_000_000, 0)),
     bomb("gltf: nodes that double 30 times", "check a.gltf", "a.gltf", doubling),
+    bomb("gltf: 50,000 instances of 10,000 triangles as one mesh", "check a.gltf", "would take", instanced),
     bomb("gltf: lists in lists", "check a.gltf", "a.gltf", |f| {
         write(f, "a.gltf", "[".repeat(1_000_000).as_bytes());
     }),
@@ -313,6 +314,22 @@ fn gltf(folder: &Path, count: u64, views: usize) {
         "bufferViews":[{{"buffer":0,"byteLength":36}}],
         "buffers":[{{"byteLength":36,"uri":"data:application/octet-stream;base64,{}"}}]}}"#,
         "A".repeat(48)
+    );
+    write(folder, "a.gltf", text.as_bytes());
+}
+
+/// A glTF file of a mesh that is placed by a table without data.
+fn instanced(folder: &Path) {
+    let text = format!(
+        r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],
+        "nodes":[{{"mesh":0,"extensions":{{"EXT_mesh_gpu_instancing":{{"attributes":{{"TRANSLATION":2}}}}}}}}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"indices":1}}]}}],
+        "accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}},
+        {{"bufferView":1,"componentType":5121,"count":30000,"type":"SCALAR"}},
+        {{"componentType":5126,"count":50000,"type":"VEC3"}}],
+        "bufferViews":[{{"buffer":0,"byteLength":36}},{{"buffer":0,"byteLength":30000}}],
+        "buffers":[{{"byteLength":30000,"uri":"data:application/octet-stream;base64,{}"}}]}}"#,
+        "A".repeat(40_000)
     );
     write(folder, "a.gltf", text.as_bytes());
 }

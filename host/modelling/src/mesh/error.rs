@@ -1,6 +1,7 @@
 //! What can be wrong with a mesh or its file, and where.
 
 use super::JsonPath;
+use crate::memory::MemoryExceeded;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -163,6 +164,25 @@ pub enum MeshProblem {
         /// What is wrong, in words.
         why: String,
     },
+    /// A row of a table that cannot be.
+    #[error("row {row}: {what}")]
+    Row {
+        /// Its number, from 0.
+        row: usize,
+        /// What is wrong, in words.
+        what: &'static str,
+    },
+    /// A table that must have as many rows as another one.
+    #[error("{rows} rows, where the other tables have {count}")]
+    Rows {
+        /// Its rows.
+        rows: usize,
+        /// Those of the others.
+        count: usize,
+    },
+    /// More memory than is left.
+    #[error(transparent)]
+    Memory(#[from] MemoryExceeded),
     /// A mesh that the format cannot hold.
     #[error("{0}")]
     Unsuited(&'static str),

@@ -7,7 +7,10 @@ use std::path::Path;
 
 use files::Destination;
 
-use super::{Fault, FaultLocation, Grouped, Mesh, MeshError, MeshProblem, compact, gltf, obj, ply, stl};
+use super::gltf::Written;
+use super::{
+    Fault, FaultLocation, Grouped, Mesh, MeshError, MeshPlaces, MeshProblem, PlacedMeshes, compact, gltf, obj, ply, stl,
+};
 
 /// The longest file that is read, bytes.
 pub(super) const MAX_BYTES: u64 = 4 << 30;
@@ -44,6 +47,11 @@ impl Format {
             _ => None,
         }
     }
+
+    /// Whether files of the format place meshes, one of them many times.
+    pub fn has_places(self) -> bool {
+        matches!(self, Format::Gltf | Format::Glb)
+    }
 }
 
 /// Reads a mesh; see [`read_grouped`].
@@ -65,16 +73,42 @@ pub fn read(path: impl AsRef<Path>) -> Result<Mesh, MeshError> {
 /// [`MeshError`], with the line or byte where the content is wrong. Whatever is returned has finite vertices and
 /// indices in range; it may be open or hold degenerate triangles.
 pub fn read_grouped(path: impl AsRef<Path>) -> Result<Grouped, MeshError> {
-    let path = path.as_ref();
+    read_by(path.as_ref(), |bytes, format, neighbour| {
+        let grouped = parse_beside(bytes, format, neighbour)?;
+        // Bytes of any kind can pass for an OBJ file without a face.
+        if grouped.mesh.triangles.is_empty() { Err(nothing()) } else { Ok(grouped) }
+    })
+}
+
+/// Reads meshes and where they are: those of a glTF file that nodes place more than once, with nodes of their own or by
+/// EXT_mesh_gpu_instancing, are stored once; everything else stands alone, as [`read_grouped`] gives it.
+///
+/// # Errors
+/// [`MeshError`], with the line, the byte or the member where the content is wrong.
+pub fn read_placed(path: impl AsRef<Path>) -> Result<PlacedMeshes, MeshError> {
+    read_by(path.as_ref(), |bytes, format, neighbour| {
+        let placed = placed_beside(bytes, format, neighbour)?;
+        let is_empty = placed.alone.mesh.triangles.is_empty() && placed.places.count() == 0;
+        if is_empty { Err(nothing()) } else { Ok(placed) }
+    })
+}
+
+/// The content of a file beside a mesh file, or why there is none.
+type Neighbour<'n> = &'n dyn Fn(&str) -> Result<Vec<u8>, String>;
+
+fn read_by<T>(
+    path: &Path,
+    parse: impl FnOnce(&[u8], Format, Neighbour<'_>) -> Result<T, Fault>,
+) -> Result<T, MeshError> {
     let format = Format::of(path).ok_or_else(|| MeshError::Format { path: path.to_owned() })?;
-    let in_content = |fault| MeshError::Content { path: path.to_owned(), fault };
     let bytes = memory::read(path, MAX_BYTES).map_err(|source| MeshError::File { path: path.to_owned(), source })?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let neighbour = |name: &str| memory::read(&folder.join(name), MAX_BYTES).map_err(|error| error.to_string());
-    let grouped = parse_beside(&bytes, format, &neighbour).map_err(in_content)?;
-    // Bytes of any kind can pass for an OBJ file without a face.
-    let is_empty = grouped.mesh.triangles.is_empty();
-    if is_empty { Err(in_content(FaultLocation::Mesh.fault(MeshProblem::NoTriangles))) } else { Ok(grouped) }
+    parse(&bytes, format, &neighbour).map_err(|fault| MeshError::Content { path: path.to_owned(), fault })
+}
+
+fn nothing() -> Fault {
+    FaultLocation::Mesh.fault(MeshProblem::NoTriangles)
 }
 
 /// Where a mesh will be written, tested before a long computation.
@@ -105,9 +139,22 @@ pub fn write(mesh: &Mesh, destination: &Destination) -> Result<(), MeshError> {
 /// # Errors
 /// [`MeshError`] if the mesh is not valid, does not fit the format, or the file cannot be written.
 pub fn write_grouped(grouped: &Grouped, destination: &Destination) -> Result<(), MeshError> {
+    write_by(destination, |format| print_grouped(grouped, format))
+}
+
+/// Writes meshes and where they are as a glTF file: a node for each place of a mesh, or, for many, one with
+/// EXT_mesh_gpu_instancing, whose places are in single precision.
+///
+/// # Errors
+/// [`MeshError`] if a mesh is not valid, the format places no meshes, or the file cannot be written.
+pub fn write_placed(placed: &PlacedMeshes, destination: &Destination) -> Result<(), MeshError> {
+    write_by(destination, |format| print_placed(placed, format))
+}
+
+fn write_by(destination: &Destination, print: impl FnOnce(Format) -> Result<Vec<u8>, Fault>) -> Result<(), MeshError> {
     let path = destination.path();
     let format = Format::of(path).ok_or_else(|| MeshError::Format { path: path.to_owned() })?;
-    let bytes = print_grouped(grouped, format).map_err(|fault| MeshError::Content { path: path.to_owned(), fault })?;
+    let bytes = print(format).map_err(|fault| MeshError::Content { path: path.to_owned(), fault })?;
     Ok(destination.write_or_save_elsewhere(|file| file.write_all(&bytes))?)
 }
 
@@ -127,11 +174,26 @@ pub fn parse_grouped(bytes: &[u8], format: Format) -> Result<Grouped, Fault> {
     parse_beside(bytes, format, &|_| Err("there is no folder".into()))
 }
 
-fn parse_beside(
-    bytes: &[u8],
-    format: Format,
-    neighbour: &dyn Fn(&str) -> Result<Vec<u8>, String>,
-) -> Result<Grouped, Fault> {
+/// Understands the bytes of a mesh file that stands alone, with each mesh that it places more than once only once.
+///
+/// # Errors
+/// What is wrong, and the line, byte or member where.
+pub fn parse_placed(bytes: &[u8], format: Format) -> Result<PlacedMeshes, Fault> {
+    placed_beside(bytes, format, &|_| Err("there is no folder".into()))
+}
+
+fn placed_beside(bytes: &[u8], format: Format, neighbour: Neighbour<'_>) -> Result<PlacedMeshes, Fault> {
+    if !format.has_places() {
+        let alone = parse_beside(bytes, format, neighbour)?;
+        return Ok(PlacedMeshes { alone, ..PlacedMeshes::default() });
+    }
+    let placed = gltf::parse_placed(bytes, neighbour)?;
+    let meshes = placed.repeated.iter().map(|repeated| &repeated.grouped.mesh);
+    std::iter::once(&placed.alone.mesh).chain(meshes).try_for_each(Mesh::validate)?;
+    Ok(placed)
+}
+
+fn parse_beside(bytes: &[u8], format: Format, neighbour: Neighbour<'_>) -> Result<Grouped, Fault> {
     let grouped = match format {
         Format::Obj => obj::parse(bytes)?,
         Format::Stl => stl::parse(bytes)?.into(),
@@ -162,8 +224,27 @@ pub fn print_grouped(grouped: &Grouped, format: Format) -> Result<Vec<u8>, Fault
         Format::Obj => Ok(obj::print(mesh, names)),
         Format::Stl => stl::print(mesh),
         Format::Ply => Ok(ply::print(mesh, names)),
-        Format::Gltf => gltf::print_text(grouped),
-        Format::Glb => gltf::print_binary(grouped),
+        Format::Gltf | Format::Glb => {
+            print_gltf(&Written { alone: grouped, repeated: &[], places: &MeshPlaces::default() }, format)
+        }
         Format::Compact => compact::print(mesh),
     }
+}
+
+/// The bytes of a glTF file of meshes and their places.
+///
+/// # Errors
+/// [`Fault`] if a mesh is not valid, a place is not finite or of no mesh, or the format places no meshes.
+pub fn print_placed(placed: &PlacedMeshes, format: Format) -> Result<Vec<u8>, Fault> {
+    let PlacedMeshes { alone, repeated, places } = placed;
+    if !format.has_places() {
+        return Err(FaultLocation::Mesh.fault(MeshProblem::Unsuited("only glTF files place meshes")));
+    }
+    let meshes = repeated.iter().map(|repeated| &repeated.grouped.mesh);
+    std::iter::once(&alone.mesh).chain(meshes).try_for_each(Mesh::validate)?;
+    print_gltf(&Written { alone, repeated, places }, format)
+}
+
+fn print_gltf(content: &Written<'_>, format: Format) -> Result<Vec<u8>, Fault> {
+    if format == Format::Gltf { gltf::print_text(content) } else { gltf::print_binary(content) }
 }

@@ -8,7 +8,7 @@ const MAX_STEPS: usize = 5;
 const NONE: u32 = u32::MAX;
 
 /// The members that paths go through; a path keeps their numbers, so that errors stay small.
-const KEYS: [&str; 43] = [
+const KEYS: [&str; 48] = [
     "member",
     "asset",
     "version",
@@ -52,6 +52,11 @@ const KEYS: [&str; 43] = [
     "buffer",
     "buffers",
     "uri",
+    "extensions",
+    "EXT_mesh_gpu_instancing",
+    "TRANSLATION",
+    "ROTATION",
+    "SCALE",
 ];
 
 /// A place in a JSON document, such as `meshes[0].primitives[1].indices`.

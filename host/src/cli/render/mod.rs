@@ -6,7 +6,7 @@ mod saved;
 mod views;
 
 use super::output::warn;
-use super::source::{load_lit, warn_of_emptiness};
+use super::source::{load_lit, warn_of_emptiness, warn_of_short_scatters};
 use super::{CommandFailure, Exit, SubcommandRow, progress};
 use crate::picture::display::DisplayTransform;
 use crate::plan::Plan;
@@ -44,6 +44,7 @@ fn run(arguments: &RenderArguments) -> Result<(), CommandFailure> {
     arguments.set(&mut scene.settings);
     let preparing = stage!("preparing");
     let prepared = Prepared::new(&scene)?;
+    warn_of_short_scatters(&prepared);
     let views = arguments.views_of(&prepared)?;
     let plan = Plan::of_views(&prepared, &views, arguments.everything);
     let order = arguments.render_options(&prepared.settings);

@@ -306,9 +306,15 @@ fn motion(facts: &Facts<'_>) -> Decision {
 }
 
 fn octree(facts: &Facts<'_>) -> Decision {
-    match facts.included().map(|o| u64::from(o.count)).sum::<u64>() {
-        0 => Decision::new(false, "no triangle can be seen: the picture is the background"),
-        n => Decision::new(true, counted(n as usize, "triangle")),
+    let triangles = facts.included().map(|o| u64::from(o.count)).sum::<u64>();
+    let instances = facts.included().map(|o| o.instances).sum::<usize>();
+    match (triangles, instances) {
+        (0, _) => Decision::new(false, "no triangle can be seen: the picture is the background"),
+        (n, 0) => Decision::new(true, counted(n as usize, "triangle")),
+        (n, more) => {
+            let stored = counted(n as usize, "triangle");
+            Decision::new(true, format!("{stored}, and {}", counted(more, "instance")))
+        }
     }
 }
 

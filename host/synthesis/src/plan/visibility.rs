@@ -21,12 +21,12 @@ pub(super) fn objects(prepared: &Prepared, views: &[View], facts: &Facts<'_>) ->
     let mirrors = facts.reflection().needed;
     let shadows = facts.shadows().needed;
     let decide = |(object, visible): (&PreparedObject, &bool)| {
-        if object.is_empty() {
+        if object.copies > 0 {
+            Decision::new(false, format!("the copies of what it places stand for it, {} objects", object.copies))
+        } else if object.is_empty() {
             Decision::new(false, "it has no triangles")
-        } else if *visible && object.instances > 0 {
-            Decision::new(true, format!("in view, {} instances", object.instances))
         } else if *visible {
-            Decision::new(true, format!("in view, {} triangles", object.count))
+            Decision::new(true, format!("in view, {}", extent(object)))
         } else if seen.is_empty() {
             Decision::new(false, "nothing at all is in view")
         } else if mirrors {
@@ -49,6 +49,15 @@ pub(super) fn objects(prepared: &Prepared, views: &[View], facts: &Facts<'_>) ->
         None => own.clone(),
     };
     prepared.objects.iter().zip(&standing).map(decided).collect()
+}
+
+/// How much there is of an object.
+fn extent(object: &PreparedObject) -> String {
+    match (object.count, object.instances) {
+        (count, 0) => format!("{count} triangles"),
+        (0, instances) => format!("{instances} instances"),
+        (count, instances) => format!("{count} triangles and {instances} instances"),
+    }
 }
 
 /// Whether a box may stand between any bright light and a point of `seen`; errs towards yes.

@@ -13,30 +13,30 @@ use crate::scene::{
 use crate::solid::Primitive;
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 
-fn diffuse(paint: Paint) -> Material {
+pub(super) fn diffuse(paint: Paint) -> Material {
     Classic { diffuse: paint, ..Classic::default() }.into()
 }
 
-fn object(shape: impl Into<Shape>, transform: DMat4, material: Material) -> Object {
+pub(super) fn object(shape: impl Into<Shape>, transform: DMat4, material: Material) -> Object {
     let shape = shape.into();
     Object { name: shape.word().into(), shape, transform, material: Some(material), tolerance: None }
 }
 
-fn instances(prototypes: Vec<Vec<Object>>, placements: Vec<Instance>, transform: DMat4) -> Object {
+pub(super) fn instances(prototypes: Vec<Vec<Object>>, placements: Vec<Instance>, transform: DMat4) -> Object {
     let placing = Placing::Listed(PlacementList(placements));
     let shape = Shape::Instances(Box::new(Instances { prototypes, placing }));
     Object { name: "instances".into(), shape, transform, material: None, tolerance: None }
 }
 
-fn at(placement: DAffine3, prototype: u16, variation: u16) -> Instance {
+pub(super) fn at(placement: DAffine3, prototype: u16, variation: u16) -> Instance {
     Instance { prototype, variation, placement }
 }
 
-fn camera(from: DVec3, field_of_view: f64) -> Camera {
+pub(super) fn camera(from: DVec3, field_of_view: f64) -> Camera {
     Camera { from, at: DVec3::ZERO, up: DVec3::Y, field_of_view, near: 0.0, far: None, lens: None, parallel: None }
 }
 
-fn render(scene: &Scene, row: &RendererRow) -> Rendering {
+pub(super) fn render(scene: &Scene, row: &RendererRow) -> Rendering {
     let mut scene = scene.clone();
     (row.require)(&mut scene.settings);
     let prepared = Prepared::new(&scene).unwrap_or_else(|error| panic!("{error}"));
@@ -46,12 +46,12 @@ fn render(scene: &Scene, row: &RendererRow) -> Rendering {
     made.renderer.any().render(&view, &RenderOrder::of(&prepared.settings), &Watch::NOBODY).expect("a picture")
 }
 
-fn green(rendering: &Rendering) -> Vec<f64> {
+pub(super) fn green(rendering: &Rendering) -> Vec<f64> {
     rendering.picture.pixels().iter().map(|pixel| f64::from(pixel.radiance[1])).collect()
 }
 
 /// Maps that turn, stretch, skew and mirror, about a few places.
-fn maps() -> Vec<DAffine3> {
+pub(super) fn maps() -> Vec<DAffine3> {
     let turned = |angle: f64| DMat3::from_quat(DQuat::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), angle));
     let skewed = DMat3::from_cols(DVec3::X, DVec3::new(0.4, 0.8, 0.0), DVec3::new(0.0, 0.3, 1.2));
     let matrices = [
@@ -89,7 +89,7 @@ fn group() -> Vec<Object> {
     vec![ball, object(Primitive::Box { size }, DMat4::IDENTITY, diffuse(Paint::Pattern(Box::new(cubes))))]
 }
 
-fn lit(objects: Vec<Object>) -> Scene {
+pub(super) fn lit(objects: Vec<Object>) -> Scene {
     let lamp = Light::Point { at: DVec3::new(4.0, 9.0, 6.0), intensity: Color::grey(600.0) };
     let mut floor =
         object(Shape::Ground { size: 40.0 }, DMat4::from_translation(DVec3::Y * -1.2), diffuse(Paint::grey(0.5)));
@@ -116,7 +116,7 @@ fn copies(group: &[Object], places: &[DAffine3]) -> Vec<Object> {
 }
 
 /// How many pixels differ by more than rounding.
-fn differing(one: &Rendering, other: &Rendering) -> usize {
+pub(super) fn differing(one: &Rendering, other: &Rendering) -> usize {
     let far = |(a, b): (f64, f64)| (a - b).abs() > 1e-3 * (a.abs() + b.abs()) + 1e-5;
     green(one).into_iter().zip(green(other)).filter(|pair| far(*pair)).count()
 }

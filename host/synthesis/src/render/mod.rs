@@ -27,6 +27,8 @@ mod extreme_tests;
 #[cfg(test)]
 mod instance_tests;
 #[cfg(test)]
+mod instance_extreme_tests;
+#[cfg(test)]
 mod lamp_tests;
 
 pub use error::{RadiosityError, RenderError};

@@ -118,6 +118,7 @@ impl Fingerprint {
         let mut geometry = Hasher::new();
         geometry.update(bytemuck::cast_slice(&prepared.triangles));
         geometry.update(bytemuck::cast_slice(&prepared.vertices));
+        prepared.add_placements_to_checksum(&mut geometry);
         let RenderOrder { width, height, samples, matte, seed, .. } = order;
         // A single sample lies in the middle of its pixel, where none of many need be.
         let order = format!("{width} {height} {matte} {seed} {}", samples.min(&2));

@@ -11,6 +11,7 @@ use crate::octree::{
 };
 use crate::surface::Tolerance;
 use glam::{DAffine3, DMat4};
+use std::fmt;
 use std::sync::Arc;
 
 /// So many instances of a surface or fewer are stored at once, more when rays come to them.
@@ -26,7 +27,34 @@ pub(super) enum Places<'a> {
     Cells(ScatterCells),
 }
 
+/// Instances by chance that did not all find room.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ShortScatter {
+    /// The object that they are.
+    pub object: String,
+    /// How many found room.
+    pub found: usize,
+    /// How many were asked for.
+    pub asked: usize,
+}
+
+impl fmt::Display for ShortScatter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ShortScatter { object, found, asked } = self;
+        write!(f, "{object}: scatter found room for {found} of {asked} instances")
+    }
+}
+
 impl Places<'_> {
+    /// What is to be told of instances by chance that did not all find room.
+    ///
+    /// - `name`: of the object that they are.
+    pub(super) fn short(&self, name: &str) -> Option<ShortScatter> {
+        let Places::Found(places) = self else { return None };
+        let (found, asked) = (places.count(), places.asked);
+        (found < asked).then(|| ShortScatter { object: name.to_owned(), found, asked })
+    }
+
     /// How many there are, some of which may be missing.
     pub(super) fn count(&self) -> usize {
         match self {

@@ -23,6 +23,7 @@ mod scatter;
 mod instances;
 mod exact;
 mod acceleration;
+mod file_meshes;
 mod shared;
 mod lamp_body;
 mod prepared;
@@ -31,6 +32,7 @@ mod piercing;
 mod octrees;
 mod placing;
 mod triangles;
+mod placed_triangles;
 mod soft_box;
 mod default_light;
 mod studio;
@@ -38,6 +40,7 @@ mod studio;
 pub use acceleration::{Acceleration, AccelerationKey, SceneOctree};
 pub use cage::{Cage, Sharp, Sharpening};
 pub use error::{AccelerationError, SceneError, ShapeError};
+pub use instances::ShortScatter;
 pub use motion::{Displacement, Motion};
 pub use object::{
     Composite, Instances, MAX_NESTING, Object, Operation, PlacementList, Placing, RoundedSolid, Scatter, Shape,

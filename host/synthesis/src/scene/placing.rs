@@ -1,7 +1,7 @@
 //! Instances of a prepared scene: what they place, each stored once, and where.
 
 use super::acceleration::PlacedInstances;
-use super::instances::Places;
+use super::instances::{Places, ShortScatter};
 use super::object::{Instances, Object, Shape};
 use super::prepared::{Contents, PreparedObject};
 use super::shape_mesh::ShapeMesh;
@@ -9,7 +9,9 @@ use super::stretch::largest_stretch;
 use super::{GeometrySettings, Motion, SceneError, Settings};
 use crate::illumination::Material;
 use crate::memory;
+use crate::mesh::{MeshPlace, PlacedMeshes, RepeatedMesh};
 use crate::numeric::bounds::Bounds;
+use crate::numeric::sampling::mix;
 use crate::numeric::triangle::MAX_MAGNITUDE;
 use crate::octree::{Instance, InstanceOctree, PlacementForm, Prototype};
 use crate::stages::stage;
@@ -22,13 +24,13 @@ const TRIANGLE_BYTES: u64 = 64;
 const COPY_BYTES: u64 = 1024;
 
 /// What a group of objects becomes part of.
-struct Whole {
+pub(super) struct Whole {
     /// Number of the object whose instances are prepared.
-    object: u32,
+    pub(super) object: u32,
     /// That of objects that have none.
-    material: Option<Material>,
+    pub(super) material: Option<Material>,
     /// How much longer what is placed may become at the most.
-    stretch: f64,
+    pub(super) stretch: f64,
 }
 
 /// Objects of a group as they are copied.
@@ -39,6 +41,8 @@ enum Copied {
 
 /// Instances as they are copied.
 struct CopiedInstances {
+    /// If they are by chance and did not all find room.
+    short: Option<ShortScatter>,
     prototypes: Vec<Vec<Copied>>,
     placements: Vec<Instance>,
 }
@@ -63,25 +67,94 @@ impl Contents {
         let transform = DAffine3::from_mat4(object.transform);
         if settings.copies_instances() {
             let copied = CopiedInstances::new(&object.name, instances, &whole, geometry)?;
+            self.objects[index as usize].copies = copied.counts()[0];
+            self.short_scatters.extend(copied.short_scatters());
             return copied.add_to(self, &object.name, transform, self.objects[index as usize].motion, geometry);
         }
         let octree = self.instance_octree(&object.name, instances, &whole, geometry)?;
+        self.stand(index, octree, transform, geometry)
+    }
+
+    /// Places what the file of an object of the scene places many times.
+    ///
+    /// - `index`: of the object, which was added with its other triangles.
+    ///
+    /// # Errors
+    /// [`SceneError`], for what cannot be placed.
+    pub(super) fn add_placed_meshes(
+        &mut self,
+        index: u32,
+        object: &Object,
+        meshes: &PlacedMeshes,
+        geometry: &GeometrySettings,
+    ) -> Result<(), SceneError> {
+        let _stage = stage!("placing instances");
+        let octree = self.mesh_octree(index, object, meshes, geometry)?;
+        self.stand(index, octree, DAffine3::from_mat4(object.transform), geometry)
+    }
+
+    /// Lets instances of an object stand in the scene.
+    fn stand(
+        &mut self,
+        index: u32,
+        octree: Arc<InstanceOctree>,
+        transform: DAffine3,
+        geometry: &GeometrySettings,
+    ) -> Result<(), SceneError> {
+        let group = &mut self.objects[index as usize];
         let corners = octree.bounds().corners().map(|corner| transform.transform_point3(corner));
         let still = if octree.bounds().is_empty() { Bounds::EMPTY } else { Bounds::of(corners) };
         let is_near = still.is_empty() || still.min.abs().max(still.max.abs()).max_element() <= MAX_MAGNITUDE;
         if !is_near {
             let problem = format!("an instance is placed farther than {MAX_MAGNITUDE:e} from the origin");
-            return Err(SceneError::Object { object: object.name.clone(), problem });
+            return Err(failed(&group.name, problem));
         }
         let half = 0.5 * geometry.shutter;
-        let group = &mut self.objects[index as usize];
-        group.bounds = group.motion.map_or(still, |motion| motion.swept(&still, [-half, half]));
+        let bounds = group.motion.map_or(still, |motion| motion.swept(&still, [-half, half]));
+        group.bounds = if group.count == 0 { bounds } else { group.bounds.union(bounds) };
         group.instances = octree.count();
-        self.placed_triangles = self.placed_triangles.saturating_add(octree.costs().triangles);
         self.bounds = self.bounds.union(group.bounds);
+        self.placed_triangles = self.placed_triangles.saturating_add(octree.costs().triangles);
         let prototype = Prototype::instances(octree);
         self.placed.push(PlacedInstances { object: index, prototype, transform });
         Ok(())
+    }
+
+    /// The octree over the meshes that a file places many times, in coordinates of the file; each becomes an object.
+    ///
+    /// - `placing`: the object of the scene that places them.
+    fn mesh_octree(
+        &mut self,
+        placing: u32,
+        object: &Object,
+        meshes: &PlacedMeshes,
+        geometry: &GeometrySettings,
+    ) -> Result<Arc<InstanceOctree>, SceneError> {
+        let PlacedMeshes { repeated, places, .. } = meshes;
+        let mut prototypes = Vec::with_capacity(repeated.len());
+        for (RepeatedMesh { name, grouped }, number) in repeated.iter().zip(0..) {
+            let name = if name.is_empty() { format!("mesh {number}") } else { name.clone() };
+            let part = Object { name: format!("{}/{name}", object.name), transform: DMat4::IDENTITY, ..object.clone() };
+            let made = ShapeMesh { mesh: grouped.mesh.clone(), ..ShapeMesh::default() };
+            let added = self.add(&part, &made, None, geometry)?;
+            added.placed_by = Some(placing);
+            let (first, count) = (added.first, added.count);
+            let octree = self.octree_over(first..first + count).map_err(|error| failed(&object.name, error))?;
+            prototypes.push(Prototype::surface(Arc::new(octree), first));
+        }
+        let instance = |number: usize| {
+            let MeshPlace { mesh, placement } = places.place(number);
+            Instance { prototype: mesh as u16, variation: mix(number as u64) as u16, placement }
+        };
+        let octree = InstanceOctree::new(prototypes, PlacementForm::Affine, places.count(), instance);
+        Ok(self.counted(octree.map_err(|error| failed(&object.name, error))?))
+    }
+
+    /// An octree over instances, kept for what it costs.
+    fn counted(&mut self, octree: InstanceOctree) -> Arc<InstanceOctree> {
+        let octree = Arc::new(octree);
+        self.instanced.push(octree.clone());
+        octree
     }
 
     /// The octree over instances, in coordinates of the object that has them; what they place is added.
@@ -93,12 +166,11 @@ impl Contents {
         geometry: &GeometrySettings,
     ) -> Result<Arc<InstanceOctree>, SceneError> {
         let places = whole.places(name, instances, geometry)?;
+        self.short_scatters.extend(places.short(name));
         let placed = whole.placed_by(instances);
         let prototypes = instances.prototypes.iter().map(|group| self.prototype(name, group, &placed, geometry));
         let prototypes = prototypes.collect::<Result<Vec<Prototype>, SceneError>>()?;
-        let octree = Arc::new(places.octree(prototypes).map_err(|error| failed(name, error))?);
-        self.instanced.push(octree.clone());
-        Ok(octree)
+        Ok(self.counted(places.octree(prototypes).map_err(|error| failed(name, error))?))
     }
 
     /// A group of objects as one prototype.
@@ -110,8 +182,17 @@ impl Contents {
         geometry: &GeometrySettings,
     ) -> Result<Prototype, SceneError> {
         let first = self.triangles.len() as u32;
+        let mut files = Vec::new();
         for object in group.iter().filter(|object| !matches!(object.shape, Shape::Instances(_))) {
-            let (object, made) = whole.made(object, geometry)?;
+            let (object, made) = match object.within(&whole.material).placed_meshes()? {
+                Some(mut file) => {
+                    let object = object.within(&whole.material).into_owned();
+                    let mesh = std::mem::take(&mut file.alone).mesh;
+                    files.push((object.clone(), file));
+                    (object, ShapeMesh { mesh, ..ShapeMesh::default() })
+                }
+                None => whole.made(object, geometry)?,
+            };
             let added = self.add(&object, &made, None, geometry)?;
             check_emission(added)?;
             added.placed_by = Some(whole.object);
@@ -121,6 +202,10 @@ impl Contents {
         if !triangles.is_empty() {
             let octree = self.octree_over(triangles).map_err(|error| failed(name, error))?;
             parts.push((Prototype::surface(Arc::new(octree), first), DAffine3::IDENTITY));
+        }
+        for (object, file) in files.iter().filter(|(_, file)| file.places.count() > 0) {
+            let octree = self.mesh_octree(whole.object, object, file, geometry)?;
+            parts.push((Prototype::instances(octree), DAffine3::from_mat4(object.transform)));
         }
         for object in group {
             let Shape::Instances(inner) = &object.shape else { continue };
@@ -143,13 +228,13 @@ impl Contents {
 
 impl Whole {
     /// An object that instances place, for those that it has itself.
-    fn within(&self, object: &Object) -> Whole {
+    pub(super) fn within(&self, object: &Object) -> Whole {
         let material = object.material.clone().or_else(|| self.material.clone());
         Whole { material, stretch: self.stretch * largest_stretch(&object.transform), ..*self }
     }
 
     /// This, for what its instances place.
-    fn placed_by(&self, instances: &Instances) -> Whole {
+    pub(super) fn placed_by(&self, instances: &Instances) -> Whole {
         let stretch = self.stretch * instances.largest_stretch();
         Whole { material: self.material.clone(), stretch, ..*self }
     }
@@ -160,7 +245,7 @@ impl Whole {
     }
 
     /// Where the instances of an object of a group are.
-    fn places<'a>(
+    pub(super) fn places<'a>(
         &self,
         name: &str,
         instances: &'a Instances,
@@ -170,7 +255,7 @@ impl Whole {
     }
 
     /// An object of a group, and its triangles in its own coordinates.
-    fn made(&self, object: &Object, geometry: &GeometrySettings) -> Result<(Object, ShapeMesh), SceneError> {
+    pub(super) fn made(&self, object: &Object, geometry: &GeometrySettings) -> Result<(Object, ShapeMesh), SceneError> {
         let mut object = object.within(&self.material).into_owned();
         object.tolerance = object.tolerance.map(|tolerance| tolerance / self.stretch);
         let made = object.tessellate(self.tolerance(geometry), geometry.angle)?;
@@ -204,7 +289,16 @@ impl CopiedInstances {
             format!("copying {count} instances")
         })
         .map_err(|error| failed(name, error))?;
-        Ok(CopiedInstances { prototypes, placements: places.all().collect() })
+        Ok(CopiedInstances { short: places.short(name), prototypes, placements: places.all().collect() })
+    }
+
+    /// Those that did not all find room, here and in what is copied.
+    fn short_scatters(&self) -> Vec<ShortScatter> {
+        let of = |copied: &Copied| match copied {
+            Copied::Object(..) => Vec::new(),
+            Copied::Instances(_, inner) => inner.short_scatters(),
+        };
+        self.short.iter().cloned().chain(self.prototypes.iter().flatten().flat_map(of)).collect()
     }
 
     /// Objects and triangles of all copies.
@@ -248,7 +342,7 @@ impl CopiedInstances {
         variation: u16,
         give: &mut impl FnMut(&Object, &ShapeMesh, u16) -> Result<(), SceneError>,
     ) -> Result<(), SceneError> {
-        let CopiedInstances { prototypes, placements } = self;
+        let CopiedInstances { prototypes, placements, .. } = self;
         for instance in placements.iter() {
             let (placement, variation) = (to_scene * instance.placement, variation.wrapping_add(instance.variation));
             for copied in &mut prototypes[usize::from(instance.prototype)] {

@@ -2,6 +2,7 @@
 
 use super::acceleration::{AccelerationCache, PlacedInstances};
 use super::exact::{ExactSurfaces, FLAT_SINE};
+use super::instances::ShortScatter;
 use super::lamp_body::lamp_body;
 use super::object::{GROUND, Object, Shape};
 use super::parameters::parameters;
@@ -62,6 +63,8 @@ pub struct Contents {
     pub camera: Camera,
     /// A box around everything.
     pub bounds: Bounds,
+    /// The objects of instances by chance for which there is less room than was asked for.
+    pub short_scatters: Vec<ShortScatter>,
     /// The instances that stand in it, each group of an object.
     pub(super) placed: Vec<PlacedInstances>,
     /// Their octrees, those within prototypes too.
@@ -91,8 +94,10 @@ pub struct PreparedObject {
     pub light: Option<u32>,
     /// The object whose instances place it, an index into the objects; it and its box are in coordinates of its own then.
     pub placed_by: Option<u32>,
-    /// How many instances it has, each of which may place more; 0 for other objects.
+    /// How many instances it has, beside its triangles, each of which may place more; 0 for other objects.
     pub instances: usize,
+    /// How many objects are copies of what its instances place; 0 where they are placed.
+    pub copies: u64,
     /// The variation of a copy that stands for an instance; 0 for others.
     pub variation: u16,
     /// How it moves while the shutter is open; its triangles are where it is in the middle of that time.
@@ -166,6 +171,7 @@ impl Contents {
             background: scene.background,
             camera: Camera::framing(&Bounds::EMPTY),
             bounds: Bounds::EMPTY,
+            short_scatters: Vec::new(),
             placed: Vec::new(),
             instanced: Vec::new(),
             placed_triangles: 0,
@@ -191,6 +197,8 @@ impl Contents {
         for (object, index) in scene.objects.iter().zip(0u32..) {
             if let Shape::Instances(instances) = &object.shape {
                 contents.add_instances(index, object, instances, &scene.settings)?;
+            } else if let Some(meshes) = shared.placed_by(index) {
+                contents.add_placed_meshes(index, object, &meshes, &scene.settings.geometry)?;
             }
         }
         contents.camera = scene.camera.unwrap_or_else(|| Camera::framing(&contents.subject()));
@@ -276,6 +284,7 @@ impl Contents {
             light: None,
             placed_by: None,
             instances: 0,
+            copies: 0,
             variation: 0,
             motion,
             normals_from,
@@ -373,6 +382,11 @@ impl Contents {
             }
         });
         (all.instances > 0).then_some(all)
+    }
+
+    /// Adds the placements of all instances to a checksum.
+    pub fn add_placements_to_checksum(&self, sum: &mut crc32fast::Hasher) {
+        self.placed.iter().for_each(|placed| placed.prototype.add_to_checksum(sum));
     }
 
     /// An object whose instances are placed, if there is one: renderers that go through triangles one by one do not see

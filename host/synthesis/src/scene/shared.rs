@@ -3,6 +3,7 @@
 use super::shape_mesh::ShapeMesh;
 use super::{Scene, SceneError, Shape};
 use crate::memory;
+use crate::mesh::PlacedMeshes;
 use crate::numeric::debug_hash;
 use rustc_hash::FxHashMap;
 use std::rc::Rc;
@@ -17,6 +18,10 @@ pub(super) struct SharedMeshes {
     /// For each first one how many objects still need its triangles.
     needed: Vec<u32>,
     meshes: FxHashMap<u32, Rc<ShapeMesh>>,
+    /// Whether what files place many times is copied.
+    copies: bool,
+    /// For each first one what its file places many times.
+    placed: FxHashMap<u32, Rc<PlacedMeshes>>,
 }
 
 /// The first object with its shape and tolerance.
@@ -24,6 +29,8 @@ struct First {
     index: u32,
     /// Of the shape; none for flat ones.
     extent: Option<f64>,
+    /// Whether its file may place meshes.
+    has_places: bool,
 }
 
 impl SharedMeshes {
@@ -39,20 +46,31 @@ impl SharedMeshes {
             let extent = alike.iter().find(is_alike).map_or_else(|| object.shape.extent(), |other| other.extent);
             // The tolerance in own coordinates, 0 for flat shapes.
             let chord = extent.map_or(0.0, |extent| object.chord_of(extent, scene.settings.geometry.tolerance));
-            let same = alike.iter().find(|other| chords.get(other.index as usize) == Some(&chord) && is_alike(other));
+            let has_places = object.file_of_places().is_some();
+            let is_same = |other: &&First| {
+                chords.get(other.index as usize) == Some(&chord) && other.has_places == has_places && is_alike(other)
+            };
+            let same = alike.iter().find(is_same);
             let found = same.map(|other| other.index);
             if found.is_none() {
-                alike.push(First { index, extent });
+                alike.push(First { index, extent, has_places });
             }
             let found = found.unwrap_or(index);
             needed[found as usize] += 1;
             first.push(found);
             chords.push(chord);
         }
-        SharedMeshes { first, needed, meshes: FxHashMap::default() }
+        let copies = scene.settings.copies_instances();
+        SharedMeshes { first, needed, meshes: FxHashMap::default(), copies, placed: FxHashMap::default() }
     }
 
-    /// The triangles of an object, which must be asked for once for each object.
+    /// The meshes that the file of an object places many times; none before its triangles were asked for.
+    pub(super) fn placed_by(&self, index: u32) -> Option<Rc<PlacedMeshes>> {
+        self.placed.get(&self.first[index as usize]).cloned()
+    }
+
+    /// The triangles of an object, which must be asked for once for each object; without those that its file places many
+    /// times.
     ///
     /// # Errors
     /// [`SceneError`] if they cannot be made, or if all objects that need them would take more memory than there is.
@@ -64,7 +82,17 @@ impl SharedMeshes {
             // They are placed when all other objects are there.
             None if matches!(object.shape, Shape::Instances(_)) => Rc::default(),
             None => {
-                let made = object.tessellate(scene.settings.geometry.tolerance, scene.settings.geometry.angle)?;
+                let file = if self.copies { None } else { object.placed_meshes()? };
+                let made = match file {
+                    Some(mut file) => {
+                        let mesh = std::mem::take(&mut file.alone).mesh;
+                        if file.places.count() > 0 {
+                            self.placed.insert(first, Rc::new(file));
+                        }
+                        ShapeMesh { mesh, ..ShapeMesh::default() }
+                    }
+                    None => object.tessellate(scene.settings.geometry.tolerance, scene.settings.geometry.angle)?,
+                };
                 let (count, triangles) = (u64::from(*needed), made.mesh.triangles.len() as u64);
                 let objects = if count == 1 { String::new() } else { format!(" and {} more", count - 1) };
                 memory::reserve(count * triangles * BYTES, || {

@@ -23,29 +23,8 @@ impl Scene {
         let made = |object: &Object| object.tessellate(settings.geometry.tolerance, settings.geometry.angle);
         let all = self.objects.par_iter().map(made).collect::<Result<Vec<ShapeMesh>, SceneError>>()?;
         let mut whole = Grouped::default();
-        for (object, ShapeMesh { mut mesh, operand_of, .. }) in self.objects.iter().zip(all) {
-            if (whole.mesh.triangles.len() + mesh.triangles.len()) as u64 > MAX_TRIANGLES {
-                return Err(SceneError::Limit { what: "triangles", limit: MAX_TRIANGLES });
-            }
-            if mesh.corner_normals.is_empty() {
-                mesh.corner_normals = flat_normals(&mesh);
-            }
-            mesh.surfaces.resize(mesh.triangles.len(), 0);
-            let placed = mesh.transformed(&DAffine3::from_mat4(object.transform));
-            if let Some(v) = placed.vertices.iter().find(|v| !v.is_finite()) {
-                let problem = format!("a vertex is placed at {v}");
-                return Err(SceneError::Object { object: object.name.clone(), problem });
-            }
-            let count = mesh.surfaces.iter().max().map_or(0, |last| *last as usize + 1);
-            whole.mesh.append(&placed, whole.names.len() as u32);
-            let name = |k: usize| if count == 1 { object.name.clone() } else { format!("{}/{k}", object.name) };
-            whole.names.extend((0..count).map(name));
-            let (materials, of_triangles) = object.materials(&operand_of);
-            let mut looks = vec![metallic_roughness(&materials[0]); count];
-            for (surface, material) in placed.surfaces.iter().zip(of_triangles) {
-                looks[*surface as usize] = metallic_roughness(&materials[material as usize]);
-            }
-            whole.materials.extend(looks.into_iter().map(Some));
+        for (object, made) in self.objects.iter().zip(all) {
+            append(&mut whole, object, made)?;
         }
         Ok(whole)
     }
@@ -70,6 +49,37 @@ impl Scene {
         self.settings.geometry.angle = angle.unwrap_or(self.settings.geometry.angle);
         self
     }
+}
+
+/// Adds the triangles of an object where it stands, with its name and its materials.
+///
+/// # Errors
+/// [`SceneError`], for too many triangles, or for a vertex that is not finite.
+pub(super) fn append(whole: &mut Grouped, object: &Object, made: ShapeMesh) -> Result<(), SceneError> {
+    let ShapeMesh { mut mesh, operand_of, .. } = made;
+    if (whole.mesh.triangles.len() + mesh.triangles.len()) as u64 > MAX_TRIANGLES {
+        return Err(SceneError::Limit { what: "triangles", limit: MAX_TRIANGLES });
+    }
+    if mesh.corner_normals.is_empty() {
+        mesh.corner_normals = flat_normals(&mesh);
+    }
+    mesh.surfaces.resize(mesh.triangles.len(), 0);
+    let placed = mesh.transformed(&DAffine3::from_mat4(object.transform));
+    if let Some(v) = placed.vertices.iter().find(|v| !v.is_finite()) {
+        let problem = format!("a vertex is placed at {v}");
+        return Err(SceneError::Object { object: object.name.clone(), problem });
+    }
+    let count = mesh.surfaces.iter().max().map_or(0, |last| *last as usize + 1);
+    whole.mesh.append(&placed, whole.names.len() as u32);
+    let name = |k: usize| if count == 1 { object.name.clone() } else { format!("{}/{k}", object.name) };
+    whole.names.extend((0..count).map(name));
+    let (materials, of_triangles) = object.materials(&operand_of);
+    let mut looks = vec![metallic_roughness(&materials[0]); count];
+    for (surface, material) in placed.surfaces.iter().zip(of_triangles) {
+        looks[*surface as usize] = metallic_roughness(&materials[material as usize]);
+    }
+    whole.materials.extend(looks.into_iter().map(Some));
+    Ok(())
 }
 
 /// A metallic-roughness material of glTF, which has one colour: what is mirrored counts to it, as a metal. Those terms

@@ -2,6 +2,7 @@
 
 use super::super::{Fault, MeshProblem};
 use super::document::LocatedValue;
+use crate::memory;
 
 /// The type of a component.
 #[derive(Clone, Copy)]
@@ -127,6 +128,17 @@ impl<'a> Buffers<'a> {
         Ok(Rows { bytes: &view[offset..], stride, component, normalized })
     }
 
+    /// How many rows the accessor has that `at` names.
+    pub fn count(&self, at: LocatedValue<'a>) -> Result<usize, Fault> {
+        let count_at = at.named(&self.root, "accessors")?.need("count")?;
+        let count = count_at.count()?;
+        if count > self.total {
+            let (count, limit) = (count as u64, self.total as u64);
+            return Err(count_at.fault(MeshProblem::TooMany { what: "rows", count, limit }));
+        }
+        Ok(count)
+    }
+
     /// All rows of the accessor that `at` names.
     ///
     /// - `kind`: the type that it must have, such as VEC3, of N columns.
@@ -136,12 +148,9 @@ impl<'a> Buffers<'a> {
         if found.text()? != kind {
             return Err(found.expected(kind));
         }
-        let count_at = accessor.need("count")?;
-        let count = count_at.count()?;
-        if count > self.total {
-            let (count, limit) = (count as u64, self.total as u64);
-            return Err(count_at.fault(MeshProblem::TooMany { what: "rows", count, limit }));
-        }
+        let count = self.count(at)?;
+        memory::reserve((count * size_of::<[f64; N]>()) as u64, || format!("reading {count} rows"))
+            .map_err(|excess| accessor.fault(excess.into()))?;
         let mut table = vec![[0.0; N]; count];
         if let Some(view) = accessor.get("bufferView") {
             let rows = self.rows(accessor, view, count, N)?;

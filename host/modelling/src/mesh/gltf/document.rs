@@ -34,6 +34,12 @@ impl<'a> LocatedValue<'a> {
         Some(LocatedValue { value, path: self.path.with(key, None) })
     }
 
+    /// Some member, whose place is told as here.
+    pub fn any_member(&self) -> Option<LocatedValue<'a>> {
+        let value = self.value.as_object()?.values().next()?;
+        Some(LocatedValue { value, path: self.path })
+    }
+
     /// A member that must be there.
     pub fn need(&self, key: &'static str) -> Result<LocatedValue<'a>, Fault> {
         let missing = || FaultLocation::Json(self.path.with(key, None)).fault(MeshProblem::Missing);

@@ -1,27 +1,46 @@
-//! The triangles of a glTF file.
+//! The document of a glTF file, and its buffers.
 
-use glam::{DAffine3, DMat4, DQuat, DVec2, DVec3, DVec4};
 use serde_json::Value;
 
-use super::super::fan::strip;
-use super::super::groups::{Grouped, Groups, MetallicRoughness};
-use super::super::{Fault, FaultLocation, Mesh, MeshProblem};
+use super::super::groups::Grouped;
+use super::super::placed::PlacedMeshes;
+use super::super::{Fault, FaultLocation, MeshProblem};
 use super::accessor::Buffers;
 use super::document::LocatedValue;
+use super::meshes::MeshReader;
+use super::nodes::INSTANCING;
 use super::{BINARY_CHUNK, JSON_CHUNK, MAGIC, base64};
+use crate::memory;
 
-/// Extensions without which the triangles are the same, or which need nothing further.
-const SUPPORTED_EXTENSIONS: [&str; 2] = ["KHR_mesh_quantization", "KHR_texture_transform"];
-/// So many triangles may come of nodes that share meshes, even if the file is small.
-const MOST_SHARED: usize = 1 << 22;
-/// The deepest tree of nodes.
-const MAX_DEPTH: usize = 1000;
+/// Bytes of an object of JSON, which has room for eleven members, and of another value.
+const OBJECT_BYTES: u64 = 640;
+const VALUE_BYTES: u64 = 32;
+/// Extensions that are followed, or without which the triangles are the same.
+const SUPPORTED_EXTENSIONS: [&str; 3] = ["KHR_mesh_quantization", "KHR_texture_transform", INSTANCING];
 
-/// Understands a glTF file, text or binary.
+/// The triangles of a glTF file, text or binary, where they are.
 ///
 /// - `neighbour`: the content of a file beside it, or why there is none.
 pub fn parse(bytes: &[u8], neighbour: &dyn Fn(&str) -> Result<Vec<u8>, String>) -> Result<Grouped, Fault> {
+    understood(bytes, neighbour, |meshes| meshes.together())
+}
+
+/// The meshes of a glTF file, text or binary, and where they are.
+///
+/// - `neighbour`: the content of a file beside it, or why there is none.
+pub fn parse_placed(bytes: &[u8], neighbour: &dyn Fn(&str) -> Result<Vec<u8>, String>) -> Result<PlacedMeshes, Fault> {
+    understood(bytes, neighbour, |meshes| meshes.placed())
+}
+
+/// What is made of the meshes of a file.
+fn understood<T>(
+    bytes: &[u8],
+    neighbour: &dyn Fn(&str) -> Result<Vec<u8>, String>,
+    then: impl FnOnce(MeshReader<'_>) -> Result<T, Fault>,
+) -> Result<T, Fault> {
     let (json, binary) = if bytes.starts_with(MAGIC) { chunks(bytes)? } else { (bytes, None) };
+    let what = || format!("a document of {} bytes", json.len());
+    memory::reserve(document_bytes(json), what).map_err(|excess| FaultLocation::Mesh.fault(excess.into()))?;
     let document: Value = serde_json::from_slice(json).map_err(|error| {
         let problem = MeshProblem::Syntax(error.to_string());
         if binary.is_some() || bytes.starts_with(MAGIC) {
@@ -49,16 +68,17 @@ pub fn parse(bytes: &[u8], neighbour: &dyn Fn(&str) -> Result<Vec<u8>, String>) 
         total = total.saturating_add(content.len());
         buffers.push(content);
     }
-    let mut scene = Scene {
-        buffers: Buffers { root, bytes: buffers, total },
-        root,
-        mesh: Mesh::default(),
-        lacks: [false; 2],
-        groups: Groups::default(),
-        most: total.max(MOST_SHARED),
+    then(MeshReader::new(Buffers { root, bytes: buffers, total })?)
+}
+
+/// About how many bytes a document takes once it is understood: by its objects, and by all else that it lists.
+fn document_bytes(json: &[u8]) -> u64 {
+    let of = |byte: &u8| match byte {
+        b'{' => OBJECT_BYTES,
+        b',' => VALUE_BYTES,
+        _ => 0,
     };
-    scene.collect()?;
-    Ok(scene.into_grouped())
+    json.iter().map(of).sum()
 }
 
 /// The JSON and the binary chunk of a binary file.
@@ -137,177 +157,4 @@ fn unescaped(uri: &str) -> Option<String> {
     let is_elsewhere =
         name.starts_with(['/', '\\']) || name.contains(':') || name.split(['/', '\\']).any(|p| p == "..");
     (!is_elsewhere).then_some(name)
-}
-
-/// What is read.
-struct Scene<'a> {
-    buffers: Buffers<'a>,
-    root: LocatedValue<'a>,
-    mesh: Mesh,
-    /// Whether normals or texture coordinates are missing somewhere.
-    lacks: [bool; 2],
-    groups: Groups,
-    /// The most triangles.
-    most: usize,
-}
-
-impl<'a> Scene<'a> {
-    /// Walks over the nodes of the default scene, or of the first one; without any, over all meshes.
-    fn collect(&mut self) -> Result<(), Fault> {
-        let scene = match self.root.get("scene") {
-            Some(at) => Some(at.named(&self.root, "scenes")?),
-            None => self.root.element("scenes", 0),
-        };
-        let Some(scene) = scene else {
-            for mesh in self.root.list("meshes")? {
-                self.add(mesh, None, &DAffine3::IDENTITY)?;
-            }
-            return Ok(());
-        };
-        let mut waiting: Vec<(LocatedValue<'a>, DAffine3, usize)> = Vec::new();
-        let mut is_reached = vec![false; self.root.list("nodes")?.len()];
-        for at in scene.list("nodes")?.into_iter().rev() {
-            waiting.push((at, DAffine3::IDENTITY, 0));
-        }
-        while let Some((at, to_scene, depth)) = waiting.pop() {
-            let node = at.named(&self.root, "nodes")?;
-            if depth > MAX_DEPTH || std::mem::replace(&mut is_reached[at.count()?], true) {
-                return Err(at.expected("a node that is reached only once"));
-            }
-            let placed = to_scene * placement(node)?;
-            if !placed.is_finite() {
-                return Err(node.fault(MeshProblem::NotFinite));
-            }
-            if let Some(mesh) = node.get("mesh") {
-                self.add(mesh.named(&self.root, "meshes")?, node.text_of("name")?, &placed)?;
-            }
-            for child in node.list("children")?.into_iter().rev() {
-                waiting.push((child, placed, depth + 1));
-            }
-        }
-        Ok(())
-    }
-
-    /// Adds the triangles of a mesh.
-    fn add(&mut self, mesh: LocatedValue<'a>, node: Option<&str>, placement: &DAffine3) -> Result<(), Fault> {
-        let own = mesh.text_of("name")?.or(node).unwrap_or_default();
-        for primitive in mesh.list("primitives")? {
-            let Some(part) = self.primitive(primitive)? else { continue };
-            let material = primitive.get("material").map(|at| at.named(&self.root, "materials")).transpose()?;
-            let called = material.map(|at| at.text_of("name")).transpose()?.flatten();
-            let look = material.map(material_of).transpose()?.flatten();
-            let name = [own, called.unwrap_or_default()];
-            let name = name.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("/");
-            let triangles = self.mesh.triangles.len() + part.triangles.len();
-            if triangles > self.most {
-                let (count, limit) = (triangles as u64, self.most as u64);
-                return Err(mesh.fault(MeshProblem::TooMany { what: "triangles", count, limit }));
-            }
-            let lacks = [part.corner_normals.is_empty(), part.corner_parameters.is_empty()];
-            self.lacks = [0, 1].map(|k| self.lacks[k] || lacks[k] && !part.triangles.is_empty());
-            self.mesh.append(&part.transformed(placement), 0);
-            if self.mesh.vertices.iter().rev().take(part.vertices.len()).any(|vertex| !vertex.is_finite()) {
-                return Err(mesh.fault(MeshProblem::NotFinite));
-            }
-            self.groups.extend(&name, look, triangles);
-        }
-        Ok(())
-    }
-
-    /// The triangles of a primitive; none if it is made of points or lines.
-    fn primitive(&self, primitive: LocatedValue<'a>) -> Result<Option<Mesh>, Fault> {
-        let mode = primitive.count_or("mode", 4)?;
-        let attributes = primitive.need("attributes")?;
-        let Some(position) = attributes.get("POSITION").filter(|_| (4..=6).contains(&mode)) else {
-            return Ok(None);
-        };
-        let vertices: Vec<DVec3> =
-            self.buffers.table::<3>(position, "VEC3")?.into_iter().map(DVec3::from_array).collect();
-        if vertices.iter().any(|vertex| !vertex.is_finite()) {
-            return Err(position.fault(MeshProblem::NotFinite));
-        }
-        let indices = match primitive.get("indices") {
-            Some(at) => self.buffers.indices(at)?,
-            None => (0..vertices.len() as u32).collect(),
-        };
-        let count = vertices.len();
-        if let Some(&index) = indices.iter().find(|index| **index as usize >= count) {
-            let problem = MeshProblem::Index { index: index.into(), count, table: "vertices" };
-            return Err(primitive.get("indices").unwrap_or(primitive).fault(problem));
-        }
-        let triangles: Vec<[u32; 3]> = match mode {
-            4 => indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
-            5 => strip(&indices).collect(),
-            _ => indices.windows(2).skip(1).map(|pair| [pair[0], pair[1], indices[0]]).collect(),
-        };
-        let mut mesh = Mesh { vertices, triangles, ..Mesh::default() };
-        if let Some(at) = attributes.get("NORMAL") {
-            let normals = self.buffers.table::<3>(at, "VEC3")?;
-            let normal = |normal: &[f64; 3]| DVec3::from_array(*normal).normalize_or_zero();
-            mesh.corner_normals = per_corner(&mesh.triangles, &normals, count, normal).ok_or_else(|| short(at))?;
-        }
-        if let Some(at) = attributes.get("TEXCOORD_0") {
-            let parameters = self.buffers.table::<2>(at, "VEC2")?;
-            let parameter =
-                |uv: &[f64; 2]| Some(DVec2::from_array(*uv)).filter(|uv| uv.is_finite()).unwrap_or_default();
-            mesh.corner_parameters =
-                per_corner(&mesh.triangles, &parameters, count, parameter).ok_or_else(|| short(at))?;
-        }
-        Ok(Some(mesh))
-    }
-
-    fn into_grouped(self) -> Grouped {
-        let mut mesh = self.mesh;
-        if self.lacks[0] {
-            mesh.corner_normals.clear();
-        }
-        if self.lacks[1] {
-            mesh.corner_parameters.clear();
-        }
-        let grouped = self.groups.on(mesh);
-        Grouped { mesh: grouped.mesh.welded(), ..grouped }
-    }
-}
-
-/// The metallic-roughness material of a file, textures left out; none if it does not say.
-fn material_of(material: LocatedValue<'_>) -> Result<Option<MetallicRoughness>, Fault> {
-    let Some(at) = material.get("pbrMetallicRoughness") else { return Ok(None) };
-    let factor = |key| Ok::<f64, Fault>(at.number(key)?.unwrap_or(1.0).clamp(0.0, 1.0));
-    let [r, g, b, _] = at.numbers::<4>("baseColorFactor")?.unwrap_or([1.0; 4]);
-    let base = DVec3::new(r, g, b).clamp(DVec3::ZERO, DVec3::ONE);
-    Ok(Some(MetallicRoughness { base, metallic: factor("metallicFactor")?, roughness: factor("roughnessFactor")? }))
-}
-
-fn short(at: LocatedValue<'_>) -> Fault {
-    at.expected("as many rows as positions")
-}
-
-/// A table per vertex as a table per corner; none unless there is an entry for each of `count` vertices.
-fn per_corner<T, const N: usize>(
-    triangles: &[[u32; 3]],
-    table: &[[f64; N]],
-    count: usize,
-    entry: impl Fn(&[f64; N]) -> T,
-) -> Option<Vec<[T; 3]>> {
-    let corner = |vertex: u32| entry(&table[vertex as usize]);
-    (table.len() == count).then(|| triangles.iter().map(|triangle| triangle.map(corner)).collect())
-}
-
-/// Where a node stands in its parent.
-fn placement(node: LocatedValue<'_>) -> Result<DAffine3, Fault> {
-    if let Some(matrix) = node.numbers::<16>("matrix")? {
-        let matrix = DMat4::from_cols_array(&matrix);
-        if matrix.row(3) != DVec4::W {
-            return Err(node.need("matrix")?.expected("an affine matrix"));
-        }
-        return Ok(DAffine3::from_mat4(matrix));
-    }
-    let translation = node.numbers("translation")?.map_or(DVec3::ZERO, DVec3::from_array);
-    let scale = node.numbers("scale")?.map_or(DVec3::ONE, DVec3::from_array);
-    let rotation = node.numbers::<4>("rotation")?.map_or(DQuat::IDENTITY, DQuat::from_array);
-    let length = rotation.length();
-    if !(length > 0.0 && length.is_finite()) {
-        return Err(node.need("rotation")?.expected("a unit quaternion"));
-    }
-    Ok(DAffine3::from_scale_rotation_translation(scale, rotation / length, translation))
 }

@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 use serde_json::{Value, json};
 
 /// A file with one buffer in itself and the rest as given.
-fn file(binary: &[u8], rest: Value) -> Vec<u8> {
+pub(super) fn file(binary: &[u8], rest: Value) -> Vec<u8> {
     let uri = format!("data:application/octet-stream;base64,{}", base64::encode(binary));
     let mut document = json!({
         "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": [0] }], "nodes": [{ "mesh": 0 }],
@@ -24,12 +24,12 @@ fn file(binary: &[u8], rest: Value) -> Vec<u8> {
     document.to_string().into_bytes()
 }
 
-fn floats(values: &[f32]) -> Vec<u8> {
+pub(super) fn floats(values: &[f32]) -> Vec<u8> {
     values.iter().flat_map(|value| value.to_le_bytes()).collect()
 }
 
 /// Three corners of a triangle.
-fn triangle() -> Vec<u8> {
+pub(super) fn triangle() -> Vec<u8> {
     floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0])
 }
 

@@ -1,4 +1,4 @@
-//! A mesh as a glTF file.
+//! Meshes and their places as a glTF file.
 
 use std::collections::HashMap;
 
@@ -6,7 +6,9 @@ use glam::{DVec2, DVec3};
 use serde_json::{Value, json};
 
 use super::super::groups::{Grouped, MetallicRoughness, has_groups, name_of};
-use super::super::{Fault, FaultLocation, Mesh, MeshProblem};
+use super::super::{Fault, FaultLocation, Mesh, MeshPlaces, MeshProblem, RepeatedMesh};
+use super::nodes::INSTANCING;
+use super::written_nodes::{Tables, WrittenNodes};
 use super::{BINARY_CHUNK, JSON_CHUNK, MAGIC, base64};
 
 /// Types of components.
@@ -20,8 +22,8 @@ const INDICES: u32 = 34963;
 ///
 /// # Errors
 /// If a coordinate is too large for single precision.
-pub fn print_text(grouped: &Grouped) -> Result<Vec<u8>, Fault> {
-    let (mut document, binary) = document(grouped)?;
+pub fn print_text(content: &Written<'_>) -> Result<Vec<u8>, Fault> {
+    let (mut document, binary) = document(content)?;
     let uri = format!("data:application/octet-stream;base64,{}", base64::encode(&binary));
     document["buffers"][0]["uri"] = Value::from(uri);
     Ok(format!("{document:#}\n").into_bytes())
@@ -31,8 +33,8 @@ pub fn print_text(grouped: &Grouped) -> Result<Vec<u8>, Fault> {
 ///
 /// # Errors
 /// If a coordinate is too large for single precision, or the file would be too long.
-pub fn print_binary(grouped: &Grouped) -> Result<Vec<u8>, Fault> {
-    let (document, mut binary) = document(grouped)?;
+pub fn print_binary(content: &Written<'_>) -> Result<Vec<u8>, Fault> {
+    let (document, mut binary) = document(content)?;
     let mut json = document.to_string().into_bytes();
     json.resize(json.len().next_multiple_of(4), b' ');
     binary.resize(binary.len().next_multiple_of(4), 0);
@@ -59,62 +61,51 @@ pub fn print_binary(grouped: &Grouped) -> Result<Vec<u8>, Fault> {
     Ok(bytes)
 }
 
+/// What is written.
+pub struct Written<'w> {
+    /// What stands where it is.
+    pub alone: &'w Grouped,
+    /// Meshes that are placed.
+    pub repeated: &'w [RepeatedMesh],
+    /// Where.
+    pub places: &'w MeshPlaces,
+}
+
 /// What is different at a corner: position, normal and parameters, in single precision.
 type Corner = ([u32; 3], [u32; 3], [u32; 2]);
 
 /// The document without its buffer, and the buffer.
-fn document(grouped: &Grouped) -> Result<(Value, Vec<u8>), Fault> {
-    let Grouped { mesh, names, materials: looks } = grouped;
-    for (vertex, position) in mesh.vertices.iter().enumerate() {
-        if let Some(&value) = position.to_array().iter().find(|value| !(**value as f32).is_finite()) {
-            return Err(FaultLocation::Vertex(vertex).fault(MeshProblem::Range { value }));
-        }
+fn document(content: &Written<'_>) -> Result<(Value, Vec<u8>), Fault> {
+    let Written { alone, repeated, places } = content;
+    let mut file = File::default();
+    let mut nodes = WrittenNodes::default();
+    if !alone.mesh.triangles.is_empty() {
+        let mesh = file.mesh(alone, "")?;
+        nodes.push(json!({ "mesh": mesh }));
     }
-    let (corners, indices) = corners(mesh);
-    let count = corners.len();
-    let mut file = File { binary: Vec::new(), views: Vec::new(), accessors: Vec::new() };
-    let view = file.view(corners.iter().flat_map(|corner| corner.0), VERTICES);
-    let position = file.accessor(view, 0, "VEC3", F32, count);
-    let (low, high) = range(&corners);
-    (file.accessors[position]["min"], file.accessors[position]["max"]) = (json!(low), json!(high));
-    let mut attributes = json!({ "POSITION": position });
-    if !mesh.corner_normals.is_empty() {
-        let view = file.view(corners.iter().flat_map(|corner| corner.1), VERTICES);
-        attributes["NORMAL"] = json!(file.accessor(view, 0, "VEC3", F32, count));
+    let mut numbers = Vec::with_capacity(repeated.len());
+    for RepeatedMesh { name, grouped } in *repeated {
+        numbers.push(match grouped.mesh.triangles.is_empty() {
+            true => None,
+            false => Some(file.mesh(grouped, name)?),
+        });
     }
-    if !mesh.corner_parameters.is_empty() {
-        let view = file.view(corners.iter().flat_map(|corner| corner.2), VERTICES);
-        attributes["TEXCOORD_0"] = json!(file.accessor(view, 0, "VEC2", F32, count));
-    }
-    // The triangles of a surface stand together; within it they keep their order.
-    let mut order: Vec<usize> = (0..indices.len()).collect();
-    let surface = |triangle: &usize| mesh.surfaces.get(*triangle).copied().unwrap_or(0);
-    order.sort_by_key(surface);
-    let view = file.view(order.iter().flat_map(|triangle| indices[*triangle]), INDICES);
-    let (mut primitives, mut materials, mut first) = (Vec::new(), Vec::new(), 0);
-    for part in order.chunk_by(|a, b| surface(a) == surface(b)) {
-        let indices = file.accessor(view, 12 * first, "SCALAR", U32, 3 * part.len());
-        let mut primitive = json!({ "attributes": attributes, "indices": indices, "mode": 4 });
-        if has_groups(mesh, names) {
-            primitive["material"] = json!(materials.len());
-            let surface = surface(&part[0]);
-            let look = looks.get(surface as usize).copied().flatten();
-            materials.push(material(&name_of(names, surface), look));
-        }
-        primitives.push(primitive);
-        first += part.len();
+    nodes.place(&mut file, places, &numbers)?;
+    if file.meshes.is_empty() {
+        return Err(FaultLocation::Mesh.fault(MeshProblem::NoTriangles));
     }
     let mut document = json!({
         "asset": { "version": "2.0", "generator": "PERIS" },
-        "scene": 0, "scenes": [{ "nodes": [0] }], "nodes": [{ "mesh": 0 }],
-        "meshes": [{ "primitives": primitives }],
+        "scene": 0, "scenes": [{ "nodes": nodes.roots }], "nodes": nodes.all,
+        "meshes": file.meshes,
         "accessors": file.accessors, "bufferViews": file.views, "buffers": [{ "byteLength": file.binary.len() }],
     });
-    if !materials.is_empty() {
-        document["materials"] = Value::from(materials);
+    if !file.materials.is_empty() {
+        document["materials"] = Value::from(file.materials);
     }
-    if mesh.triangles.is_empty() {
-        return Err(FaultLocation::Mesh.fault(MeshProblem::NoTriangles));
+    if nodes.uses_extension {
+        // Without it there would be one where many are.
+        (document["extensionsUsed"], document["extensionsRequired"]) = (json!([INSTANCING]), json!([INSTANCING]));
     }
     Ok((document, file.binary))
 }
@@ -169,19 +160,75 @@ fn range(corners: &[Corner]) -> ([f32; 3], [f32; 3]) {
 }
 
 /// A file in the making.
+#[derive(Default)]
 struct File {
     binary: Vec<u8>,
     views: Vec<Value>,
     accessors: Vec<Value>,
+    meshes: Vec<Value>,
+    materials: Vec<Value>,
 }
 
 impl File {
+    /// Adds a mesh; returns its number.
+    fn mesh(&mut self, grouped: &Grouped, called: &str) -> Result<usize, Fault> {
+        let Grouped { mesh, names, materials: looks } = grouped;
+        for (vertex, position) in mesh.vertices.iter().enumerate() {
+            if let Some(&value) = position.to_array().iter().find(|value| !(**value as f32).is_finite()) {
+                return Err(FaultLocation::Vertex(vertex).fault(MeshProblem::Range { value }));
+            }
+        }
+        let (corners, indices) = corners(mesh);
+        let count = corners.len();
+        let view = self.view(corners.iter().flat_map(|corner| corner.0), Some(VERTICES));
+        let position = self.accessor(view, 0, "VEC3", F32, count);
+        let (low, high) = range(&corners);
+        (self.accessors[position]["min"], self.accessors[position]["max"]) = (json!(low), json!(high));
+        let mut attributes = json!({ "POSITION": position });
+        if !mesh.corner_normals.is_empty() {
+            let view = self.view(corners.iter().flat_map(|corner| corner.1), Some(VERTICES));
+            attributes["NORMAL"] = json!(self.accessor(view, 0, "VEC3", F32, count));
+        }
+        if !mesh.corner_parameters.is_empty() {
+            let view = self.view(corners.iter().flat_map(|corner| corner.2), Some(VERTICES));
+            attributes["TEXCOORD_0"] = json!(self.accessor(view, 0, "VEC2", F32, count));
+        }
+        // The triangles of a surface stand together; within it they keep their order.
+        let mut order: Vec<usize> = (0..indices.len()).collect();
+        let surface = |triangle: &usize| mesh.surfaces.get(*triangle).copied().unwrap_or(0);
+        order.sort_by_key(surface);
+        let view = self.view(order.iter().flat_map(|triangle| indices[*triangle]), Some(INDICES));
+        let (mut primitives, mut first) = (Vec::new(), 0);
+        for part in order.chunk_by(|a, b| surface(a) == surface(b)) {
+            let indices = self.accessor(view, 12 * first, "SCALAR", U32, 3 * part.len());
+            let mut primitive = json!({ "attributes": attributes, "indices": indices, "mode": 4 });
+            if has_groups(mesh, names) {
+                primitive["material"] = json!(self.materials.len());
+                let surface = surface(&part[0]);
+                let look = looks.get(surface as usize).copied().flatten();
+                self.materials.push(material(&name_of(names, surface), look));
+            }
+            primitives.push(primitive);
+            first += part.len();
+        }
+        let mut mesh = json!({ "primitives": primitives });
+        if !called.is_empty() {
+            mesh["name"] = json!(called);
+        }
+        self.meshes.push(mesh);
+        Ok(self.meshes.len() - 1)
+    }
+
     /// Adds a table of words of four bytes; returns the number of its view.
-    fn view(&mut self, words: impl Iterator<Item = u32>, target: u32) -> usize {
+    fn view(&mut self, words: impl Iterator<Item = u32>, target: Option<u32>) -> usize {
         let begin = self.binary.len();
         words.for_each(|word| self.binary.extend_from_slice(&word.to_le_bytes()));
         let length = self.binary.len() - begin;
-        self.views.push(json!({ "buffer": 0, "byteOffset": begin, "byteLength": length, "target": target }));
+        let mut view = json!({ "buffer": 0, "byteOffset": begin, "byteLength": length });
+        if let Some(target) = target {
+            view["target"] = json!(target);
+        }
+        self.views.push(view);
         self.views.len() - 1
     }
 
@@ -190,5 +237,13 @@ impl File {
             "bufferView": view, "byteOffset": offset, "componentType": component, "count": count, "type": kind,
         }));
         self.accessors.len() - 1
+    }
+}
+
+impl Tables for File {
+    fn table<const N: usize>(&mut self, rows: impl ExactSizeIterator<Item = [f32; N]>) -> usize {
+        let count = rows.len();
+        let view = self.view(rows.flat_map(|row| row.map(f32::to_bits)), None);
+        self.accessor(view, 0, if N == 4 { "VEC4" } else { "VEC3" }, F32, count)
     }
 }

@@ -32,6 +32,9 @@ pub trait CellInstances: fmt::Debug + Send + Sync {
 
     /// How often each prototype is placed on the whole, in any unit.
     fn shares(&self) -> &[f64];
+
+    /// Adds all that tells where instances are to a checksum.
+    fn add_to_checksum(&self, sum: &mut crc32fast::Hasher);
 }
 
 /// Square cells side by side in the plane y = 0.

@@ -54,6 +54,13 @@ impl Prototype {
         Prototype { content, bounds, sphere, levels }
     }
 
+    /// Adds its placements to a checksum; a surface has none.
+    pub fn add_to_checksum(&self, sum: &mut crc32fast::Hasher) {
+        if let Content::Instances(instances) = &self.content {
+            instances.add_to_checksum(sum);
+        }
+    }
+
     /// How many triangles it is made of, each as often as it is placed.
     fn triangles(&self) -> u64 {
         match &self.content {
@@ -223,6 +230,20 @@ impl InstanceOctree {
             placed.variation = placed.variation.wrapping_add(variation);
         }
         placed
+    }
+
+    /// Adds all placements to a checksum, those within prototypes too: as they are kept, or how they come to be.
+    pub fn add_to_checksum(&self, sum: &mut crc32fast::Hasher) {
+        for (_, Instance { prototype, variation, placement }) in self.stored_instances() {
+            [prototype, variation].iter().for_each(|number| sum.update(&number.to_le_bytes()));
+            placement.to_cols_array().iter().for_each(|number| sum.update(&number.to_le_bytes()));
+        }
+        match &self.arrangement {
+            Arrangement::Stored(_) => {}
+            Arrangement::Parts(parts) => parts.source.add_to_checksum(sum),
+            Arrangement::Cells(cells) => cells.source.add_to_checksum(sum),
+        }
+        self.prototypes.iter().for_each(|prototype| prototype.add_to_checksum(sum));
     }
 
     /// What it costs by now, without the instances that its prototypes may be made of.

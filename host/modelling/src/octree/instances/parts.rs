@@ -30,12 +30,15 @@ pub trait InstanceParts: fmt::Debug + Send + Sync {
 
     /// How often each prototype is placed on the whole, in any unit.
     fn shares(&self) -> &[f64];
+
+    /// Adds all that tells where instances are to a checksum.
+    fn add_to_checksum(&self, sum: &mut crc32fast::Hasher);
 }
 
 /// Parts, and an index over their boxes.
 #[derive(Clone, Debug)]
 pub(super) struct PartsOnDemand {
-    source: Arc<dyn InstanceParts>,
+    pub(super) source: Arc<dyn InstanceParts>,
     form: PlacementForm,
     /// The boxes of the parts, as instances that stand where they are.
     pub(super) above: StoredInstances,

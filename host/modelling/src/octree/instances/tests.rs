@@ -360,6 +360,10 @@ impl InstanceParts for Rows {
     fn shares(&self) -> &[f64] {
         &[1.0]
     }
+
+    fn add_to_checksum(&self, sum: &mut crc32fast::Hasher) {
+        sum.update(format!("{self:?}").as_bytes());
+    }
 }
 
 #[test]
@@ -433,6 +437,10 @@ impl CellInstances for Tufts {
 
     fn shares(&self) -> &[f64] {
         &[1.0]
+    }
+
+    fn add_to_checksum(&self, sum: &mut crc32fast::Hasher) {
+        sum.update(format!("{self:?}").as_bytes());
     }
 }
 

@@ -158,4 +158,8 @@ impl CellInstances for ScatterCells {
     fn shares(&self) -> &[f64] {
         &self.standing.shares
     }
+
+    fn add_to_checksum(&self, sum: &mut crc32fast::Hasher) {
+        sum.update(format!("{self:?}").as_bytes());
+    }
 }

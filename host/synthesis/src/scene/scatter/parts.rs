@@ -116,6 +116,12 @@ impl InstanceParts for ScatterParts {
     fn shares(&self) -> &[f64] {
         &self.standing.shares
     }
+
+    fn add_to_checksum(&self, sum: &mut crc32fast::Hasher) {
+        sum.update(format!("{:?} {:?}", self.standing, self.instances).as_bytes());
+        let points = self.surface.corners.iter().chain(&self.surface.normals).flatten();
+        points.flat_map(|point| point.to_array()).for_each(|x| sum.update(&x.to_le_bytes()));
+    }
 }
 
 /// A surface whose triangles are divided until none has more than the `parts`-th part of the area, neighbours one after

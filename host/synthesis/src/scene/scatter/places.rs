@@ -30,6 +30,8 @@ pub(in crate::scene) struct FoundPlaces {
     height: [f64; 2],
     /// Their numbers.
     found: Vec<u64>,
+    /// How many there should be.
+    pub(in crate::scene) asked: usize,
 }
 
 impl FoundPlaces {
@@ -49,7 +51,8 @@ impl FoundPlaces {
         let standing = Standing::new(scatter);
         let count = if surface.areas.is_empty() || standing.places_nothing() { 0 } else { *count };
         let (density, slope, height) = (density.clone(), *slope, *height);
-        let mut places = FoundPlaces { standing, surface, density, slope, height, found: Vec::new() };
+        let mut places =
+            FoundPlaces { standing, surface, density, slope, height, found: Vec::new(), asked: scatter.count };
         places.find(count, *distance)?;
         Ok(places)
     }
