@@ -13,15 +13,17 @@ use glam::DMat4;
 /// Bytes of a triangle of a mesh: corners, normals, numbers, and half a vertex.
 const BYTES: u64 = 140;
 
-/// The places of some instances.
-pub(super) enum Places<'a> {
+/// The places of some instances, found by their numbers: none is stored but what the scene stores itself.
+pub enum Places<'a> {
+    /// Told one by one.
     Listed(&'a [Instance]),
+    /// Drawn by chance; each is drawn anew when it is asked for.
     Scattered(ScatteredPlaces<'a>),
 }
 
 impl Places<'_> {
     /// How many there are.
-    pub(super) fn count(&self) -> usize {
+    pub fn count(&self) -> usize {
         match self {
             Places::Listed(all) => all.len(),
             Places::Scattered(places) => places.count(),
@@ -32,7 +34,7 @@ impl Places<'_> {
     ///
     /// # Panics
     /// If there is none of this number.
-    pub(super) fn instance(&self, number: usize) -> Instance {
+    pub fn instance(&self, number: usize) -> Instance {
         match self {
             Places::Listed(all) => all[number],
             Places::Scattered(places) => places.instance(number),
@@ -51,12 +53,12 @@ impl Places<'_> {
 impl Instances {
     /// Where they are.
     ///
-    /// - `scene_tolerance`, `angle`: as those of [`GeometrySettings`](super::GeometrySettings), for a surface that has
-    ///   them.
+    /// - `scene_tolerance`, `angle`: those of [`GeometrySettings`](super::GeometrySettings), for a surface that has
+    ///   them; the first divided by how much longer the instances may become where they are placed.
     ///
     /// # Errors
     /// [`ShapeError`], if a surface that has them cannot be tessellated, or for too little memory.
-    pub(super) fn places(&self, scene_tolerance: Option<f64>, angle: f64) -> Result<Places<'_>, ShapeError> {
+    pub fn places(&self, scene_tolerance: Option<f64>, angle: f64) -> Result<Places<'_>, ShapeError> {
         Ok(match &self.placing {
             Placing::Listed(list) => Places::Listed(&list.0),
             Placing::Scattered(scatter) => Places::Scattered(ScatteredPlaces::new(scatter, scene_tolerance, angle)?),
@@ -64,7 +66,7 @@ impl Instances {
     }
 
     /// An upper bound of how much any placement lengthens; 1 without any.
-    pub(super) fn largest_stretch(&self) -> f64 {
+    pub fn largest_stretch(&self) -> f64 {
         match &self.placing {
             Placing::Listed(list) => {
                 let of = |instance: &Instance| largest_stretch(&DMat4::from(instance.placement));

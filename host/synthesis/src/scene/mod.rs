@@ -38,6 +38,7 @@ mod studio;
 pub use acceleration::{Acceleration, AccelerationKey, SceneOctree};
 pub use cage::{Cage, Sharp, Sharpening};
 pub use error::{AccelerationError, SceneError, ShapeError};
+pub use instances::Places;
 pub use motion::{Displacement, Motion};
 pub use object::{
     Composite, Instances, MAX_NESTING, Object, Operation, PlacementList, Placing, RoundedSolid, Scatter, Shape,
@@ -46,6 +47,7 @@ pub use object_intersection::{ObjectIntersection, object_intersections};
 pub use origins::{ScriptPosition, ShapeOrigins};
 pub use piercing::SurfacePoint;
 pub use prepared::{Contents, Prepared, PreparedObject};
+pub use scatter::ScatteredPlaces;
 pub use sculpture::{Sculpture, SculptureError, SurfaceSheet};
 pub use settings::{
     Caustics, GeometrySettings, ImageSettings, LightSettings, MAX_PHOTONS, MAX_REFLECTION_DEPTH, MAX_SAMPLES,
@@ -53,6 +55,7 @@ pub use settings::{
 };
 pub use shape_mesh::ShapeMesh;
 pub use solid::PrimitiveSolid;
+pub use stretch::largest_stretch;
 pub use studio::Studio;
 pub use texture_footprint::{Footprint, footprint};
 pub use view::{Camera, Lens, Parallel, Projection, View};

@@ -23,7 +23,7 @@ const NUMBER_BYTES: u64 = 8;
 const NEIGHBOUR_BYTES: u64 = 64;
 
 /// The places of instances by chance.
-pub(super) struct ScatteredPlaces<'a> {
+pub struct ScatteredPlaces<'a> {
     scatter: &'a Scatter,
     /// The surface, in coordinates of the instances.
     corners: Vec<[DVec3; 3]>,

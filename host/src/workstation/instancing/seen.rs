@@ -1,0 +1,81 @@
+//! How large something is on the screen before dials turn the scene.
+
+use crate::workstation::InitialView;
+use glam::DVec3;
+
+/// What is out of the picture counts as so many times smaller: dials may bring it in.
+const OUTSIDE: f64 = 64.0;
+/// The largest size: what the eye is in.
+const LARGEST: f64 = 1e3;
+
+/// The screen as the initial view shows it.
+pub(super) struct SeenFrom {
+    from: DVec3,
+    /// To the right, up and forward.
+    axes: [DVec3; 3],
+    /// Half the side of the screen in scene units: at a depth of 1, or at any depth of a parallel view.
+    half: f64,
+    is_parallel: bool,
+}
+
+impl SeenFrom {
+    pub(super) fn new(initial: &InitialView) -> SeenFrom {
+        let camera = &initial.camera;
+        let half = camera.parallel.map_or(camera.half_tangent(), |parallel| parallel.height / 2.0);
+        SeenFrom {
+            from: camera.from,
+            axes: initial.picture_axes(),
+            half: half * initial.elongation,
+            is_parallel: camera.parallel.is_some(),
+        }
+    }
+
+    /// The eye.
+    pub(super) fn eye(&self) -> DVec3 {
+        self.from
+    }
+
+    /// The radius of a ball on the screen, in halves of its side; a 64th of that for what is out of the picture. An
+    /// oblique view is taken as if it were none.
+    pub(super) fn size(&self, center: DVec3, radius: f64) -> f64 {
+        let [x, y, depth] = self.axes.map(|axis| axis.dot(center - self.from));
+        let aside = x.abs().max(y.abs());
+        let (size, is_in) = if self.is_parallel {
+            (radius / self.half, aside - radius <= self.half)
+        } else {
+            let reach = radius * (1.0 + self.half * self.half).sqrt();
+            let is_in = depth + radius > 0.0 && aside - reach <= depth.max(0.0) * self.half;
+            // Whatever is behind the eye is as far as it is.
+            let distance = if is_in { depth } else { center.distance(self.from) };
+            (radius / (distance.max(radius / LARGEST) * self.half), is_in)
+        };
+        let size = if size.is_finite() { size.min(LARGEST) } else { 0.0 };
+        if is_in { size } else { size / OUTSIDE }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Camera, Parallel};
+    use glam::DVec2;
+
+    #[test]
+    fn sizes_fall_with_depth_and_what_is_outside_counts_less() {
+        let bounds = crate::numeric::bounds::Bounds::of([DVec3::splat(-1.0), DVec3::splat(1.0)]);
+        let camera = Camera { from: DVec3::Z * 10.0, at: DVec3::ZERO, field_of_view: 90.0, ..Camera::framing(&bounds) };
+        let initial = InitialView { camera, center: DVec3::ZERO, elongation: 2.0 };
+        let seen = SeenFrom::new(&initial);
+        assert!((seen.size(DVec3::ZERO, 1.0) - 0.05).abs() < 1e-12);
+        assert!((seen.size(DVec3::Z * -10.0, 1.0) - 0.025).abs() < 1e-12);
+        assert!((seen.size(DVec3::Y * 19.9, 1.0) - 0.05).abs() < 1e-12, "the screen is square");
+        let aside = seen.size(DVec3::Y * 40.0, 1.0);
+        assert!((aside * 64.0 - 0.5 / 1700.0_f64.sqrt()).abs() < 1e-12, "as far as it is");
+        assert!((seen.size(DVec3::Z * 20.0, 1.0) - 0.05 / 64.0).abs() < 1e-12, "behind the eye");
+        assert!(seen.size(DVec3::Z * 10.0, 1.0) == LARGEST, "around the eye");
+        let parallel = Some(Parallel { height: 4.0, oblique: DVec2::ZERO });
+        let initial = InitialView { camera: Camera { parallel, ..camera }, elongation: 1.0, ..initial };
+        let seen = SeenFrom::new(&initial);
+        assert_eq!([0.0, -50.0].map(|z| seen.size(DVec3::Z * z, 1.0)), [0.5; 2]);
+    }
+}
