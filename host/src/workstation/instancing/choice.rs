@@ -3,9 +3,12 @@
 //! # Method
 //! The vectors that something deserves grow with its size on the screen. One length tells them all: what is larger is drawn
 //! in full, what is down to a quarter of it coarse, down to a quarter of that as outlines, then as strokes, and the rest
-//! is left out. The length is the least with which everything together fits. Ours.
+//! is left out. The length is the least with which everything together fits. Where the screen is full of lines already,
+//! those of larger instances, an instance is drawn by as many steps coarser as it is too full: a wood of a thousand trees
+//! behind each other would be one patch of light. Ours.
 
 use super::super::structure_commands::DETAILS;
+use super::ink::Ink;
 use super::placed::PlacedObject;
 use super::seen::SeenFrom;
 use rayon::prelude::*;
@@ -16,13 +19,15 @@ pub(super) const STEP: f64 = 4.0;
 /// Instances that a thread looks at in one go.
 const CHUNK: usize = 1 << 14;
 /// Halvings of the range in which the length is sought.
-const HALVINGS: usize = 60;
+const HALVINGS: usize = 40;
 
 /// An instance that may be drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Candidate {
     /// On the screen, as [`SeenFrom::size`] tells it.
     pub(super) size: f32,
+    /// Where on the screen, -1 to 1; none for what is out of the picture.
+    pub(super) at: Option<[f32; 2]>,
     /// Number of the object whose instances it is of, among those that have any.
     pub(super) object: u32,
     /// Its number there.
@@ -50,8 +55,8 @@ pub(super) fn largest(most: usize, objects: &[PlacedObject<'_>], seen: &SeenFrom
             let instance = placed.places.instance(number);
             let prototype = placed.prototypes.get(usize::from(instance.prototype))?;
             let (center, radius) = prototype.ball_at(&(placed.transform * instance.placement));
-            let size = seen.size(center, radius) as f32;
-            Some(Candidate { size, object, number: number as u32, prototype: instance.prototype })
+            let (size, at) = seen.size(center, radius);
+            Some(Candidate { size: size as f32, at, object, number: number as u32, prototype: instance.prototype })
         };
         let chunks = (0..count.div_ceil(CHUNK)).into_par_iter();
         let of_threads = chunks.fold(Vec::new, |mut kept: Vec<Candidate>, chunk| {
@@ -82,32 +87,55 @@ fn keep(candidates: &mut Vec<Candidate>, most: usize, limit: usize) {
     }
 }
 
-/// How large what is drawn in full is at the least, such that all together are drawn by no more vectors than `most`.
-///
-/// - `lines`: vectors of a candidate in each step of detail, no more in any than in the one before.
-pub(super) fn least_size(candidates: &[Candidate], most: usize, lines: impl Fn(&Candidate) -> [usize; DETAILS]) -> f64 {
-    let lines: Vec<(f64, [usize; DETAILS])> =
-        candidates.iter().map(|candidate| (candidate.size.into(), lines(candidate))).collect();
-    let fits = |least: f64| {
-        let of = |(size, lines): &(f64, [usize; DETAILS])| step(*size, least).map_or(0, |step| lines[step]);
-        lines.iter().map(of).sum::<usize>() <= most
-    };
-    if fits(0.0) {
-        return 0.0;
-    }
-    let (mut low, mut high) = (1e-12_f64, 1e12_f64);
-    for _ in 0..HALVINGS {
-        let middle = (low * high).sqrt();
-        if fits(middle) { high = middle } else { low = middle }
-    }
-    high
+/// What it costs to draw a candidate in each step of detail, no more in any than in the one before.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct DrawingCost {
+    /// Vectors, or corners of polygons.
+    pub(super) lines: [usize; DETAILS],
+    /// Length of all vectors on the screen, in halves of its side; 0 for polygons, which hide each other.
+    pub(super) length: [f64; DETAILS],
 }
 
-/// The step of detail of a size on the screen, none for what is left out.
+/// The steps of detail in which candidates are drawn, none for those that are left out, such that all together are drawn
+/// by no more vectors than `most`.
 ///
-/// - `least`: of what is drawn in full.
-pub(super) fn step(size: f64, least: f64) -> Option<usize> {
-    (0..DETAILS).find(|step| size * STEP.powi(*step as i32) >= least)
+/// - `candidates`: the largest first. `costs`: of each.
+pub(super) fn steps(candidates: &[Candidate], costs: &[DrawingCost], most: usize) -> Vec<Option<usize>> {
+    let whole = steps_of(candidates, costs, 0.0);
+    if lines(&whole, costs) <= most {
+        return whole;
+    }
+    let (mut low, mut high, mut fitting) = (1e-9_f64, 1e9_f64, vec![None; candidates.len()]);
+    for _ in 0..HALVINGS {
+        let middle = (low * high).sqrt();
+        let found = steps_of(candidates, costs, middle);
+        if lines(&found, costs) <= most {
+            (high, fitting) = (middle, found);
+        } else {
+            low = middle;
+        }
+    }
+    fitting
+}
+
+fn lines(steps: &[Option<usize>], costs: &[DrawingCost]) -> usize {
+    steps.iter().zip(costs).filter_map(|(step, cost)| step.map(|step| cost.lines[step])).sum()
+}
+
+/// The steps of detail for one length.
+///
+/// - `least`: size of what is drawn in full.
+fn steps_of(candidates: &[Candidate], costs: &[DrawingCost], least: f64) -> Vec<Option<usize>> {
+    let mut ink = Ink::default();
+    let step = |(candidate, cost): (&Candidate, &DrawingCost)| {
+        let size = f64::from(candidate.size);
+        let deserved = (0..DETAILS).find(|step| size * STEP.powi(*step as i32) >= least)?;
+        let Some(at) = candidate.at else { return Some(deserved) };
+        let step = Some(deserved + ink.layers(at, size)).filter(|step| *step < DETAILS)?;
+        ink.add(at, size, cost.length[step]);
+        Some(step)
+    };
+    candidates.iter().zip(costs).map(step).collect()
 }
 
 #[cfg(test)]
@@ -115,23 +143,33 @@ mod tests {
     use super::*;
 
     fn of_size(number: u32, size: f32) -> Candidate {
-        Candidate { size, object: 0, number, prototype: 0 }
+        Candidate { size, at: None, object: 0, number, prototype: 0 }
     }
 
     #[test]
-    fn the_length_is_the_least_that_fits() {
+    fn as_much_is_drawn_as_fits_and_the_largest_in_most_detail() {
         let candidates: Vec<Candidate> = (0..1000).map(|k| of_size(k, 1.0 / (1.0 + k as f32))).collect();
-        let lines = |_: &Candidate| [100, 30, 8, 1];
-        let drawn = |least: f64| {
-            let steps = candidates.iter().filter_map(|candidate| step(candidate.size.into(), least));
-            steps.map(|step| [100, 30, 8, 1][step]).sum::<usize>()
-        };
-        assert_eq!(least_size(&candidates, 100_000, lines), 0.0, "all in full");
+        let costs = vec![DrawingCost { lines: [100, 30, 8, 1], length: [0.0; DETAILS] }; 1000];
+        assert!(steps(&candidates, &costs, 100_000).iter().all(|step| *step == Some(0)), "all in full");
         for most in [0, 1, 50, 100, 1_000, 5_000, 50_000, 99_999] {
-            let least = least_size(&candidates, most, lines);
-            assert!(drawn(least) <= most && drawn(least * (1.0 - 1e-6)) > most, "{most}: {}", drawn(least));
+            let steps = steps(&candidates, &costs, most);
+            let drawn = lines(&steps, &costs);
+            assert!(drawn <= most && drawn + 100 > most.min(99_901), "{drawn} of {most}");
+            let order = |step: &Option<usize>| step.unwrap_or(DETAILS);
+            assert!(steps.is_sorted_by_key(order), "{most}");
         }
-        assert_eq!([1.0, 0.3, 0.25, 0.02, 0.01].map(|size| step(size, 1.0)), [Some(0), Some(1), Some(1), Some(3), None]);
+        let sizes = [1.0, 0.3, 0.25, 0.02, 0.01].map(|size| of_size(0, size));
+        assert_eq!(steps_of(&sizes, &costs, 1.0), [Some(0), Some(1), Some(1), Some(3), None]);
+    }
+
+    #[test]
+    fn where_the_screen_is_full_the_smaller_are_coarser_or_left_out() {
+        let here = |number: u32, at: f32| Candidate { at: Some([at, 0.0]), ..of_size(number, 0.1) };
+        let crowd: Vec<Candidate> = (0..40).map(|k| here(k, 0.0)).chain([here(40, 0.7)]).collect();
+        let costs = vec![DrawingCost { lines: [50, 20, 8, 1], length: [2.0, 1.0, 0.5, 0.1] }; 41];
+        let steps = steps(&crowd, &costs, 100_000);
+        assert!(steps[0] == Some(0) && steps[40] == Some(0), "{steps:?}");
+        assert!(steps[..40].is_sorted_by_key(|step| step.unwrap_or(DETAILS)) && steps[39].is_none(), "{steps:?}");
     }
 
     #[test]

@@ -23,7 +23,7 @@ pub(super) const FULL: u16 = 4;
 const NESTED_PART: usize = 20;
 const NESTED_STEP: usize = 10;
 /// Instances inside of something are drawn rather than its outline, if they are at least this part of its size.
-const LARGE: f64 = 0.25;
+const LARGE: f64 = 0.125;
 /// Coarse triangles lie within this part of the diagonal at the least.
 const COARSE: f64 = 1.0 / 25.0;
 /// Triangles of a coarse mesh.
@@ -37,6 +37,8 @@ const SAMPLE: usize = 256;
 pub(super) struct DrawnGroup {
     /// Vectors, or corners of polygons, in each step of detail; no more in any than in the one before.
     pub(super) lines: [usize; DETAILS],
+    /// Length of all vectors in each step of detail, as a part of the radius; 0 for polygons.
+    pub(super) length: [f64; DETAILS],
     /// What varies from instance to instance.
     pub(super) variation: Variation,
     /// What is drawn of the instances in it: for each object that places some, for each prototype.
@@ -87,20 +89,21 @@ impl DetailBuilder<'_> {
             nested.push(all);
         }
         let variation = Variation::of(prototype);
-        let mut drawn = DrawnGroup { lines: [0; DETAILS], variation, nested };
+        let mut drawn = DrawnGroup { lines: [0; DETAILS], length: [0.0; DETAILS], variation, nested };
         let mut structures: [String; DETAILS] = std::array::from_fn(|step| format!("{}_{step}", prototype.name));
         for step in 0..DETAILS {
             let before = out.commands.len();
             let points = out.points;
-            let lines = self.step(prototype, &drawn, step, size, eye, &structures[step], out)?;
+            let (lines, length) = self.step(prototype, &drawn, step, size, eye, &structures[step], out)?;
             if step > 0 && lines >= drawn.lines[step - 1] {
                 // It would be no simpler.
                 out.commands.truncate(before);
                 out.points = points;
-                drawn.lines[step] = drawn.lines[step - 1];
+                (drawn.lines[step], drawn.length[step]) = (drawn.lines[step - 1], drawn.length[step - 1]);
                 structures[step] = structures[step - 1].clone();
             } else {
                 drawn.lines[step] = lines;
+                drawn.length[step] = length / radius.max(f64::MIN_POSITIVE);
             }
         }
         out.begin(&prototype.name);
@@ -112,7 +115,7 @@ impl DetailBuilder<'_> {
         Ok(drawn)
     }
 
-    /// Defines the structure of one step of detail; its vectors.
+    /// Defines the structure of one step of detail; its vectors, and their length.
     #[expect(clippy::too_many_arguments, reason = "what is drawn, how, and where to")]
     fn step(
         &self,
@@ -123,14 +126,15 @@ impl DetailBuilder<'_> {
         eye: DVec3,
         structure: &str,
         out: &mut StructureCommands,
-    ) -> Result<usize, WorkstationError> {
+    ) -> Result<(usize, f64), WorkstationError> {
         let shows_nested = step < 2 || is_bundle(prototype);
         let made = match (step < 2, shows_nested) {
             (true, _) => self.objects(prototype, step, size, eye, out)?,
             (false, true) => Vec::new(),
             (false, false) => self.simplest(prototype, step, out)?,
         };
-        let mut lines = made.iter().map(|(_, lines)| lines).sum();
+        let mut lines: usize = made.iter().map(|part| lines(&part.data)).sum();
+        let mut length: f64 = made.iter().map(|part| self::length(&part.data)).sum();
         out.begin(structure);
         drawn.variation.first(made, out);
         if shows_nested {
@@ -145,14 +149,16 @@ impl DetailBuilder<'_> {
                     let (inner, placement) = placed.instance(number);
                     all[usize::from(instance.prototype)].variation.set(instance.variation, out);
                     out.operate_on(&inner.name, matrix(&placement));
+                    let drawn = &all[usize::from(instance.prototype)];
+                    length += drawn.length[thinned.step] * inner.ball_at(&placement).1;
                 }
             }
         }
         out.end();
-        Ok(lines)
+        Ok((lines, length))
     }
 
-    /// Its own objects, in full or coarse, and the vectors of each part.
+    /// Its own objects, in full or coarse.
     fn objects(
         &self,
         prototype: &PlacedGroup<'_>,
@@ -160,7 +166,7 @@ impl DetailBuilder<'_> {
         size: f64,
         eye: DVec3,
         out: &mut StructureCommands,
-    ) -> Result<Vec<(MaterialPart, usize)>, WorkstationError> {
+    ) -> Result<Vec<MaterialPart>, WorkstationError> {
         // As far off on the screen as that of an object which fills it.
         let full = self.drawing.tolerance / size.clamp(1e-6, 1.0);
         let part = if step == 0 { full } else { (full * STEP).max(COARSE) }.min(COARSEST);
@@ -173,14 +179,10 @@ impl DetailBuilder<'_> {
                 most_triangles: (step > 0).then_some(COARSE_TRIANGLES),
             };
             let surfaces = format!("{ROOT}_A_{}_{step}_{}", &prototype.name[ROOT.len() + 1..], k + 1);
-            let (mut sent, mut all) = (StructureCommands::default(), Vec::new());
-            for part in parts(object, &surfaces, &fineness, self.drawing, &mut sent)? {
-                let lines = lines(&part.data);
-                all.push((part, lines));
-            }
+            let mut sent = StructureCommands::default();
+            made.append(&mut parts(object, &surfaces, &fineness, self.drawing, &mut sent)?);
             out.commands.append(&mut sent.commands);
             out.points += sent.points;
-            made.append(&mut all);
         }
         Ok(made)
     }
@@ -191,7 +193,7 @@ impl DetailBuilder<'_> {
         prototype: &PlacedGroup<'_>,
         step: usize,
         out: &mut StructureCommands,
-    ) -> Result<Vec<(MaterialPart, usize)>, WorkstationError> {
+    ) -> Result<Vec<MaterialPart>, WorkstationError> {
         let failed = |e: String| WorkstationError::Scene(format!("{}: {e}", prototype.name));
         let [first, second] = outlines(&prototype.form);
         let data = if self.drawing.facets {
@@ -208,8 +210,7 @@ impl DetailBuilder<'_> {
             out.points += sent.points;
             Node::VectorList(list)
         };
-        let lines = lines(&data);
-        Ok(vec![(MaterialPart { material: prototype.material.clone(), data }, lines)])
+        Ok(vec![MaterialPart { material: prototype.material.clone(), data }])
     }
 
     /// The instances inside of something that are drawn in one step of detail of that: all in the finest step that their
@@ -274,6 +275,14 @@ fn lines(data: &Node) -> usize {
         Node::Polygons(polygons) => polygons.iter().map(|polygon| polygon.vertices.len()).sum(),
         _ => 0,
     }
+}
+
+/// Length of the vectors of a list.
+fn length(data: &Node) -> f64 {
+    let Node::VectorList(list) = data else { return 0.0 };
+    let point = |k: usize| DVec3::from_array([0, 1, 2].map(|axis| f64::from(list.points[k][axis])));
+    let drawn = (1..list.points.len()).filter(|k| list.lines[*k]);
+    drawn.map(|k| point(k).distance(point(k - 1))).sum()
 }
 
 /// A tolerance that is a part of an object's diagonal.

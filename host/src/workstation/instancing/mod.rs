@@ -8,6 +8,7 @@
 mod seen;
 mod outline;
 mod placed;
+mod ink;
 mod choice;
 mod variation;
 mod detail;
@@ -18,7 +19,7 @@ mod tests;
 use super::structure_commands::{DrawnInstances, StructureCommands};
 use super::{Drawing, InitialView, WorkstationError};
 use crate::scene::Scene;
-use choice::{Candidate, largest, least_size, step};
+use choice::{Candidate, DrawingCost, largest, steps};
 use detail::{DetailBuilder, DrawnGroup, FULL, matrix};
 use placed::PlacedObject;
 use protocol::command::{Command, Operate};
@@ -26,6 +27,8 @@ use seen::SeenFrom;
 
 /// The level of detail at the root, with which all is drawn as it was chosen.
 pub(super) const CHOSEN_LEVEL: u16 = FULL;
+/// How long lines in all directions appear, as a part of their lengths.
+const FORESHORTENED: f64 = std::f64::consts::FRAC_PI_4;
 /// Instances have this part of all vectors even where other objects take them all.
 const LEAST_PART: usize = 4;
 
@@ -69,7 +72,7 @@ pub(super) fn instances(
     let mut all: Vec<Vec<Option<DrawnGroup>>> =
         objects.iter().map(|placed| placed.prototypes.iter().map(|_| None).collect()).collect();
     // The first that places something is the largest.
-    for Candidate { size, object, number, prototype } in &candidates {
+    for Candidate { size, object, number, prototype, .. } in &candidates {
         let drawn = &mut all[*object as usize][usize::from(*prototype)];
         if drawn.is_none() {
             let (prototype, placement) = objects[*object as usize].instance(*number as usize);
@@ -77,16 +80,22 @@ pub(super) fn instances(
             *drawn = Some(builder.draw(prototype, (*size).into(), eye, out)?);
         }
     }
-    let lines = |candidate: &Candidate| {
+    let cost = |candidate: &Candidate| {
         let drawn = &all[candidate.object as usize][usize::from(candidate.prototype)];
-        drawn.as_ref().map_or([0; _], |drawn| drawn.lines)
+        drawn.as_ref().map_or(DrawingCost::default(), |drawn| DrawingCost {
+            lines: drawn.lines,
+            length: drawn.length.map(|length| length * f64::from(candidate.size) * FORESHORTENED),
+        })
     };
-    let least = least_size(&candidates, most, lines);
+    let costs: Vec<DrawingCost> = candidates.iter().map(cost).collect();
+    let steps = steps(&candidates, &costs, most);
+    let mut order: Vec<(usize, &Candidate)> =
+        candidates.iter().zip(&steps).filter_map(|(candidate, step)| Some(((*step)?, candidate))).collect();
+    order.sort_by_key(|(step, _)| *step);
     let count = objects.iter().map(|placed| placed.places.count() as u64).sum();
     let mut sums = DrawnInstances { count, ..DrawnInstances::default() };
     let mut nodes: Vec<(StructureCommands, usize)> = objects.iter().map(|_| Default::default()).collect();
-    for candidate in &candidates {
-        let Some(step) = step(candidate.size.into(), least) else { break };
+    for (step, candidate) in order {
         let placed = &objects[candidate.object as usize];
         let Some(drawn) = &all[candidate.object as usize][usize::from(candidate.prototype)] else { continue };
         let (out, at) = &mut nodes[candidate.object as usize];
@@ -94,9 +103,9 @@ pub(super) fn instances(
             out.operate(None, Operate::IncrementLevelOfDetail);
             *at += 1;
         }
-        let (prototype, placement) = placed.instance(candidate.number as usize);
+        let (group, placement) = placed.instance(candidate.number as usize);
         drawn.variation.set(placed.places.instance(candidate.number as usize).variation, out);
-        out.operate_on(&prototype.name, matrix(&placement));
+        out.operate_on(&group.name, matrix(&placement));
         sums.drawn[step] += 1;
         sums.lines += drawn.lines[step];
     }

@@ -35,22 +35,24 @@ impl SeenFrom {
         self.from
     }
 
-    /// The radius of a ball on the screen, in halves of its side; a 64th of that for what is out of the picture. An
-    /// oblique view is taken as if it were none.
-    pub(super) fn size(&self, center: DVec3, radius: f64) -> f64 {
+    /// The radius of a ball on the screen, in halves of its side, and its middle there, -1 to 1; a 64th of that and no
+    /// place for what is out of the picture. An oblique view is taken as if it were none.
+    pub(super) fn size(&self, center: DVec3, radius: f64) -> (f64, Option<[f32; 2]>) {
         let [x, y, depth] = self.axes.map(|axis| axis.dot(center - self.from));
         let aside = x.abs().max(y.abs());
+        let mut scale = 1.0 / self.half;
         let (size, is_in) = if self.is_parallel {
-            (radius / self.half, aside - radius <= self.half)
+            (radius * scale, aside - radius <= self.half)
         } else {
             let reach = radius * (1.0 + self.half * self.half).sqrt();
             let is_in = depth + radius > 0.0 && aside - reach <= depth.max(0.0) * self.half;
             // Whatever is behind the eye is as far as it is.
             let distance = if is_in { depth } else { center.distance(self.from) };
-            (radius / (distance.max(radius / LARGEST) * self.half), is_in)
+            scale /= distance.max(radius / LARGEST);
+            (radius * scale, is_in)
         };
         let size = if size.is_finite() { size.min(LARGEST) } else { 0.0 };
-        if is_in { size } else { size / OUTSIDE }
+        if is_in { (size, Some([x, y].map(|side| (side * scale) as f32))) } else { (size / OUTSIDE, None) }
     }
 }
 
@@ -66,16 +68,17 @@ mod tests {
         let camera = Camera { from: DVec3::Z * 10.0, at: DVec3::ZERO, field_of_view: 90.0, ..Camera::framing(&bounds) };
         let initial = InitialView { camera, center: DVec3::ZERO, elongation: 2.0 };
         let seen = SeenFrom::new(&initial);
-        assert!((seen.size(DVec3::ZERO, 1.0) - 0.05).abs() < 1e-12);
-        assert!((seen.size(DVec3::Z * -10.0, 1.0) - 0.025).abs() < 1e-12);
-        assert!((seen.size(DVec3::Y * 19.9, 1.0) - 0.05).abs() < 1e-12, "the screen is square");
-        let aside = seen.size(DVec3::Y * 40.0, 1.0);
-        assert!((aside * 64.0 - 0.5 / 1700.0_f64.sqrt()).abs() < 1e-12, "as far as it is");
-        assert!((seen.size(DVec3::Z * 20.0, 1.0) - 0.05 / 64.0).abs() < 1e-12, "behind the eye");
-        assert!(seen.size(DVec3::Z * 10.0, 1.0) == LARGEST, "around the eye");
+        let (size, at) = seen.size(DVec3::new(5.0, -10.0, 0.0), 1.0);
+        assert!((size - 0.05).abs() < 1e-12 && at == Some([0.25, -0.5]));
+        assert!((seen.size(DVec3::Z * -10.0, 1.0).0 - 0.025).abs() < 1e-12);
+        assert!((seen.size(DVec3::Y * 19.9, 1.0).0 - 0.05).abs() < 1e-12, "the screen is square");
+        let (aside, nowhere) = seen.size(DVec3::Y * 40.0, 1.0);
+        assert!((aside * 64.0 - 0.5 / 1700.0_f64.sqrt()).abs() < 1e-12 && nowhere.is_none(), "as far as it is");
+        assert!((seen.size(DVec3::Z * 20.0, 1.0).0 - 0.05 / 64.0).abs() < 1e-12, "behind the eye");
+        assert!((seen.size(DVec3::Z * 10.0, 1.0).0 - LARGEST / 2.0).abs() < 1e-9, "around the eye");
         let parallel = Some(Parallel { height: 4.0, oblique: DVec2::ZERO });
         let initial = InitialView { camera: Camera { parallel, ..camera }, elongation: 1.0, ..initial };
         let seen = SeenFrom::new(&initial);
-        assert_eq!([0.0, -50.0].map(|z| seen.size(DVec3::Z * z, 1.0)), [0.5; 2]);
+        assert_eq!([0.0, -50.0].map(|z| seen.size(DVec3::Z * z, 1.0).0), [0.5; 2]);
     }
 }

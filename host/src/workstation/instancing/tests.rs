@@ -79,9 +79,9 @@ fn drawn(shown: &StructureCommands) -> usize {
     walk(&structures, super::super::ROOT, 0)
 }
 
-/// A row of balls.
+/// A row of balls that are far from each other.
 fn balls(count: usize) -> String {
-    format!("let all = []; for k in 0..{count} {{ all.push([0.1 * k - 5, 0, 0]); }} instances(sphere(1), all);")
+    format!("let all = []; for k in 0..{count} {{ all.push([0.1 * k - 5, 0, 0]); }} instances(sphere(0.001), all);")
 }
 
 #[test]

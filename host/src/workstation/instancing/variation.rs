@@ -26,9 +26,9 @@ impl Variation {
     }
 
     /// Adds the parts of a prototype: first those that have the color of the instance.
-    pub(super) fn first(&self, mut parts: Vec<(MaterialPart, usize)>, out: &mut StructureCommands) {
-        parts.sort_by_key(|(part, _)| self.0.as_ref() != Some(&part.material));
-        for (part, _) in parts {
+    pub(super) fn first(&self, mut parts: Vec<MaterialPart>, out: &mut StructureCommands) {
+        parts.sort_by_key(|part| self.0.as_ref() != Some(&part.material));
+        for part in parts {
             if self.0.as_ref() != Some(&part.material) {
                 let [hue, saturation] = facets::hue_saturation(facets::main_color(&part.material));
                 out.operate(None, Operate::SetColor { hue, saturation });
