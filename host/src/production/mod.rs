@@ -17,7 +17,8 @@ use crate::{
     render::{RenderError, RenderOrder, Watch, World, radiosity::Radiosity, tiles::Tiling},
     scene::{Camera, Interreflection, Prepared, Projection, Scene, View},
     workstation::{
-        DrawnInstances, Drawing, InitialView, Session, StructureCommands, WorkstationError, network, raster, structure, tiles,
+        Drawing, DrawnInstances, InitialView, Session, StructureCommands, WorkstationError, network, raster, structure,
+        tiles,
     },
 };
 use glam::{DMat4, DVec3};

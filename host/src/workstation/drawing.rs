@@ -37,13 +37,7 @@ pub enum DrawnEdges {
 
 impl Default for Drawing {
     fn default() -> Drawing {
-        Drawing {
-            lines: DrawnEdges::Grid,
-            crease_degrees: 25.0,
-            tolerance: 1.0 / 400.0,
-            facets: false,
-            most: None,
-        }
+        Drawing { lines: DrawnEdges::Grid, crease_degrees: 25.0, tolerance: 1.0 / 400.0, facets: false, most: None }
     }
 }
 

@@ -3,9 +3,9 @@
 //! # Method
 //! The vectors that something deserves grow with its size on the screen. One length tells them all: what is larger is drawn
 //! in full, what is down to a quarter of it coarse, down to a quarter of that as outlines, then as strokes, and the rest
-//! is left out. The length is the least with which everything together fits. Where the screen is full of lines already,
-//! those of larger instances, an instance is drawn by as many steps coarser as it is too full: a wood of a thousand trees
-//! behind each other would be one patch of light. Ours.
+//! is left out. The length is the least with which everything together fits. What does not fit in full is not crowded,
+//! either: where the screen is full of lines of larger instances, an instance is drawn by as many steps coarser as it is
+//! too full. A wood of a thousand trees behind each other would be one patch of light. Ours.
 
 use super::super::structure_commands::DETAILS;
 use super::ink::Ink;
@@ -97,11 +97,11 @@ pub(super) struct DrawingCost {
 }
 
 /// The steps of detail in which candidates are drawn, none for those that are left out, such that all together are drawn
-/// by no more vectors than `most`.
+/// by no more vectors than `most`: all in full, if these are no more.
 ///
 /// - `candidates`: the largest first. `costs`: of each.
 pub(super) fn steps(candidates: &[Candidate], costs: &[DrawingCost], most: usize) -> Vec<Option<usize>> {
-    let whole = steps_of(candidates, costs, 0.0);
+    let whole = vec![Some(0); candidates.len()];
     if lines(&whole, costs) <= most {
         return whole;
     }
@@ -167,7 +167,7 @@ mod tests {
         let here = |number: u32, at: f32| Candidate { at: Some([at, 0.0]), ..of_size(number, 0.1) };
         let crowd: Vec<Candidate> = (0..40).map(|k| here(k, 0.0)).chain([here(40, 0.7)]).collect();
         let costs = vec![DrawingCost { lines: [50, 20, 8, 1], length: [2.0, 1.0, 0.5, 0.1] }; 41];
-        let steps = steps(&crowd, &costs, 100_000);
+        let steps = steps(&crowd, &costs, 2_000);
         assert!(steps[0] == Some(0) && steps[40] == Some(0), "{steps:?}");
         assert!(steps[..40].is_sorted_by_key(|step| step.unwrap_or(DETAILS)) && steps[39].is_none(), "{steps:?}");
     }

@@ -94,7 +94,12 @@ impl DetailBuilder<'_> {
         for step in 0..DETAILS {
             let before = out.commands.len();
             let points = out.points;
-            let (lines, length) = self.step(prototype, &drawn, step, size, eye, &structures[step], out)?;
+            let (lines, length) = match self.step(prototype, &drawn, step, size, eye, &structures[step], out) {
+                Ok(made) => made,
+                // What is too coarse to be made is not drawn so.
+                Err(_) if step > 0 => (usize::MAX, 0.0),
+                Err(error) => return Err(error),
+            };
             if step > 0 && lines >= drawn.lines[step - 1] {
                 // It would be no simpler.
                 out.commands.truncate(before);

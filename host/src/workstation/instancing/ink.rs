@@ -6,6 +6,11 @@ const CELLS: usize = 48;
 /// coarser: lines of an ordinary width cover a sixth of it then.
 const LAYER: f64 = 45.0;
 
+/// Area of a cell, in the square of half the side of the screen.
+const CELL_AREA: f64 = (2.0 / CELLS as f64) * (2.0 / CELLS as f64);
+/// Half the side of the square inside of a circle, as a part of its radius.
+const INSIDE: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
 /// Lengths of lines in the cells of the screen.
 pub(super) struct Ink(Vec<f64>);
 
@@ -20,27 +25,27 @@ impl Ink {
     ///
     /// - `at`: its middle, -1 to 1. `size`: its radius.
     pub(super) fn layers(&self, at: [f32; 2], size: f64) -> usize {
-        let cells = Ink::cells(at, size);
-        let (sum, count) = cells.fold((0.0, 0), |(sum, count), cell| (sum + self.0[cell], count + 1));
-        let side = 2.0 / CELLS as f64;
-        (sum / (f64::from(count.max(1)) * side * side) / LAYER) as usize
+        let (sum, count) = Ink::cells(at, size).fold((0.0, 0), |(sum, count), cell| (sum + self.0[cell], count + 1));
+        (sum / (f64::from(count) * CELL_AREA) / LAYER) as usize
     }
 
-    /// Draws lines of a length, evenly where something is.
+    /// Draws lines of a length evenly where something is, as far as that is on the screen.
     pub(super) fn add(&mut self, at: [f32; 2], size: f64, length: f64) {
-        let count = Ink::cells(at, size).count().max(1) as f64;
-        Ink::cells(at, size).for_each(|cell| self.0[cell] += length / count);
+        let count = Ink::cells(at, size).count() as f64;
+        let seen = (count * CELL_AREA / (2.0 * INSIDE * size).powi(2)).min(1.0);
+        Ink::cells(at, size).for_each(|cell| self.0[cell] += length * seen / count);
     }
 
     /// The cells of the screen that a square covers.
     fn cells(at: [f32; 2], size: f64) -> impl Iterator<Item = usize> {
-        let cell = |place: f64| ((place + 1.0) / 2.0 * CELLS as f64).floor().clamp(-1.0, CELLS as f64) as isize;
+        let cell = |place: f64| ((place + 1.0) / 2.0 * CELLS as f64).clamp(0.0, CELLS as f64 - 1.0) as usize;
         let [columns, rows] = at.map(|middle| {
-            // Half of the circle's square, so that neighbours that touch do not count.
-            let [first, last] = [-0.7, 0.7].map(|side| cell(f64::from(middle) + side * size));
-            first.max(0)..=last.min(CELLS as isize - 1)
+            // What has its middle outside is drawn at the border.
+            let middle = f64::from(middle).clamp(-1.0, 1.0);
+            // The square inside of the circle, so that neighbours that touch do not count.
+            cell(middle - INSIDE * size)..=cell(middle + INSIDE * size)
         });
-        rows.flat_map(move |row| columns.clone().map(move |column| row as usize * CELLS + column as usize))
+        rows.flat_map(move |row| columns.clone().map(move |column| row * CELLS + column))
     }
 }
 
@@ -55,7 +60,9 @@ mod tests {
         // It covers eight cells each way.
         ink.add([0.0, 0.0], 0.2, (8.0 / 24.0_f64).powi(2) * 2.5 * LAYER);
         assert_eq!(ink.layers([0.0, 0.0], 0.2), 2);
-        assert_eq!([[0.5, 0.0], [0.0, -0.5], [3.0, 0.0]].map(|at| ink.layers(at, 0.1)), [0; 3]);
+        assert_eq!([[0.5, 0.0], [0.0, -0.5]].map(|at| ink.layers(at, 0.1)), [0; 2]);
+        ink.add([1.1, 0.0], 0.1, 0.1 * LAYER);
+        assert!(ink.layers([1.05, 0.0], 0.1) > 0 && ink.layers([0.7, 0.0], 0.1) == 0);
         ink.add([5.0, f32::NAN], 1e9, 1.0);
     }
 }

@@ -18,6 +18,7 @@ mod tests;
 
 use super::structure_commands::{DrawnInstances, StructureCommands};
 use super::{Drawing, InitialView, WorkstationError};
+use crate::memory;
 use crate::scene::Scene;
 use choice::{Candidate, DrawingCost, largest, steps};
 use detail::{DetailBuilder, DrawnGroup, FULL, matrix};
@@ -29,6 +30,10 @@ use seen::SeenFrom;
 pub(super) const CHOSEN_LEVEL: u16 = FULL;
 /// How long lines in all directions appear, as a part of their lengths.
 const FORESHORTENED: f64 = std::f64::consts::FRAC_PI_4;
+/// So many times more instances are looked at more closely than there are vectors: many stand where others are.
+const CANDIDATES: usize = 4;
+/// Bytes of the nodes of an instance until they are sent.
+const NODE_BYTES: u64 = 1024;
 /// Instances have this part of all vectors even where other objects take them all.
 const LEAST_PART: usize = 4;
 
@@ -46,7 +51,7 @@ pub(super) struct ShownInstances {
 /// - `others`: vectors of other objects. `out`: gets the structures.
 ///
 /// # Errors
-/// [`WorkstationError::Scene`], if something cannot be tessellated.
+/// [`WorkstationError::Scene`], if something cannot be tessellated, or for too little memory.
 pub(super) fn instances(
     scene: &Scene,
     initial: &InitialView,
@@ -67,7 +72,11 @@ pub(super) fn instances(
     }
     let seen = SeenFrom::new(initial);
     let most = drawing.most().saturating_sub(others).max(drawing.most() / LEAST_PART);
-    let candidates = largest(most, &objects, &seen);
+    let candidates = largest(most.saturating_mul(CANDIDATES), &objects, &seen);
+    memory::reserve(candidates.len().min(most) as u64 * NODE_BYTES, || {
+        format!("showing {} instances", candidates.len())
+    })
+    .map_err(|error| WorkstationError::Scene(error.to_string()))?;
     let builder = DetailBuilder { drawing, geometry };
     let mut all: Vec<Vec<Option<DrawnGroup>>> =
         objects.iter().map(|placed| placed.prototypes.iter().map(|_| None).collect()).collect();

@@ -128,7 +128,7 @@ mod tests {
             let top = outline.iter().filter(|corner| corner.y > 2.9).count();
             assert_eq!(top, 1, "{outline:?}");
         }
-        assert_eq!(closed(&[first.clone()]).lines(), first.len());
+        assert_eq!(closed(std::slice::from_ref(&first)).lines(), first.len());
         let stroke = stroke(&far);
         assert!(stroke.points[0].distance(DVec3::ZERO) < 0.1 && stroke.points[1].distance(DVec3::Y * 3.0) < 0.1);
     }

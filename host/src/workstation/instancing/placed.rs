@@ -165,8 +165,12 @@ impl<'s> Whole<'s> {
 
 /// The corners of few triangles of an object, where it is placed.
 fn form_of(object: &Object) -> Result<Vec<DVec3>, ShapeError> {
-    let chord = object.shape.extent().map_or(f64::MAX, |extent| extent * FORM_TOLERANCE);
-    let mesh = object.shape.tessellate(Tolerance::new(chord, 180.0))?.mesh;
+    let within = |part: f64, angle: f64| {
+        let chord = object.shape.extent().map_or(f64::MAX, |extent| extent * part);
+        object.shape.tessellate(Tolerance::new(chord, angle))
+    };
+    // Not everything can be made coarsely.
+    let mesh = within(FORM_TOLERANCE, 180.0).or_else(|_| within(FORM_TOLERANCE / 20.0, 45.0))?.mesh;
     Ok(mesh.vertices.iter().map(|point| object.transform.transform_point3(*point)).collect())
 }
 

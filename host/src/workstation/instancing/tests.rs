@@ -18,8 +18,7 @@ fn scene(text: &str) -> Scene {
 /// What a scene becomes, seen from z.
 fn shown(text: &str, drawing: &Drawing) -> StructureCommands {
     let bounds = Bounds::of([DVec3::splat(-10.0), DVec3::splat(10.0)]);
-    let camera =
-        Camera { from: DVec3::Z * 30.0, at: DVec3::ZERO, field_of_view: 60.0, ..Camera::framing(&bounds) };
+    let camera = Camera { from: DVec3::Z * 30.0, at: DVec3::ZERO, field_of_view: 60.0, ..Camera::framing(&bounds) };
     let initial = InitialView { camera, center: DVec3::ZERO, elongation: 1.0 };
     structure::commands(&scene(text), &initial, &bounds, drawing).expect("it is drawn")
 }
@@ -56,7 +55,8 @@ fn drawn(shown: &StructureCommands) -> usize {
         let mut sum = 0;
         for command in &structures[at] {
             let Command::Define { name, object } = command else { continue };
-            let below = |to: &Option<Name>, level: u16| to.as_ref().map_or(0, |to| walk(structures, to.as_str(), level));
+            let below =
+                |to: &Option<Name>, level: u16| to.as_ref().map_or(0, |to| walk(structures, to.as_str(), level));
             match object {
                 Node::BeginStructure => {
                     sum += walk(structures, &format!("{at}.{}", name.as_ref().expect("named")), level);
@@ -66,9 +66,8 @@ fn drawn(shown: &StructureCommands) -> usize {
                 Node::Operate { operate: Operate::SetLevelOfDetail(to), .. } => level = *to,
                 Node::Operate { operate: Operate::IncrementLevelOfDetail, .. } => level += 1,
                 Node::Operate { operate: Operate::IfLevelOfDetail { comparison, level: with }, applied_to } => {
-                    if comparison.holds(i32::from(level), i32::from(*with)) {
-                        sum += below(applied_to, level);
-                    }
+                    let admits = comparison.holds(i32::from(level), i32::from(*with));
+                    sum += if admits { below(applied_to, level) } else { 0 };
                 }
                 Node::Operate { applied_to, .. } => sum += below(applied_to, level),
                 _ => {}
