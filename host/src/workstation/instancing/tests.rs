@@ -175,3 +175,27 @@ fn a_surface_without_room_and_an_empty_list_of_places_draw_nothing() {
     assert_eq!(shown.instances, Some(DrawnInstances::default()));
     assert_eq!(shown.instances.expect("it has").describe(), "0 of 0 instances drawn");
 }
+
+#[test]
+fn a_varied_paint_has_its_color_at_each_instance_and_other_paints_have_theirs() {
+    let text = "let a = [cube(1).material([0, 1, 0]), cube(2).material(varied([1, 0, 0], [0, 0, 1]))];
+        instances(a, [#{ at: [0, 0, 0], variation: 0 }, #{ at: [2, 0, 0], variation: 1 }]);";
+    let shown = shown(text, &Drawing::default());
+    let (mut within, mut hues) = (String::new(), Vec::new());
+    for command in &shown.commands {
+        match command {
+            Command::Define { name: Some(name), object: Node::BeginStructure } => within = name.to_string(),
+            Command::Define { object: Node::Operate { operate: Operate::SetColor { hue, .. }, .. }, .. } => {
+                hues.push((within.clone(), *hue));
+            }
+            _ => {}
+        }
+    }
+    let of = |structure: &str| -> Vec<f64> {
+        hues.iter().filter(|(within, _)| within == structure).map(|(_, hue)| *hue).collect()
+    };
+    let mut at_instances = of("O1");
+    at_instances.sort_by(f64::total_cmp);
+    assert_eq!(at_instances, [0.0, 120.0], "blue and red");
+    assert_eq!(of("PERIS_I1_0"), [240.0], "green");
+}
