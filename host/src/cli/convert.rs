@@ -12,7 +12,7 @@ use crate::workstation::{Drawing, DrawnEdges, InitialView, structure};
 use clap::{Args, FromArgMatches};
 use files::Destination;
 use glam::{DAffine3, DVec3};
-use protocol::command::print;
+use protocol::command::{Command, Object as Node, print};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -136,11 +136,16 @@ fn commands(arguments: &Arguments) -> Result<(), CommandFailure> {
         text.push(b'\n');
     }
     destination.write_or_save_elsewhere(|file| file.write_all(&text))?;
-    let polygons = shown.points / 3;
+    let polygons = |command: &Command| match command {
+        Command::Define { object: Node::Polygons(polygons), .. } => polygons.len(),
+        _ => 0,
+    };
+    let polygons: usize = shown.commands.iter().map(polygons).sum();
     if *json {
         output::report(serde_json::json!({ "file": output, "polygons": polygons, "bytes": text.len() }));
     } else {
         say!("{}: {polygons} polygons, {} bytes", output.display(), text.len());
+        shown.instances.iter().for_each(|instances| say!("{}", instances.describe()));
     }
     Ok(())
 }

@@ -190,7 +190,7 @@ impl Job<'_> {
         self.note("host", json!({ "process": process }), format_args!("host: process {process}"));
         let session = Session::attach(&line, timeouts)?;
         let mut production = Production::begin(&self.scene, session, &Drawing::default())?;
-        let (prepared, Sent { lines, points, seconds }) = (production.prepared(), production.sent());
+        let (prepared, Sent { lines, points, seconds, .. }) = (production.prepared(), production.sent());
         warn_of_short_scatters(prepared);
         let (title, objects, triangles) = (self.title, prepared.objects.len(), prepared.triangles.len());
         let known = json!({ "objects": objects, "triangles": triangles, "vectors": lines, "points": points, "seconds": seconds });

@@ -5,6 +5,8 @@ use std::num::NonZeroUsize;
 
 /// Most threads that a command takes.
 const MAX_THREADS: usize = 1024;
+/// Most vectors of a picture that instances are thinned out to.
+const MAX_VECTORS: usize = 1_000_000;
 /// Least memory that a command may be given, bytes: less than its own code and stacks is no use.
 const LEAST_MEMORY: u64 = 64 << 20;
 
@@ -12,6 +14,12 @@ const LEAST_MEMORY: u64 = 64 << 20;
 pub(super) fn threads(text: &str) -> Result<NonZeroUsize, String> {
     let count = text.parse().ok().filter(|n: &NonZeroUsize| n.get() <= MAX_THREADS);
     count.ok_or_else(|| format!("give 1 to {MAX_THREADS}"))
+}
+
+/// Reads a number of vectors of a picture.
+pub(super) fn vectors(text: &str) -> Result<usize, String> {
+    let count = text.parse().ok().filter(|count| (1..=MAX_VECTORS).contains(count));
+    count.ok_or_else(|| format!("give 1 to {MAX_VECTORS}"))
 }
 
 /// Reads a number of bytes.

@@ -17,7 +17,8 @@ use crate::{
     render::{RenderError, RenderOrder, Watch, World, radiosity::Radiosity, tiles::Tiling},
     scene::{Camera, Interreflection, Prepared, Projection, Scene, View},
     workstation::{
-        Drawing, InitialView, Session, StructureCommands, WorkstationError, network, raster, structure, tiles,
+        Drawing, DrawnInstances, InitialView, Session, StructureCommands, WorkstationError, network, raster, structure,
+        tiles,
     },
 };
 use glam::{DMat4, DVec3};
@@ -89,8 +90,18 @@ pub struct Sent {
     pub lines: usize,
     /// Points sent: lines and moves.
     pub points: usize,
+    /// What is drawn of the instances, in a scene that has any.
+    pub instances: Option<DrawnInstances>,
     /// From when they were chosen until the workstation had them, seconds.
     pub seconds: f64,
+}
+
+impl Sent {
+    /// - `begun`: when it was chosen.
+    fn of(shown: &StructureCommands, begun: Instant) -> Sent {
+        let StructureCommands { lines, points, instances, .. } = *shown;
+        Sent { lines, points, instances, seconds: begun.elapsed().as_secs_f64() }
+    }
 }
 
 impl RenderedView {
@@ -121,7 +132,7 @@ impl Production {
             session.commands(&network::shading())?;
             session.synchronize()?;
         }
-        let sent = Sent { lines: shown.lines, points: shown.points, seconds: begun.elapsed().as_secs_f64() };
+        let sent = Sent::of(&shown, begun);
         let depth_clipping = shown.depth_clipping;
         Ok(Production { prepared: Arc::new(prepared), initial, session, depth_clipping, is_lit, sent, image: None })
     }
@@ -139,7 +150,7 @@ impl Production {
             // The node that shades was made anew.
             self.session.commands(&network::shading())?;
         }
-        self.sent = Sent { lines: shown.lines, points: shown.points, seconds: begun.elapsed().as_secs_f64() };
+        self.sent = Sent::of(&shown, begun);
         (self.prepared, self.initial, self.depth_clipping) = (Arc::new(prepared), initial, shown.depth_clipping);
         if keeps_dials { Ok(self.session.synchronize()?) } else { self.reset() }
     }
@@ -271,6 +282,9 @@ impl Production {
     /// [`ProductionError::Workstation`].
     pub fn reset(&mut self) -> Result<(), ProductionError> {
         self.session.commands(&network::reset())?;
+        if self.sent.instances.is_some() {
+            self.session.commands(&network::reset_detail())?;
+        }
         if self.is_lit {
             self.session.commands(&network::shade())?;
         }

@@ -71,9 +71,35 @@ pub fn polygons(
     Ok(groups)
 }
 
+/// Flat polygons of any number of corners, which are seen from both sides.
+///
+/// - `attributes`: the name of the ATTRIBUTES of all.
+///
+/// # Errors
+/// A corner is too far away for single precision.
+pub(super) fn flat_polygons(outlines: &[Vec<DVec3>], attributes: &str) -> Result<Vec<Polygon>, String> {
+    let mut polygons: Vec<Polygon> = Vec::new();
+    for outline in outlines.iter().filter(|outline| outline.len() > 2) {
+        let corners: Vec<[f32; 3]> = outline.iter().map(|corner| mirrored(*corner).as_vec3().to_array()).collect();
+        if let Some(far) = corners.iter().find(|corner| corner.iter().any(|c| !c.is_finite())) {
+            return Err(format!("the corner {far:?} is too far away for the workstation"));
+        }
+        let vertex = |position: [f32; 3]| PolygonVertex { soft: false, position, normal: None, color: None };
+        let vertices = corners.into_iter().map(vertex).collect();
+        let attributes = polygons.is_empty().then(|| name(attributes));
+        polygons.push(Polygon { attributes, outline: None, coplanar: false, vertices });
+    }
+    Ok(polygons)
+}
+
 /// The color by which a material is known, linear light: its body's, or without one that of what it reflects.
 pub fn main_color(material: &Material) -> RgbPower {
-    let MaterialPreview { diffuse, specular, mirror, .. } = material.preview();
+    main_color_of(material, None)
+}
+
+/// The color by which a material is known at an instance, linear light; the mean over all without a variation.
+pub(super) fn main_color_of(material: &Material, variation: Option<u16>) -> RgbPower {
+    let MaterialPreview { diffuse, specular, mirror, .. } = material.preview_of(variation);
     let body = diffuse + mirror;
     if body == RgbPower::ZERO { specular } else { body }
 }

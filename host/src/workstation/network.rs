@@ -1,6 +1,7 @@
 //! The function networks that PERIS sets up on the workstation: dials, keys and the way back of the view.
 
-use super::names::{ROOT, name};
+use super::instancing::CHOSEN_LEVEL;
+use super::names::{DETAIL, ROOT, name};
 use glam::DVec3;
 use protocol::{
     Value,
@@ -54,6 +55,12 @@ pub const KEYS: [(i32, &str, FunctionKey); 5] = [
 
 /// Labels over the dials.
 const DIAL_LABELS: [&str; 8] = ["ROT X", "ROT Y", "ROT Z", "SCALE", "TRAN X", "TRAN Y", "TRAN Z", ""];
+/// The dial that sets the level of detail of instances, and its label.
+const DETAIL_DIAL: (u16, &str) = (8, "DETAIL");
+/// Levels of detail that one turn of it changes.
+const LEVELS_PER_TURN: f64 = 4.0;
+/// The function that sums its turns.
+const DETAIL_SUM: &str = "PERIS_D";
 
 /// A small builder: names of ours are known to be legal.
 #[derive(Debug, Default)]
@@ -191,6 +198,29 @@ pub fn shading() -> Vec<Command> {
     build.connect("PERIS_SHOWN", 1, 1, "TURNONDISPLAY");
     build.commands.extend(shade());
     build.commands
+}
+
+/// The dial for the detail of instances, with its label: to the right there is more.
+pub fn detail() -> Vec<Command> {
+    let mut build = Build::default();
+    let (dial, label) = DETAIL_DIAL;
+    let chosen = f64::from(CHOSEN_LEVEL);
+    build.function(DETAIL_SUM, "ACCUMULATE");
+    build.send(Value::Real(-LEVELS_PER_TURN), 4, DETAIL_SUM);
+    build.send(Value::Real(2.0 * chosen), 5, DETAIL_SUM);
+    build.send(Value::Real(0.0), 6, DETAIL_SUM);
+    build.connect("DIALS", dial, 1, DETAIL_SUM);
+    build.function("PERIS_LEVEL", "ROUND");
+    build.connect(DETAIL_SUM, 1, 1, "PERIS_LEVEL");
+    build.connect("PERIS_LEVEL", 1, 1, &format!("{ROOT}.{DETAIL}"));
+    build.commands.extend(reset_detail());
+    build.send(Value::string(label), 1, &format!("DLABEL{dial}"));
+    build.commands
+}
+
+/// Draws instances as they were chosen, wherever their dial is.
+pub fn reset_detail() -> Vec<Command> {
+    vec![send(Value::Real(f64::from(CHOSEN_LEVEL)), 2, DETAIL_SUM), send(Value::Real(0.0), 1, DETAIL_SUM)]
 }
 
 /// Asks for a picture of the light of a solution.

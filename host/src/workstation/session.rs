@@ -1,6 +1,6 @@
 //! A session with a workstation over its host line.
 
-use super::{Timeouts, WorkstationError, network, structure};
+use super::{StructureCommands, Timeouts, WorkstationError, network, structure};
 use glam::DMat4;
 use protocol::{
     Value,
@@ -267,10 +267,13 @@ impl Session {
     ///
     /// # Errors
     /// [`WorkstationError`].
-    pub fn show(&mut self, shown: &structure::StructureCommands, movement: f64) -> Result<(), WorkstationError> {
+    pub fn show(&mut self, shown: &StructureCommands, movement: f64) -> Result<(), WorkstationError> {
         self.commands(&[structure::delete()])?;
         self.commands(&shown.commands)?;
         self.commands(&network::commands(movement))?;
+        if shown.instances.is_some() {
+            self.commands(&network::detail())?;
+        }
         self.synchronize()
     }
 
@@ -280,10 +283,13 @@ impl Session {
     ///
     /// # Errors
     /// [`WorkstationError`].
-    pub fn replace(&mut self, shown: &structure::StructureCommands, movement: f64) -> Result<(), WorkstationError> {
+    pub fn replace(&mut self, shown: &StructureCommands, movement: f64) -> Result<(), WorkstationError> {
         self.commands(&[Command::Begin, structure::delete_objects()])?;
         self.commands(&shown.commands)?;
         self.commands(&network::zero_dials(movement))?;
+        if shown.instances.is_some() {
+            self.commands(&network::detail())?;
+        }
         self.commands(&[Command::End])?;
         self.synchronize()
     }

@@ -50,6 +50,11 @@ pub(super) struct ShowArguments {
     /// Distance between curved surfaces and the lines sent, as a part of the object's diagonal
     #[arg(long, value_name = "PART", default_value_t = Drawing::default().tolerance, value_parser = crate::cli::values::part)]
     pub(super) tolerance: f64,
+    /// Vectors of the picture, or with --facets corners of its polygons, to which instances are thinned out: those that
+    /// are small in it are drawn coarsely, as outlines, as strokes, and then not at all. Other objects are drawn in full
+    /// [default: 40000, which the machine draws 30 times a second, and 200000 corners]
+    #[arg(long, value_name = "COUNT", value_parser = crate::cli::values::vectors)]
+    pub(super) most: Option<usize>,
     /// Opens no window, even if there is a display: operator commands from standard input do all
     #[arg(long, conflicts_with = "to")]
     pub(super) headless: bool,
@@ -69,6 +74,12 @@ pub(super) struct ShowArguments {
 impl ShowArguments {
     /// The lines that are sent, and how they are made.
     pub(super) fn drawing(&self) -> Drawing {
-        Drawing { lines: self.lines, crease_degrees: self.crease, tolerance: self.tolerance, facets: self.facets }
+        Drawing {
+            lines: self.lines,
+            crease_degrees: self.crease,
+            tolerance: self.tolerance,
+            facets: self.facets,
+            most: self.most,
+        }
     }
 }

@@ -12,7 +12,7 @@ use crate::{
     production::{Production, Sent},
     render::tiles::Tiling,
     script::Evaluated,
-    workstation::{Emulator, Session, Timeouts, network::KEYS},
+    workstation::{DrawnInstances, Emulator, Session, Timeouts, network::KEYS},
 };
 use arguments::ShowArguments;
 use clap::{Args, FromArgMatches};
@@ -97,18 +97,26 @@ fn start(arguments: &ShowArguments, timeouts: Timeouts) -> Result<Emulator, Comm
 
 /// Says what was sent.
 fn report(arguments: &ShowArguments, line: &Address, sent: Sent, light: Option<&Tiling>) {
-    let Sent { lines, points, seconds } = sent;
+    let Sent { lines, points, instances, seconds } = sent;
     let light = light.map(|light| (light.elements, light.tiles.len(), light.corners(), light.tolerance));
     if arguments.json {
         let light = light.map(|(elements, polygons, corners, tolerance)| {
             serde_json::json!({ "elements": elements, "polygons": polygons, "corners": corners, "tolerance": tolerance })
         });
         let line = line.to_string();
-        let known =
-            serde_json::json!({ "line": line, "vectors": lines, "points": points, "light": light, "seconds": seconds });
+        let instances = instances.map(|DrawnInstances { count, drawn, lines }| {
+            let [full, coarse, outlines, strokes] = drawn;
+            serde_json::json!({
+                "count": count, "full": full, "coarse": coarse, "outlines": outlines, "strokes": strokes, "vectors": lines,
+            })
+        });
+        let known = serde_json::json!({
+            "line": line, "vectors": lines, "points": points, "instances": instances, "light": light, "seconds": seconds,
+        });
         return say!("{known}");
     }
     say!("{lines} vectors ({points} points) shown on {line} after {seconds:.3} s");
+    instances.iter().for_each(|instances| say!("{}", instances.describe()));
     if let Some((elements, polygons, corners, tolerance)) = light {
         let steps = tolerance * 255.0;
         say!(

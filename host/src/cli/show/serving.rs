@@ -165,6 +165,7 @@ impl<'a> Server<'a> {
         let sent = self.production.sent();
         if !self.arguments.json {
             say!("{} vectors shown anew after {:.3} s", sent.lines, sent.seconds);
+            sent.instances.iter().for_each(|instances| say!("{}", instances.describe()));
         }
         Ok(())
     }

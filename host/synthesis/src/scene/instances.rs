@@ -10,8 +10,9 @@ use crate::octree::{
     Instance, InstanceError, InstanceOctree, MOST_INSTANCES, MOST_LEVELS, MOST_PROTOTYPES, PlacementForm, Prototype,
 };
 use crate::surface::Tolerance;
-use glam::{DAffine3, DMat4};
+use glam::{DAffine3, DMat4, DVec3};
 use std::fmt;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// So many instances of a surface or fewer are stored at once, more when rays come to them.
@@ -19,8 +20,11 @@ const MOST_AT_ONCE: usize = 1 << 16;
 /// Bytes of a triangle of a mesh: corners, normals, numbers, and half a vertex.
 const BYTES: u64 = 140;
 
-/// The places of some instances.
-pub(super) enum Places<'a> {
+/// The places of some instances, found by their numbers: none is stored but what the scene stores itself.
+pub struct Places<'a>(KnownPlaces<'a>);
+
+/// How places are known.
+enum KnownPlaces<'a> {
     Listed(&'a [Instance]),
     Found(FoundPlaces),
     Parts(ScatterParts),
@@ -50,29 +54,54 @@ impl Places<'_> {
     ///
     /// - `name`: of the object that they are.
     pub(super) fn short(&self, name: &str) -> Option<ShortScatter> {
-        let Places::Found(places) = self else { return None };
+        let KnownPlaces::Found(places) = &self.0 else { return None };
         let (found, asked) = (places.count(), places.asked);
         (found < asked).then(|| ShortScatter { object: name.to_owned(), found, asked })
     }
 
     /// How many there are, some of which may be missing.
-    pub(super) fn count(&self) -> usize {
-        match self {
-            Places::Listed(all) => all.len(),
-            Places::Found(places) => places.count(),
-            Places::Parts(parts) => parts.count_of_all(),
-            Places::Cells(cells) => cells.count_of_all(),
+    pub fn count(&self) -> usize {
+        match &self.0 {
+            KnownPlaces::Listed(all) => all.len(),
+            KnownPlaces::Found(places) => places.count(),
+            KnownPlaces::Parts(parts) => parts.count_of_all(),
+            KnownPlaces::Cells(cells) => cells.count_of_all(),
+        }
+    }
+
+    /// Whether the instance of a number is not missing.
+    pub fn has(&self, number: usize) -> bool {
+        match &self.0 {
+            KnownPlaces::Cells(cells) => cells.has(number),
+            _ => number < self.count(),
+        }
+    }
+
+    /// An instance by its number, as it would be if it is missing.
+    ///
+    /// # Panics
+    /// If the number is not below [`Places::count`].
+    pub fn instance(&self, number: usize) -> Instance {
+        match &self.0 {
+            KnownPlaces::Listed(all) => all[number],
+            KnownPlaces::Found(places) => places.instance(number),
+            KnownPlaces::Parts(parts) => parts.instance_of_all(number),
+            KnownPlaces::Cells(cells) => cells.instance_of_all(number),
         }
     }
 
     /// All instances, one after another.
-    pub(super) fn all(&self) -> impl Iterator<Item = Instance> + '_ {
-        (0..self.count()).filter_map(|number| match self {
-            Places::Listed(all) => Some(all[number]),
-            Places::Found(places) => Some(places.instance(number)),
-            Places::Parts(parts) => Some(parts.instance_of_all(number)),
-            Places::Cells(cells) => cells.instance_of_all(number),
-        })
+    pub fn all(&self) -> impl Iterator<Item = Instance> + '_ {
+        (0..self.count()).filter(|number| self.has(*number)).map(|number| self.instance(number))
+    }
+
+    /// The numbers of about so many instances about a point, all of those that are listed or were found one by one.
+    pub fn near(&self, at: DVec3, most: usize) -> Vec<Range<usize>> {
+        match &self.0 {
+            KnownPlaces::Parts(parts) => parts.near(at, most),
+            KnownPlaces::Cells(cells) => cells.near(at, most),
+            KnownPlaces::Listed(_) | KnownPlaces::Found(_) => vec![0..self.count()],
+        }
     }
 
     /// The octree over these instances.
@@ -81,19 +110,19 @@ impl Places<'_> {
     /// [`InstanceError`], for those that cannot be placed.
     pub(super) fn octree(self, prototypes: Vec<Prototype>) -> Result<InstanceOctree, InstanceError> {
         let count = self.count();
-        match self {
-            Places::Listed(all) => InstanceOctree::new(prototypes, PlacementForm::Affine, count, |n| all[n]),
-            Places::Found(places) => {
+        match self.0 {
+            KnownPlaces::Listed(all) => InstanceOctree::new(prototypes, PlacementForm::Affine, count, |n| all[n]),
+            KnownPlaces::Found(places) => {
                 InstanceOctree::new(prototypes, PlacementForm::Similar, count, |n| places.instance(n))
             }
-            Places::Parts(parts) if count <= MOST_AT_ONCE => {
+            KnownPlaces::Parts(parts) if count <= MOST_AT_ONCE => {
                 InstanceOctree::new(prototypes, PlacementForm::Similar, count, |n| parts.instance_of_all(n))
             }
-            Places::Parts(parts) => {
+            KnownPlaces::Parts(parts) => {
                 let parts = parts.placing(&prototypes);
                 InstanceOctree::on_demand(prototypes, PlacementForm::Similar, Arc::new(parts))
             }
-            Places::Cells(cells) => {
+            KnownPlaces::Cells(cells) => {
                 let placement = cells.to_instances();
                 let grid = cells.grid(&prototypes);
                 let octree = InstanceOctree::in_cells(prototypes, grid, Arc::new(cells))?;
@@ -110,24 +139,24 @@ impl Places<'_> {
 impl Instances {
     /// Where they are.
     ///
-    /// - `scene_tolerance`, `angle`: as those of [`GeometrySettings`](super::GeometrySettings), for a surface that has
-    ///   them.
+    /// - `scene_tolerance`, `angle`: those of [`GeometrySettings`](super::GeometrySettings), for a surface that has
+    ///   them; the first divided by how much longer the instances may become where they are placed.
     ///
     /// # Errors
     /// [`ShapeError`], if a surface that has them cannot be tessellated, or for too little memory.
-    pub(super) fn places(&self, scene_tolerance: Option<f64>, angle: f64) -> Result<Places<'_>, ShapeError> {
-        Ok(match &self.placing {
-            Placing::Listed(list) => Places::Listed(&list.0),
+    pub fn places(&self, scene_tolerance: Option<f64>, angle: f64) -> Result<Places<'_>, ShapeError> {
+        Ok(Places(match &self.placing {
+            Placing::Listed(list) => KnownPlaces::Listed(&list.0),
             Placing::Scattered(scatter) => match scatter.cell {
-                Some(side) => Places::Cells(ScatterCells::new(scatter, side, angle)?),
-                None if scatter.takes_all() => Places::Parts(ScatterParts::new(scatter, scene_tolerance, angle)?),
-                None => Places::Found(FoundPlaces::new(scatter, scene_tolerance, angle)?),
+                Some(side) => KnownPlaces::Cells(ScatterCells::new(scatter, side, angle)?),
+                None if scatter.takes_all() => KnownPlaces::Parts(ScatterParts::new(scatter, scene_tolerance, angle)?),
+                None => KnownPlaces::Found(FoundPlaces::new(scatter, scene_tolerance, angle)?),
             },
-        })
+        }))
     }
 
     /// An upper bound of how much any placement lengthens; 1 without any.
-    pub(super) fn largest_stretch(&self) -> f64 {
+    pub fn largest_stretch(&self) -> f64 {
         match &self.placing {
             Placing::Listed(list) => {
                 let of = |instance: &Instance| largest_stretch(&DMat4::from(instance.placement));

@@ -40,7 +40,7 @@ mod studio;
 pub use acceleration::{Acceleration, AccelerationKey, SceneOctree};
 pub use cage::{Cage, Sharp, Sharpening};
 pub use error::{AccelerationError, SceneError, ShapeError};
-pub use instances::ShortScatter;
+pub use instances::{Places, ShortScatter};
 pub use motion::{Displacement, Motion};
 pub use object::{
     Composite, Instances, MAX_NESTING, Object, Operation, PlacementList, Placing, RoundedSolid, Scatter, Shape,
@@ -56,6 +56,7 @@ pub use settings::{
 };
 pub use shape_mesh::ShapeMesh;
 pub use solid::PrimitiveSolid;
+pub use stretch::largest_stretch;
 pub use studio::Studio;
 pub use texture_footprint::{Footprint, footprint};
 pub use view::{Camera, Lens, Parallel, Projection, View};

@@ -262,7 +262,7 @@ impl Object {
     }
 
     /// It, with the material of the whole that it is part of if it has none.
-    pub(super) fn within(&self, whole: &Option<Material>) -> Cow<'_, Object> {
+    pub fn within(&self, whole: &Option<Material>) -> Cow<'_, Object> {
         match (self.own_material(), whole) {
             (None, Some(_)) => Cow::Owned(Object { material: whole.clone(), ..self.clone() }),
             _ => Cow::Borrowed(self),

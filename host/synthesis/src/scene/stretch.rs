@@ -12,7 +12,7 @@ pub(super) fn cofactors(m: &DMat3) -> DMat3 {
 
 /// An upper bound of how much a transformation lengthens: the root of the sum of its squared columns, but never more
 /// than the longest column when they are orthogonal.
-pub(super) fn largest_stretch(m: &DMat4) -> f64 {
+pub fn largest_stretch(m: &DMat4) -> f64 {
     let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(|c| c.truncate());
     let longest = x.length().max(y.length()).max(z.length());
     let skew = x.dot(y).abs().max(y.dot(z).abs()).max(z.dot(x).abs());

@@ -422,9 +422,16 @@ impl Material {
 
     /// Its looks in three bands, for displays that know no more of a material.
     pub fn preview(&self) -> MaterialPreview {
+        self.preview_of(None)
+    }
+
+    /// Its looks in three bands at an instance, or in the mean over all.
+    ///
+    /// - `variation`: by which instances of one kind differ.
+    pub fn preview_of(&self, variation: Option<u16>) -> MaterialPreview {
         let shine = |roughness: f64| (2.0 / roughness.max(1e-3).powi(2) - 2.0).clamp(1.0, Classic::MOST_EXPONENT);
         let black = MaterialPreview { diffuse: DVec3::ZERO, specular: DVec3::ZERO, exponent: 1.0, mirror: DVec3::ZERO };
-        let bands = |paint: &Paint| paint.mean_bands().clamp(DVec3::ZERO, DVec3::ONE);
+        let bands = |paint: &Paint| paint.mean_bands_of(variation).clamp(DVec3::ZERO, DVec3::ONE);
         match &self.body {
             MaterialKind::Classic(Classic { diffuse, specular, exponent, mirror, .. }) => {
                 let [diffuse, specular, mirror] = [diffuse, specular, mirror].map(bands);
@@ -451,7 +458,7 @@ impl Material {
                     },
                 }
             }
-            MaterialKind::Principled(principled) => principled.preview(),
+            MaterialKind::Principled(principled) => principled.preview(variation),
             MaterialKind::Transparent(Transparent { index, .. }) => {
                 MaterialPreview { mirror: DVec3::splat(normal_reflectance(index.at(550.0))), ..black }
             }

@@ -116,8 +116,8 @@ impl Principled {
         Ok(())
     }
 
-    pub(super) fn preview(&self) -> MaterialPreview {
-        let base = self.base_color.mean_bands().clamp(DVec3::ZERO, DVec3::ONE);
+    pub(super) fn preview(&self, variation: Option<u16>) -> MaterialPreview {
+        let base = self.base_color.mean_bands_of(variation).clamp(DVec3::ZERO, DVec3::ONE);
         let [metallic, transmission, specular] =
             [&self.metallic, &self.transmission, &self.specular].map(NumberTexture::mean);
         let opaque = (1.0 - metallic) * (1.0 - transmission);

@@ -236,12 +236,25 @@ impl Paint {
 
     /// Linear sRGB of its mean, as a reflectance under D65.
     pub fn mean_bands(&self) -> DVec3 {
+        self.mean_bands_of(None)
+    }
+
+    /// Linear sRGB of its mean over one instance, or over all, as a reflectance under D65.
+    ///
+    /// - `variation`: by which instances of one kind differ.
+    pub fn mean_bands_of(&self, variation: Option<u16>) -> DVec3 {
         match self {
             Paint::Plain(color) => color.bands_of_reflectance(),
             Paint::Pattern(pattern) => match pattern.motif.image() {
                 Some(image) => image.mean(),
                 None => {
-                    pattern.paints.iter().zip(pattern.motif.mean()).map(|(paint, part)| paint.mean_bands() * part).sum()
+                    let parts = match (&pattern.motif, variation) {
+                        (Motif::Varied { .. }, Some(variation)) => {
+                            pattern.parts(&TextureFootprint { variation, ..TextureFootprint::default() })
+                        }
+                        _ => pattern.motif.mean(),
+                    };
+                    pattern.paints.iter().zip(parts).map(|(paint, part)| paint.mean_bands_of(variation) * part).sum()
                 }
             },
         }

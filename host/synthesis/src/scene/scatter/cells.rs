@@ -8,6 +8,7 @@ use crate::illumination::texture::{NumberTexture, TextureFootprint};
 use crate::numeric::sampling::{RandomStream, mix};
 use crate::octree::{CellGrid, CellInstances, Instance, Prototype};
 use glam::{DAffine3, DMat3, DVec2, DVec3};
+use std::ops::Range;
 
 /// Sides of a ground that are as upright to each other as this make square cells.
 const UPRIGHT: f64 = 1e-9;
@@ -103,13 +104,38 @@ impl ScatterCells {
         (x * z).saturating_mul(self.count as usize)
     }
 
-    /// An instance by its number among all; none where density rules it out, or the ground ends.
-    pub(in crate::scene) fn instance_of_all(&self, number: usize) -> Option<Instance> {
-        let (cell, own) = (number / self.count as usize, (number % self.count as usize) as u32);
-        let cell = [cell / self.cells[1] as usize, cell % self.cells[1] as usize].map(|number| number as u32);
-        self.place(cell, own)?;
+    /// Whether there is an instance of a number among all: density may rule it out, or the ground end before.
+    pub(in crate::scene) fn has(&self, number: usize) -> bool {
+        let (cell, own) = self.cell_of(number);
+        self.place(cell, own).is_some()
+    }
+
+    /// An instance by its number among all.
+    pub(in crate::scene) fn instance_of_all(&self, number: usize) -> Instance {
+        let (cell, own) = self.cell_of(number);
         let instance = self.instance(cell, own);
-        Some(Instance { placement: self.frame.to_instances * instance.placement, ..instance })
+        Instance { placement: self.frame.to_instances * instance.placement, ..instance }
+    }
+
+    /// The numbers of about so many instances about a point.
+    pub(in crate::scene) fn near(&self, at: DVec3, most: usize) -> Vec<Range<usize>> {
+        let count = self.count as usize;
+        let own = self.frame.to_instances.inverse().transform_point3(at);
+        let reach = (most as f64 / count.max(1) as f64).sqrt() / 2.0;
+        let at = (DVec2::new(own.x, own.z) + 0.5 * self.frame.size) / self.side;
+        let [across, along] = [(at.x, self.cells[0]), (at.y, self.cells[1])]
+            .map(|(at, cells)| [at - reach, at + reach].map(|x| x.round().clamp(0.0, f64::from(cells)) as usize));
+        let row = |x: usize| {
+            let first = x * self.cells[1] as usize;
+            (first + along[0]) * count..(first + along[1]) * count
+        };
+        (across[0]..across[1]).map(row).filter(|numbers| !numbers.is_empty()).collect()
+    }
+
+    /// The cell of an instance, and its number there.
+    fn cell_of(&self, number: usize) -> ([u32; 2], u32) {
+        let (cell, own) = (number / self.count as usize, (number % self.count as usize) as u32);
+        ([cell / self.cells[1] as usize, cell % self.cells[1] as usize].map(|number| number as u32), own)
     }
 
     /// A place, whether it counts or not, and what more is drawn for it.

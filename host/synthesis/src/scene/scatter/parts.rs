@@ -9,6 +9,7 @@ use crate::numeric::bounds::Bounds;
 use crate::numeric::sampling::RandomStream;
 use crate::octree::{Instance, InstanceParts, LocationalCode, MAX_DEPTH, Prototype};
 use glam::DVec3;
+use std::ops::Range;
 
 /// A part has about so many instances.
 const PART: usize = 1 << 12;
@@ -78,6 +79,21 @@ impl ScatterParts {
 
     pub(in crate::scene) fn count_of_all(&self) -> usize {
         self.instances.last().copied().unwrap_or(0)
+    }
+
+    /// The numbers of about so many instances about a point.
+    pub(in crate::scene) fn near(&self, at: DVec3, most: usize) -> Vec<Range<usize>> {
+        let distance = |part: &usize| at.distance_squared(at.clamp(self.boxes[*part].min, self.boxes[*part].max));
+        let mut parts: Vec<(f64, usize)> = (0..self.boxes.len()).map(|part| (distance(&part), part)).collect();
+        parts.sort_unstable_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)));
+        let mut room = most;
+        let nearest = parts.into_iter().map_while(|(_, part)| {
+            let all = self.instances[part]..self.instances[part + 1];
+            let fits = room > 0;
+            room = room.saturating_sub(all.len());
+            fits.then_some(all)
+        });
+        nearest.collect()
     }
 
     /// An instance by its number among all.

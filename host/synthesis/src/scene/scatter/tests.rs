@@ -198,6 +198,26 @@ fn cells_have_as_many_each_as_density_height_and_the_end_of_the_ground_leave() {
 }
 
 #[test]
+fn those_about_a_point_are_the_nearest() {
+    let whole = scatter(40_000);
+    let cells = Scatter { cell: Some(0.1), ..scatter(4) };
+    for of in [&whole, &cells] {
+        let instances = instances(of);
+        let places = instances.places(None, 45.0).expect("a surface");
+        let at = DVec3::new(4.0, 1.0, -2.0);
+        let near: Vec<usize> = places.near(at, 9000).into_iter().flatten().collect();
+        assert!((7000..14_000).contains(&near.len()), "{}", near.len());
+        let far = |number: usize| (places.instance(number).placement.translation - at).length();
+        let farthest = near.iter().map(|number| far(*number)).fold(0.0, f64::max);
+        let mut kept = vec![false; places.count()];
+        near.iter().for_each(|number| kept[*number] = true);
+        let nearest = (0..places.count()).filter(|number| !kept[*number]).map(far).fold(f64::INFINITY, f64::min);
+        assert!(nearest > 1.5 && farthest < 7.0, "{nearest} {farthest}");
+        assert_eq!(places.near(DVec3::ZERO, usize::MAX).into_iter().map(|all| all.len()).sum::<usize>(), 40_000);
+    }
+}
+
+#[test]
 fn a_pattern_of_density_lies_in_cells_as_a_paint_does() {
     for mirror in [1.0, -1.0] {
         let transform = DMat4::from_rotation_y(0.3) * DMat4::from_scale(DVec3::new(mirror, 1.0, 2.0));

@@ -1,0 +1,74 @@
+//! Commands of a display structure, as they are gathered.
+
+use super::names::name;
+use protocol::{
+    Name,
+    command::{Command, Object as Node, Operate},
+};
+
+/// Steps of detail in which instances are drawn: in full, coarse, as outlines, as strokes.
+pub const DETAILS: usize = 4;
+
+/// What a scene becomes on the workstation.
+#[derive(Clone, Debug, Default)]
+pub struct StructureCommands {
+    /// The commands, to be sent in order.
+    pub commands: Vec<Command>,
+    /// Vectors drawn, or corners of polygons.
+    pub lines: usize,
+    /// Points sent: lines and moves.
+    pub points: usize,
+    /// Whether front and back clip.
+    pub depth_clipping: bool,
+    /// What is drawn of the instances, in a scene that has any.
+    pub instances: Option<DrawnInstances>,
+}
+
+/// What of the instances of a scene is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DrawnInstances {
+    /// How many there are in the scene; those inside of others count once.
+    pub count: u64,
+    /// How many are drawn in full, coarse, as outlines and as strokes.
+    pub drawn: [u64; DETAILS],
+    /// Vectors, or corners of polygons, that draw them.
+    pub lines: usize,
+}
+
+impl StructureCommands {
+    /// `structure := BEGIN_STRUCTURE`
+    pub(super) fn begin(&mut self, structure: &str) {
+        self.commands.push(Command::Define { name: Some(name(structure)), object: Node::BeginStructure });
+    }
+
+    /// `END_STRUCTURE`
+    pub(super) fn end(&mut self) {
+        self.commands.push(Command::EndStructure);
+    }
+
+    /// An operate node, for what follows it in its structure.
+    pub(super) fn operate(&mut self, node: Option<&str>, operate: Operate) {
+        let name: Option<Name> = node.map(name);
+        self.commands.push(Command::Define { name, object: Node::Operate { operate, applied_to: None } });
+    }
+
+    /// An operate node for a structure, and for nothing else.
+    pub(super) fn operate_on(&mut self, structure: &str, operate: Operate) {
+        let applied_to = Some(name(structure));
+        self.commands.push(Command::Define { name: None, object: Node::Operate { operate, applied_to } });
+    }
+}
+
+impl DrawnInstances {
+    /// What is drawn and what is left out, in one line.
+    pub fn describe(&self) -> String {
+        let words = ["in full", "coarse", "as outlines", "as strokes"];
+        let parts = self.drawn.iter().zip(words).filter(|(count, _)| **count > 0);
+        let parts: Vec<String> = parts.map(|(count, word)| format!("{count} {word}")).collect();
+        let parts = if parts.is_empty() { String::new() } else { format!(": {}", parts.join(", ")) };
+        let all: u64 = self.drawn.iter().sum();
+        let left = self.count - all.min(self.count);
+        let left = if left > 0 { format!("; {left} are left out, the smallest in the picture") } else { String::new() };
+        format!("{all} of {} instances drawn{parts}{left}", self.count)
+    }
+}
