@@ -75,6 +75,9 @@ pub trait LeafVisitor {
     fn limit(&self) -> f32;
     /// Counts a node or a leaf.
     fn count(&mut self);
+    /// Hears of places that are likely to be looked at soon.
+    #[inline(always)]
+    fn expect(&self, _: Range<usize>) {}
     /// Looks at the things in some places; returns whether the search is over.
     fn visit(&mut self, places: Range<usize>) -> bool;
 }
@@ -110,10 +113,16 @@ pub fn visit_leaves<L: Lanes>(
                     let near = near.store().0;
                     let mut nearest = Entry::new(near[first], node.children[first]);
                     let mark = stack.top;
+                    if let Ok(places) = node.children[first].place() {
+                        visitor.expect(places);
+                    }
                     while lanes != 0 {
                         let lane = lanes.trailing_zeros() as usize & (LANES - 1);
                         lanes &= lanes - 1;
                         let entry = Entry::new(near[lane], node.children[lane]);
+                        if let Ok(places) = node.children[lane].place() {
+                            visitor.expect(places);
+                        }
                         stack.insert(mark, nearest.max(entry));
                         nearest = nearest.min(entry);
                     }

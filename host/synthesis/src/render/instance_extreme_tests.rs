@@ -161,6 +161,7 @@ fn instances_that_find_no_room_are_told_with_both_numbers_placed_and_copied() {
     let scatter = |on: f64, count: usize| Scatter {
         on: object(Shape::Ground { size: on }, DMat4::IDENTITY, diffuse(Paint::grey(0.5))),
         count,
+        cell: None,
         distance: 1.0,
         density: NumberTexture::Constant(1.0),
         slope: [0.0, 180.0],

@@ -1,7 +1,7 @@
 //! Placements in blocks of eight: what a leaf has, so that a ray looks at its spheres all at once.
 
 use super::super::cube::Cube;
-use super::super::lanes::{Eight, LANES, Lanes, PART};
+use super::super::lanes::{Eight, LANES, Lanes, PART, prefetch};
 use super::placement::{
     AffinePlacement, Instance, OwnFrame, PlacementForm, PrototypeSphere, SimilarPlacement, longest,
 };
@@ -248,6 +248,16 @@ impl Placements {
             Placements::Similar(blocks) => blocks.len(),
             Placements::Affine(blocks) => blocks.len(),
             Placements::Exact(blocks) => blocks.len(),
+        }
+    }
+
+    /// Brings a block near the processor.
+    #[inline(always)]
+    pub(super) fn prefetch(&self, block: usize) {
+        match self {
+            Placements::Similar(blocks) => blocks.get(block).into_iter().for_each(prefetch),
+            Placements::Affine(blocks) => blocks.get(block).into_iter().for_each(prefetch),
+            Placements::Exact(blocks) => blocks.get(block).into_iter().for_each(prefetch),
         }
     }
 

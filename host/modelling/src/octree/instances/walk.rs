@@ -317,6 +317,11 @@ impl<L: Lanes, B: Below, Q: Query> LeafVisitor for Visitor<'_, L, B, Q> {
     fn count(&mut self) {}
 
     #[inline(always)]
+    fn expect(&self, blocks: Range<usize>) {
+        self.stored.placements.prefetch(blocks.start);
+    }
+
+    #[inline(always)]
     fn visit(&mut self, blocks: Range<usize>) -> bool {
         let StoredInstances { placements, positions, .. } = self.stored;
         let spheres = &self.extents.spheres;
