@@ -17,6 +17,8 @@ use std::sync::Arc;
 
 /// So many instances of a surface or fewer are stored at once, more when rays come to them.
 const MOST_AT_ONCE: usize = 1 << 16;
+/// Of so many instances or fewer, triangles are counted one by one.
+const COUNTED: usize = 1 << 22;
 /// Bytes of a triangle of a mesh: corners, normals, numbers, and half a vertex.
 const BYTES: u64 = 140;
 
@@ -205,14 +207,13 @@ impl Instances {
         let part = |Instance { prototype, placement, .. }| Some((parts.get(usize::from(prototype))?, placement));
         let count = places.count();
         let most = parts.iter().map(|part| part.mesh.triangles.len() as u64).max().unwrap_or(0);
-        let bytes = |triangles: u64| triangles.saturating_mul(BYTES);
-        let refused = |triangles: u64| format!("{count} instances of {triangles} triangles");
         // Not counted one by one where there are too many for that.
-        let triangles = match count <= MOST_AT_ONCE {
+        let triangles = match count <= COUNTED {
             true => places.all().filter_map(part).map(|(part, _)| part.mesh.triangles.len() as u64).sum(),
             false => (count as u64).saturating_mul(most),
         };
-        memory::reserve(bytes(triangles), || refused(triangles))?;
+        let bytes = u64::saturating_mul(triangles, BYTES);
+        memory::reserve(bytes, || format!("{count} instances of {triangles} triangles"))?;
         let mut whole = ShapeMesh::default();
         for (part, placement) in places.all().filter_map(part) {
             whole.mesh.append(&part.mesh.transformed(&placement), 0);
