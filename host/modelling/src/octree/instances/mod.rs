@@ -5,6 +5,9 @@
 //! leaves it is taken into the coordinates of each prototype that is placed there, and goes on in the prototype's own
 //! index. That is the seam between the two: a leaf of the upper index hands the ray over with the lengths between which
 //! hits count, which are the same on both sides, and knows nothing else of what is below it.
+//!
+//! Instances are known in one of three ways: all are stored; they are in parts, each of which is stored when a ray first
+//! comes to its box; or they are a function of the cell of a grid, and none is stored.
 
 mod error;
 mod placement;
