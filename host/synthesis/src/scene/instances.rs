@@ -29,8 +29,8 @@ pub struct Places<'a>(KnownPlaces<'a>);
 enum KnownPlaces<'a> {
     Listed(&'a [Instance]),
     Found(FoundPlaces),
-    Parts(ScatterParts),
-    Cells(ScatterCells),
+    Parts(Box<ScatterParts>),
+    Cells(Box<ScatterCells>),
 }
 
 /// Instances by chance that did not all find room.
@@ -102,7 +102,7 @@ impl Places<'_> {
         match &self.0 {
             KnownPlaces::Parts(parts) => parts.near(at, most),
             KnownPlaces::Cells(cells) => cells.near(at, most),
-            KnownPlaces::Listed(_) | KnownPlaces::Found(_) => vec![0..self.count()],
+            KnownPlaces::Listed(_) | KnownPlaces::Found(_) => std::iter::once(0..self.count()).collect(),
         }
     }
 
@@ -127,7 +127,7 @@ impl Places<'_> {
             KnownPlaces::Cells(cells) => {
                 let placement = cells.to_instances();
                 let grid = cells.grid(&prototypes);
-                let octree = InstanceOctree::in_cells(prototypes, grid, Arc::new(cells))?;
+                let octree = InstanceOctree::in_cells(prototypes, grid, Arc::new(*cells))?;
                 if placement == DAffine3::IDENTITY {
                     return Ok(octree);
                 }
@@ -150,8 +150,10 @@ impl Instances {
         Ok(Places(match &self.placing {
             Placing::Listed(list) => KnownPlaces::Listed(&list.0),
             Placing::Scattered(scatter) => match scatter.cell {
-                Some(side) => KnownPlaces::Cells(ScatterCells::new(scatter, side, angle)?),
-                None if scatter.takes_all() => KnownPlaces::Parts(ScatterParts::new(scatter, scene_tolerance, angle)?),
+                Some(side) => KnownPlaces::Cells(Box::new(ScatterCells::new(scatter, side, angle)?)),
+                None if scatter.takes_all() => {
+                    KnownPlaces::Parts(Box::new(ScatterParts::new(scatter, scene_tolerance, angle)?))
+                }
                 None => KnownPlaces::Found(FoundPlaces::new(scatter, scene_tolerance, angle)?),
             },
         }))
