@@ -28,7 +28,7 @@ pub struct Places<'a>(KnownPlaces<'a>);
 /// How places are known.
 enum KnownPlaces<'a> {
     Listed(&'a [Instance]),
-    Found(FoundPlaces),
+    Found(Box<FoundPlaces>),
     Parts(Box<ScatterParts>),
     Cells(Box<ScatterCells>),
 }
@@ -154,7 +154,7 @@ impl Instances {
                 None if scatter.takes_all() => {
                     KnownPlaces::Parts(Box::new(ScatterParts::new(scatter, scene_tolerance, angle)?))
                 }
-                None => KnownPlaces::Found(FoundPlaces::new(scatter, scene_tolerance, angle)?),
+                None => KnownPlaces::Found(Box::new(FoundPlaces::new(scatter, scene_tolerance, angle)?)),
             },
         }))
     }
