@@ -81,7 +81,7 @@ pub struct InstanceOctree {
     pub(super) prototypes: Vec<Prototype>,
     /// Of the prototypes.
     pub(super) extents: Extents,
-    pub(super) arrangement: Arrangement,
+    pub(super) known: KnownInstances,
     bounds: Bounds,
     count: usize,
     /// Triangles that are placed.
@@ -92,7 +92,7 @@ pub struct InstanceOctree {
 
 /// How instances are known.
 #[derive(Clone, Debug)]
-pub(super) enum Arrangement {
+pub(super) enum KnownInstances {
     /// All are stored.
     Stored(StoredInstances),
     /// Parts are stored when a ray first comes to them.
@@ -142,8 +142,8 @@ impl InstanceOctree {
         let triangles = stored.prototypes().map(|of| prototypes[usize::from(of)].triangles());
         let triangles = triangles.fold(0_u64, u64::saturating_add);
         let (bounds, count) = (stored.bounds, stored.count);
-        let arrangement = Arrangement::Stored(stored);
-        Ok(InstanceOctree { prototypes, extents, arrangement, bounds, count, triangles, levels })
+        let known = KnownInstances::Stored(stored);
+        Ok(InstanceOctree { prototypes, extents, known, bounds, count, triangles, levels })
     }
 
     /// Places instances part by part, and stores those of a part when a ray first comes to its box.
@@ -162,8 +162,8 @@ impl InstanceOctree {
         let parts = PartsOnDemand::new(form, source)?;
         let (bounds, count) = (parts.above.bounds, parts.count());
         let triangles = placed_by_shares(&prototypes, parts.shares(), count);
-        let arrangement = Arrangement::Parts(parts);
-        Ok(InstanceOctree { prototypes, extents, arrangement, bounds, count, triangles, levels })
+        let known = KnownInstances::Parts(parts);
+        Ok(InstanceOctree { prototypes, extents, known, bounds, count, triangles, levels })
     }
 
     /// Places instances in the cells of a grid, and stores none: a ray asks for those of the cells that it comes to.
@@ -183,8 +183,8 @@ impl InstanceOctree {
         let places_nothing = count == 0 || prototypes.iter().all(|prototype| prototype.bounds.is_empty());
         let (bounds, count) = if places_nothing { (Bounds::EMPTY, 0) } else { (cells.bounds(), count) };
         let triangles = placed_by_shares(&prototypes, cells.source.shares(), count);
-        let arrangement = Arrangement::Cells(cells);
-        Ok(InstanceOctree { prototypes, extents, arrangement, bounds, count, triangles, levels })
+        let known = KnownInstances::Cells(cells);
+        Ok(InstanceOctree { prototypes, extents, known, bounds, count, triangles, levels })
     }
 
     /// The box around all instances; empty without any. It may be larger where they are not all stored.
@@ -199,18 +199,18 @@ impl InstanceOctree {
 
     /// An instance as it is kept; the number is that of an [`InstancePath`]. None if there is none of this number.
     pub fn instance(&self, number: u64) -> Option<Instance> {
-        match &self.arrangement {
-            Arrangement::Stored(stored) => stored.instance(&self.extents, u32::try_from(number).ok()?),
-            Arrangement::Parts(parts) => parts.instance(&self.extents, number),
-            Arrangement::Cells(cells) => cells.instance(number),
+        match &self.known {
+            KnownInstances::Stored(stored) => stored.instance(&self.extents, u32::try_from(number).ok()?),
+            KnownInstances::Parts(parts) => parts.instance(&self.extents, number),
+            KnownInstances::Cells(cells) => cells.instance(number),
         }
     }
 
     /// All instances that are stored from the beginning, with their numbers.
     pub fn stored_instances(&self) -> impl Iterator<Item = (u64, Instance)> + '_ {
-        let places = match &self.arrangement {
-            Arrangement::Stored(stored) => stored.places(),
-            Arrangement::Parts(_) | Arrangement::Cells(_) => 0,
+        let places = match &self.known {
+            KnownInstances::Stored(stored) => stored.places(),
+            KnownInstances::Parts(_) | KnownInstances::Cells(_) => 0,
         };
         (0..u64::from(places)).filter_map(|number| Some((number, self.instance(number)?)))
     }
@@ -238,10 +238,10 @@ impl InstanceOctree {
             [prototype, variation].iter().for_each(|number| sum.update(&number.to_le_bytes()));
             placement.to_cols_array().iter().for_each(|number| sum.update(&number.to_le_bytes()));
         }
-        match &self.arrangement {
-            Arrangement::Stored(_) => {}
-            Arrangement::Parts(parts) => parts.source.add_to_checksum(sum),
-            Arrangement::Cells(cells) => cells.source.add_to_checksum(sum),
+        match &self.known {
+            KnownInstances::Stored(_) => {}
+            KnownInstances::Parts(parts) => parts.source.add_to_checksum(sum),
+            KnownInstances::Cells(cells) => cells.source.add_to_checksum(sum),
         }
         self.prototypes.iter().for_each(|prototype| prototype.add_to_checksum(sum));
     }
@@ -249,10 +249,10 @@ impl InstanceOctree {
     /// What it costs by now, without the instances that its prototypes may be made of.
     pub fn costs(&self) -> InstanceCosts {
         let InstanceOctree { count: instances, triangles, .. } = *self;
-        let (stored, bytes) = match &self.arrangement {
-            Arrangement::Stored(stored) => (instances, stored.bytes()),
-            Arrangement::Parts(parts) => (parts.stored(), parts.bytes()),
-            Arrangement::Cells(_) => (0, 0),
+        let (stored, bytes) = match &self.known {
+            KnownInstances::Stored(stored) => (instances, stored.bytes()),
+            KnownInstances::Parts(parts) => (parts.stored(), parts.bytes()),
+            KnownInstances::Cells(_) => (0, 0),
         };
         InstanceCosts { instances, stored, bytes, triangles }
     }

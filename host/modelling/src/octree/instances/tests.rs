@@ -2,7 +2,7 @@
 
 use super::super::lanes::LANES;
 use super::super::{Octree, OctreeSettings, Ray, Walk};
-use super::octree::{Arrangement, Content};
+use super::octree::{Content, KnownInstances};
 use super::path::Descent;
 use super::stored::StoredInstances;
 use super::*;
@@ -59,7 +59,7 @@ fn rays(seed: u64, count: usize, reach: f64) -> impl Iterator<Item = Ray> {
 }
 
 fn stored(octree: &InstanceOctree) -> &StoredInstances {
-    let Arrangement::Stored(stored) = &octree.arrangement else { panic!("all are stored") };
+    let KnownInstances::Stored(stored) = &octree.known else { panic!("all are stored") };
     stored
 }
 

@@ -8,7 +8,7 @@ use super::super::visit::{LeafVisitor, visit_leaves};
 use super::super::{Hit, Octree, Ray};
 use super::blocks::SphereTest;
 use super::cells::{self, Cells};
-use super::octree::{Arrangement, Content, InstanceOctree};
+use super::octree::{Content, InstanceOctree, KnownInstances};
 use super::parts::PartsOnDemand;
 use super::path::{Descent, InstanceHit};
 use super::placement::Instance;
@@ -38,14 +38,14 @@ impl InstanceOctree {
 
     /// Asks all surfaces along a ray, about the nearer ones first, until the answer is known; says whether it is.
     fn ask(&self, ray: &Ray, outer: Option<&Descent<'_>>, query: &mut impl Query) -> bool {
-        match &self.arrangement {
-            Arrangement::Stored(stored) => {
+        match &self.known {
+            KnownInstances::Stored(stored) => {
                 ask_stored(stored, &self.extents, ray, &Placed { octree: self, stored, base: 0, outer }, query)
             }
-            Arrangement::Parts(parts) => {
+            KnownInstances::Parts(parts) => {
                 ask_stored(&parts.above, &parts.extents, ray, &Parts { octree: self, parts, outer }, query)
             }
-            Arrangement::Cells(cells) => self.ask_cells(cells, ray, outer, query),
+            KnownInstances::Cells(cells) => self.ask_cells(cells, ray, outer, query),
         }
     }
 
