@@ -1,4 +1,4 @@
-//! Which instances are drawn, and in how much detail: those that are largest on the screen, as many as the machine holds.
+//! The choice of the instances that are drawn, and in how much detail: the largest on the screen, within a budget.
 //!
 //! # Method
 //! The vectors that something deserves grow with its size on the screen. One length tells them all: what is larger is drawn
