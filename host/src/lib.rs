@@ -5,7 +5,7 @@
 //! is their layer order, lowest first.
 
 pub use foundation::{color, encoding, memory, numeric, picture, polygon, spelling, stages};
-pub use modelling::{curve, intersection, mesh, octree, solid, subdivision, surface};
+pub use modelling::{curve, intersection, mesh, octree, procedural, solid, subdivision, surface};
 pub use synthesis::{database, illumination, plan, render, scene};
 
 pub mod study;

@@ -87,6 +87,7 @@ fn scene() -> Scene {
         far: None,
         lens: None,
         parallel: None,
+        motion: None,
     };
     let lamp = Light::Point { at: DVec3::new(3.0, 5.0, 4.0), intensity: Color::grey(30.0) };
     Scene { objects: vec![floor, bunny], lights: vec![lamp], camera: Some(camera), ..Scene::default() }

@@ -1,4 +1,5 @@
-//! Curves, surfaces, solids and meshes, their Boolean operations and intersections, and the linear octree.
+//! Curves, surfaces, solids and meshes, their Boolean operations and intersections, the linear octree, and procedural
+//! models.
 //!
 //! The order of the modules is their layer order, lowest first.
 
@@ -11,3 +12,4 @@ pub mod subdivision;
 pub mod surface;
 pub mod solid;
 pub mod intersection;
+pub mod procedural;

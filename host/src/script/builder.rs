@@ -5,6 +5,7 @@ use super::evaluated::Inputs;
 use super::folders::Folders;
 use super::handle::{CallResult, Handle};
 use crate::database::Library;
+use crate::procedural::Wind;
 use crate::scene::{Composite, MAX_NESTING, MAX_OBJECTS, Motion, Object, Operation, Scene, ScriptPosition, Shape};
 use glam::{DMat4, DVec3};
 use rhai::Dynamic;
@@ -32,6 +33,8 @@ pub(super) struct Builder {
     now: f64,
     /// Whether the script asked for the time.
     pub(super) asked_time: bool,
+    /// The wind that blows.
+    pub(super) wind: Option<Wind>,
     /// Below which it reads.
     pub(super) folders: Folders,
     /// Values of parameters.
@@ -55,6 +58,7 @@ impl Builder {
             time: inputs.time,
             now,
             asked_time: false,
+            wind: None,
             folders,
             definitions: ScriptParameters::new(&inputs.definitions),
             library: Library::default(),

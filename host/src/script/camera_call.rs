@@ -10,7 +10,7 @@ const DIGITS: usize = 7;
 ///
 /// A lens is left out.
 pub fn camera_call(camera: &Camera) -> String {
-    let Camera { from, at, up, field_of_view, near, far, lens: _, parallel } = camera;
+    let Camera { from, at, up, field_of_view, near, far, lens: _, parallel, motion: _ } = camera;
     let mut entries =
         vec![format!("from: {}", point(*from)), format!("at: {}", point(*at)), format!("up: {}", point(*up))];
     match parallel {
@@ -63,6 +63,7 @@ mod tests {
             far: None,
             lens: None,
             parallel: None,
+            motion: None,
         };
         let parallel = |oblique| Camera { parallel: Some(Parallel { height: 2.5, oblique }), ..plain };
         let cameras = [

@@ -3,7 +3,7 @@
 use super::function::Function;
 use super::{
     daylight, instancing, lighting, materials, shaping, showing, solids, stored, subdividing, surfaces, table,
-    texturing,
+    texturing, wind,
 };
 
 /// Every function that a script may call: those that make and combine objects, then the others.
@@ -14,6 +14,7 @@ pub fn functions() -> impl Iterator<Item = &'static Function> {
         surfaces::FUNCTIONS,
         subdividing::FUNCTIONS,
         instancing::FUNCTIONS,
+        wind::FUNCTIONS,
         materials::FUNCTIONS,
         texturing::FUNCTIONS,
         lighting::FUNCTIONS,

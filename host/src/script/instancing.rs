@@ -8,6 +8,7 @@ use super::kinds::{
     RangeKind,
 };
 use super::parameter::{Required, optional, required, with_default};
+use super::wind;
 use crate::numeric::sampling::mix;
 use crate::octree::{Instance, MOST_INSTANCES};
 use crate::scene::{Instances, Object, PlacementList, Placing, Scatter, Shape};
@@ -80,6 +81,11 @@ pub(super) const FUNCTIONS: &[Function] = &[
             shares: optional(Numbers, "the same of each", "how often there is each group of objects"),
             seed: with_default(Integer(0, i64::MAX as u64), 1, "of all that is drawn"),
             stays: with_default(Flag, true, "whether that object stays; if not, it is used up"),
+            sway: with_default(
+                NumberKind(0.0, 89.0),
+                0.0,
+                "how far they lean in a wind() of 10 units a second, degrees; as the square of its speed in others",
+            ),
             sink: with_default(ANY_NUMBER, 0.0, "how deep their origin is below the surface, along their y axis"),
         )
         "Scatters objects over the surface of another by chance, as one object: as many on each part of its area. Each instance takes 29 bytes, and some millions are found in a second."
@@ -93,7 +99,10 @@ pub(super) const FUNCTIONS: &[Function] = &[
             let on = builder.object(on)?.clone();
             let shares = shares.unwrap_or_else(|| vec![1.0; objects.len()]);
             let height = height.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
-            let scatter = Scatter { on, count, cell, distance, density, slope, height, scale, turn, lean, upright, shares, seed, sink };
+            let sway = if sway > 0.0 { Some(wind::sway(builder, sway)?) } else { None };
+            let scatter = Scatter {
+                on, count, cell, distance, density, slope, height, scale, turn, lean, upright, sink, shares, sway, seed,
+            };
             let all = add(builder, objects, Placing::Scattered(Box::new(scatter)))?;
             if !stays {
                 builder.use_up(surface);

@@ -114,3 +114,28 @@ fn what_cannot_be_placed_is_told_with_its_place() {
         assert_eq!((line, column), (expected.0, expected.1), "{text}");
     }
 }
+
+#[test]
+fn the_wind_blows_where_it_is_told_and_bends_what_is_scattered_behind_it() {
+    let made = run("
+        wind(5, #{ from: 180, gusts: 0, turbulence: 0 });
+        let v = wind_at(1, 2, 3);
+        print(v.map(|x| round(x * 1000.0) / 1000.0));
+        scatter(cone(0.1, 1), ground(10), #{ count: 20, sway: 30 });
+    ");
+    assert_eq!(made.printed, ["[0.0, 0.0, -5.0]"]);
+    assert!(made.is_timed);
+    let Shape::Instances(instances) = &made.scene.objects[1].shape else { panic!("instances") };
+    let Placing::Scattered(scatter) = &instances.placing else { panic!("scattered") };
+    let sway = scatter.sway.as_ref().expect("it sways");
+    assert_eq!((sway.lean, sway.time, sway.wind.mean.z), (30.0, 0.0, -5.0));
+    for (script, expected) in [
+        ("scatter(cone(0.1, 1), ground(10), #{ count: 20, sway: 30 });", "there is no wind; call wind() before"),
+        ("wind_at(0, 0, 0);", "there is no wind"),
+        ("wind(-1);", "speed must be"),
+        ("wind(1, #{ period: 0 });", "period must be"),
+    ] {
+        let message = problem(script).2;
+        assert!(message.contains(expected), "{message}");
+    }
+}

@@ -20,6 +20,7 @@ mod shaping;
 mod sculpting;
 mod surfaces;
 mod subdividing;
+mod wind;
 mod instancing;
 mod made_of;
 mod materials;

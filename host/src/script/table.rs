@@ -173,7 +173,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             let lens = lens.map(|radius| Lens { radius, focus });
             let oblique = oblique.unwrap_or_default().first().map_or(DVec2::ZERO, |shift| shift.truncate());
             let parallel = height.map(|height| Parallel { height, oblique });
-            let camera = Camera { from, at, up, field_of_view, near, far, lens, parallel };
+            let camera = Camera { from, at, up, field_of_view, near, far, lens, parallel, motion: None };
             // The message names the function already.
             camera.check().map_err(|e| e.to_string().trim_start_matches("camera: ").to_string())?;
             builder.scene.camera = Some(camera);

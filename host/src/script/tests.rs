@@ -183,6 +183,22 @@ fn a_scene_is_a_function_of_the_time_and_shows_an_instant_without_a_shutter() {
 }
 
 #[test]
+fn a_camera_that_a_script_moves_by_the_time_moves_while_the_shutter_is_open() {
+    let text = "sphere(1); camera(#{ from: [10 * cos(time()), 2, 10 * sin(time())], at: [0, 0, 0] });";
+    let scene = at_time(text, 1.0, Some([0.0, 0.2]));
+    let camera = scene.camera.expect("one is said");
+    let motion = camera.motion.expect("it moves");
+    for (part, time) in [(-0.1, 1.0_f64), (0.04, 1.14), (0.1, 1.2)] {
+        let eye = DVec3::new(10.0 * time.cos(), 2.0, 10.0 * time.sin());
+        assert!((motion.at(part).point(camera.from) - eye).length() < 1e-9, "{part}");
+    }
+    // What it sees may change without a motion.
+    let zooms = "sphere(1); camera(#{ from: [10 + time(), 2, 0], at: [0, 0, 0], field_of_view: 30 + time() });";
+    assert!(at_time(zooms, 1.0, Some([0.0, 0.2])).camera.expect("one is said").motion.is_none());
+    assert!(at_time(text, 1.0, None).camera.expect("one is said").motion.is_none());
+}
+
+#[test]
 fn a_function_of_a_script_becomes_a_distribution_or_an_error_with_its_place() {
     let made = run("
         let m = 0.3;

@@ -9,8 +9,8 @@ use std::path::Path;
 /// Runs a script: the scene in the middle of the time in which the shutter is open.
 ///
 /// A script that asks for the time is run again when the shutter opens and when it closes. What differs in nothing but
-/// its place, and that by a rigid motion, moves so in between. All else stays as it is in the middle: what changes its
-/// shape, size or material, what emits light, lights and the camera.
+/// its place, and that by a rigid motion, moves so in between, and so does the camera. All else stays as it is in the
+/// middle: what changes its shape, size or material, what emits light, and lights.
 ///
 /// - `text`: the script.
 /// - `name`: what messages call it.
@@ -37,10 +37,14 @@ pub fn evaluate(text: &str, name: &str, folder: &Path, inputs: &Inputs) -> Resul
     Ok(made)
 }
 
-/// Lets objects move from where they are in the one scene to where they are in the other.
+/// Lets objects and the camera move from where they are in the one scene to where they are in the other.
 ///
 /// - `duration`: of the motion, in whose middle `scene` is; seconds.
 fn add_motions(scene: &mut Scene, [begin, end]: [Scene; 2], duration: f64) {
+    scene.camera = match (scene.camera, begin.camera, end.camera) {
+        (Some(camera), Some(first), Some(last)) => Some(camera.moving([first, last], duration)),
+        (camera, ..) => camera,
+    };
     if [&begin, &end].iter().any(|other| other.objects.len() != scene.objects.len()) {
         // Which of the objects are the same is not known.
         return;

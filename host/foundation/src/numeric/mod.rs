@@ -9,6 +9,7 @@ pub mod predicates;
 mod debug_hash;
 pub mod ray;
 pub mod sampling;
+pub mod noise;
 pub mod sequence;
 pub mod triangle;
 

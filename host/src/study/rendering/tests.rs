@@ -32,7 +32,7 @@ fn mirror(k: f64) -> Classic {
 }
 
 fn camera(from: DVec3, at: DVec3, up: DVec3, field_of_view: f64) -> Camera {
-    Camera { from, at, up, field_of_view, near: 0.0, far: None, lens: None, parallel: None }
+    Camera { from, at, up, field_of_view, near: 0.0, far: None, lens: None, parallel: None, motion: None }
 }
 
 fn scene(objects: Vec<Object>, lights: Vec<Light>, camera: Camera) -> Scene {

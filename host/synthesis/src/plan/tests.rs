@@ -34,6 +34,7 @@ fn scene() -> Scene {
         far: None,
         lens: None,
         parallel: None,
+        motion: None,
     };
     let mut scene = Scene { objects, lights, camera: Some(camera), ..Scene::default() };
     scene.settings.image.samples = 1;

@@ -12,6 +12,7 @@ pub(super) fn objects(prepared: &Prepared, views: &[View], facts: &Facts<'_>) ->
     let Some(projections) = views.iter().map(View::projection).collect::<Option<Vec<_>>>() else {
         return prepared.objects.iter().map(|_| Decision::new(true, "the view is not known")).collect();
     };
+    let camera_moves = prepared.settings.geometry.shutter > 0.0 && views.iter().any(View::moves);
     let window = View::window(prepared.settings.image.width, prepared.settings.image.height);
     let is_seen = |bounds: &Bounds| projections.iter().any(|seen| !bounds.is_outside(&seen.to_clip, window));
     let stands = |o: &PreparedObject| !o.is_empty() && o.placed_by.is_none();
@@ -27,6 +28,8 @@ pub(super) fn objects(prepared: &Prepared, views: &[View], facts: &Facts<'_>) ->
             Decision::new(false, "it has no triangles")
         } else if *visible {
             Decision::new(true, format!("in view, {}", extent(object)))
+        } else if camera_moves {
+            Decision::new(true, "out of view in the middle, but the camera moves")
         } else if seen.is_empty() {
             Decision::new(false, "nothing at all is in view")
         } else if mirrors {

@@ -52,7 +52,7 @@ fn rough(name: &str, roughness: f64) -> Finish {
 }
 
 fn camera(from: DVec3, at: DVec3, up: DVec3, field_of_view: f64) -> Camera {
-    Camera { from, at, up, field_of_view, near: 0.0, far: None, lens: None, parallel: None }
+    Camera { from, at, up, field_of_view, near: 0.0, far: None, lens: None, parallel: None, motion: None }
 }
 
 /// Sees a point of the plane y = 0 from an angle to its normal, degrees, within almost nothing.

@@ -5,7 +5,6 @@ use super::instance_tests::{at, camera, differing, diffuse, green, instances, li
 use super::{RENDERERS, Technique};
 use crate::color::Color;
 use crate::illumination::material::Material;
-use crate::illumination::texture::NumberTexture;
 use crate::illumination::{Light, Paint};
 use crate::mesh::{self, Mesh, MeshPlace, MeshPlaces, PlacedMeshes, RepeatedMesh};
 use crate::octree::MOST_LEVELS;
@@ -158,21 +157,9 @@ fn a_file_of_instances_is_placed_again_and_moves_and_is_written_once() {
 
 #[test]
 fn instances_that_find_no_room_are_told_with_both_numbers_placed_and_copied() {
-    let scatter = |on: f64, count: usize| Scatter {
-        on: object(Shape::Ground { size: on }, DMat4::IDENTITY, diffuse(Paint::grey(0.5))),
-        count,
-        cell: None,
-        distance: 1.0,
-        density: NumberTexture::Constant(1.0),
-        slope: [0.0, 180.0],
-        height: [f64::NEG_INFINITY, f64::INFINITY],
-        scale: [1.0, 1.0],
-        turn: 360.0,
-        lean: 0.0,
-        upright: 0.0,
-        sink: 0.0,
-        shares: vec![1.0],
-        seed: 7,
+    let scatter = |on: f64, count: usize| {
+        let on = object(Shape::Ground { size: on }, DMat4::IDENTITY, diffuse(Paint::grey(0.5)));
+        Scatter { distance: 1.0, seed: 7, ..Scatter::over(on, count) }
     };
     let scattered = |name: &str, group: Object, scatter: Scatter| {
         let placing = Placing::Scattered(Box::new(scatter));

@@ -33,7 +33,17 @@ pub(super) fn at(placement: DAffine3, prototype: u16, variation: u16) -> Instanc
 }
 
 pub(super) fn camera(from: DVec3, field_of_view: f64) -> Camera {
-    Camera { from, at: DVec3::ZERO, up: DVec3::Y, field_of_view, near: 0.0, far: None, lens: None, parallel: None }
+    Camera {
+        from,
+        at: DVec3::ZERO,
+        up: DVec3::Y,
+        field_of_view,
+        near: 0.0,
+        far: None,
+        lens: None,
+        parallel: None,
+        motion: None,
+    }
 }
 
 pub(super) fn render(scene: &Scene, row: &RendererRow) -> Rendering {
@@ -215,20 +225,12 @@ fn glass_instances_lose_no_light() {
 fn in_cells(ground: DMat4, cell: f64, change: impl Fn(&mut Scatter)) -> Object {
     let on = object(Shape::Ground { size: 9.0 }, ground, diffuse(Paint::grey(0.5)));
     let mut scatter = Scatter {
-        on,
-        count: 2,
         cell: Some(cell),
-        distance: 0.0,
         density: NumberTexture::Constant(0.8),
-        slope: [0.0, 180.0],
-        height: [f64::NEG_INFINITY, f64::INFINITY],
         scale: [0.3, 0.8],
-        turn: 360.0,
-        lean: 0.0,
-        upright: 0.0,
         sink: 0.1,
-        shares: vec![1.0],
         seed: 5,
+        ..Scatter::over(on, 2)
     };
     change(&mut scatter);
     let shape = Shape::Instances(Box::new(Instances {

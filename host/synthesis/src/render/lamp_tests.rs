@@ -37,6 +37,7 @@ fn camera(from: DVec3, at: DVec3, height: f64) -> Camera {
         far: None,
         lens: None,
         parallel: Some(Parallel { height, oblique: DVec2::ZERO }),
+        motion: None,
     }
 }
 

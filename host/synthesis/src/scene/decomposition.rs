@@ -48,7 +48,7 @@ impl Projection {
         let far = Some(begin / (1.0 - slope)).filter(|far| self.depth_clipping && *far > near && far.is_finite());
         let field_of_view = 2.0 * half_tangents[1].atan().to_degrees();
         let at = from + distance * forward;
-        Some(Camera { from, at, up, field_of_view, near, far, lens: None, parallel: None })
+        Some(Camera { from, at, up, field_of_view, near, far, lens: None, parallel: None, motion: None })
     }
 
     fn parallel(&self, center: DVec3, diagonal: f64) -> Option<Camera> {
@@ -73,7 +73,17 @@ impl Projection {
         let far = self.depth_clipping.then_some(distance + back);
         let parallel = Some(Parallel { height: 2.0 / scales[1], oblique });
         let from = at - distance * forward;
-        Some(Camera { from, at, up, field_of_view: FRAMING_FIELD_OF_VIEW, near, far, lens: None, parallel })
+        Some(Camera {
+            from,
+            at,
+            up,
+            field_of_view: FRAMING_FIELD_OF_VIEW,
+            near,
+            far,
+            lens: None,
+            parallel,
+            motion: None,
+        })
     }
 
     /// The rows of the matrix: what a point is multiplied with for x, y, z and w.
@@ -103,6 +113,7 @@ mod tests {
             far: None,
             lens: None,
             parallel: None,
+            motion: None,
         };
         let parallel = |oblique| Some(Parallel { height: 3.0, oblique });
         vec![

@@ -43,7 +43,7 @@ pub use error::{AccelerationError, SceneError, ShapeError};
 pub use instances::{Places, ShortScatter};
 pub use motion::{Displacement, Motion};
 pub use object::{
-    Composite, Instances, MAX_NESTING, Object, Operation, PlacementList, Placing, RoundedSolid, Scatter, Shape,
+    Composite, Instances, MAX_NESTING, Object, Operation, PlacementList, Placing, RoundedSolid, Scatter, Shape, Sway,
 };
 pub use object_intersection::{ObjectIntersection, object_intersections};
 pub use origins::{ScriptPosition, ShapeOrigins};

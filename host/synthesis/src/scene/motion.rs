@@ -57,7 +57,7 @@ impl Motion {
         let turn = DMat3::from_mat4(whole);
         let skew = (turn * turn.transpose() - DMat3::IDENTITY).to_cols_array();
         let is_rigid = skew.iter().all(|part| part.abs() < SKEW) && turn.determinant() > 0.0;
-        if !is_rigid || !whole.is_finite() || whole == DMat4::IDENTITY {
+        if !is_rigid || !whole.is_finite() || first == last {
             return None;
         }
         let rotation = DQuat::from_mat3(&turn).normalize();
@@ -95,6 +95,12 @@ impl Motion {
         Motion { through: self.through + self.by * time, ..*self }
     }
 
+    /// The motion of what went round a point with all that it does.
+    pub(super) fn turned(&self, turn: DQuat, about: DVec3) -> Motion {
+        let through = about + turn * (self.through - about);
+        Motion { by: turn * self.by, through, axis: turn * self.axis, ..*self }
+    }
+
     /// A box around all places of what is in a box, from the one time to the other.
     pub(super) fn swept(&self, bounds: &Bounds, [from, to]: [f64; 2]) -> Bounds {
         if bounds.is_empty() {
@@ -129,6 +135,11 @@ impl Displacement {
         let back = self.turn.conjugate();
         let origin = self.through + back * (ray.origin - self.by - self.through);
         Ray { origin, direction: back * ray.direction }
+    }
+
+    /// A ray that moves along.
+    pub fn carried(&self, ray: &Ray) -> Ray {
+        Ray { origin: self.point(ray.origin), direction: self.vector(ray.direction) }
     }
 
     /// The largest coordinate that it computes with, for what rounding does to a point.

@@ -6,6 +6,7 @@ use super::solid::PrimitiveSolid;
 use crate::illumination::Material;
 use crate::illumination::texture::NumberTexture;
 use crate::octree::Instance;
+use crate::procedural::Wind;
 use crate::solid::Primitive;
 use glam::{DMat4, DVec3};
 use serde::{Deserialize, Serialize};
@@ -140,8 +141,48 @@ pub struct Scatter {
     pub sink: f64,
     /// How often there is each of the prototypes, in the same unit.
     pub shares: Vec<f64>,
+    /// How the wind bends them; none where it does not.
+    pub sway: Option<Sway>,
     /// Seed of all random numbers.
     pub seed: u64,
+}
+
+/// How the wind at a time bends what stands in it.
+///
+/// An instance leans about its origin the way the wind blows there: the tangent of the angle grows as the square of the
+/// speed, since that is how drag grows against a stem that gives way as a spring does. What a gust has
+/// beyond two standard deviations above the mean speed does not count.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sway {
+    /// The wind, in coordinates of the instances.
+    pub wind: Wind,
+    /// The time, seconds.
+    pub time: f64,
+    /// How far an instance leans at a speed of 10, degrees, 0 to 89.
+    pub lean: f64,
+}
+
+impl Scatter {
+    /// Instances of one prototype all over an object, square to its surface, each turned by chance.
+    pub fn over(on: Object, count: usize) -> Scatter {
+        Scatter {
+            on,
+            count,
+            cell: None,
+            distance: 0.0,
+            density: NumberTexture::Constant(1.0),
+            slope: [0.0, 180.0],
+            height: [f64::NEG_INFINITY, f64::INFINITY],
+            scale: [1.0, 1.0],
+            turn: 360.0,
+            lean: 0.0,
+            upright: 0.0,
+            sink: 0.0,
+            shares: vec![1.0],
+            sway: None,
+            seed: 1,
+        }
+    }
 }
 
 /// Placements one by one. As text, only their number is shown and a checksum: there may be millions.

@@ -75,6 +75,7 @@ impl Scene {
             far: None,
             lens: None,
             parallel: None,
+            motion: None,
         });
         Ok(self)
     }

@@ -1,6 +1,7 @@
 //! From where a scene is seen: a camera, or the matrix that a workstation reads back.
 
 use super::SceneError;
+use super::motion::Motion;
 use crate::numeric::bounds::Bounds;
 use glam::{DMat4, DQuat, DVec2, DVec3, DVec4};
 use serde::{Deserialize, Serialize};
@@ -33,6 +34,9 @@ pub struct Camera {
     pub lens: Option<Lens>,
     /// Parallel lines of sight, in place of those through the eye.
     pub parallel: Option<Parallel>,
+    /// How it moves while the shutter is open, in the middle of which it is where it is: the time 0 of the motion.
+    #[serde(default)]
+    pub motion: Option<Motion>,
 }
 
 /// A thin lens.
@@ -88,6 +92,9 @@ impl Camera {
                 return failed("a parallel view has no lens".into());
             }
         }
+        if let Some(Err(problem)) = self.motion.map(|motion| motion.check()) {
+            return failed(problem);
+        }
         let far = self.far.unwrap_or(f64::INFINITY);
         if !(self.near >= 0.0 && self.near < far) {
             return failed(format!("near {} and far {far} do not enclose anything", self.near));
@@ -102,12 +109,36 @@ impl Camera {
         Some([right, right.cross(forward), forward])
     }
 
+    /// Where it is and how it is turned: from coordinates to its right, up and back, to those of the scene; none if the
+    /// camera cannot see.
+    pub fn placement(&self) -> Option<DMat4> {
+        let [right, up, forward] = self.axes()?;
+        Some(DMat4::from_cols(right.extend(0.0), up.extend(0.0), -forward.extend(0.0), self.from.extend(1.0)))
+    }
+
+    /// The camera, moving as others like it are placed when the shutter opens and when it closes; standing still if they
+    /// differ in more than their places.
+    ///
+    /// - `duration`: from the one to the other, above 0.
+    pub fn moving(self, [begin, end]: [Camera; 2], duration: f64) -> Camera {
+        let like = |other: &Camera| Camera { from: self.from, at: self.at, up: self.up, ..*other } == self;
+        let placements = [begin, self, end].map(|camera| camera.placement());
+        let motion = match placements {
+            [Some(first), Some(middle), Some(last)] if like(&begin) && like(&end) && first != last => {
+                Motion::through(&[first, middle, last], duration)
+            }
+            _ => None,
+        };
+        Camera { motion, ..self }
+    }
+
     /// The camera after it went round what it looks at.
     ///
     /// - `angle`: about its upward direction, radians, to the right as it sees itself go.
     pub fn turned(&self, angle: f64) -> Camera {
         let turn = DQuat::from_axis_angle(self.up.normalize_or(DVec3::Y), angle);
-        Camera { from: self.at + turn * (self.from - self.at), ..*self }
+        let motion = self.motion.map(|motion| motion.turned(turn, self.at));
+        Camera { from: self.at + turn * (self.from - self.at), motion, ..*self }
     }
 
     /// Tangent of half the field of view.
@@ -136,6 +167,7 @@ impl Camera {
             far: None,
             lens: None,
             parallel: None,
+            motion: None,
         }
     }
 
@@ -212,6 +244,11 @@ pub enum View {
 }
 
 impl View {
+    /// Whether it is that of a camera that moves while the shutter is open.
+    pub fn moves(&self) -> bool {
+        matches!(self, View::Camera(Camera { motion: Some(_), .. }))
+    }
+
     /// The view as a matrix; none for a camera that cannot see.
     pub fn projection(&self) -> Option<Projection> {
         match self {

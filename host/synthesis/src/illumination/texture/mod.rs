@@ -6,7 +6,6 @@
 
 mod image;
 mod motif;
-mod noise;
 mod number;
 mod footprint;
 mod texels;

@@ -158,6 +158,7 @@ fn lit_ball(tolerance: f64, exact: bool) -> Scene {
         far: None,
         lens: None,
         parallel: None,
+        motion: None,
     });
     scene.settings.geometry.exact_surfaces = exact;
     scene

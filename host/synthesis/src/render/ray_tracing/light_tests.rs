@@ -284,6 +284,7 @@ fn highlights_behind_broad_scattering_are_cut_off_unless_caustics_count() {
             far: None,
             lens: None,
             parallel: None,
+            motion: None,
         };
         scene.camera = Some(camera);
         let film = trace(&scene, None, false, 2).film;

@@ -4,7 +4,7 @@ use super::tests::{diffuse, from_above, mirror, object, red, scene, trace};
 use super::*;
 use crate::color::Color;
 use crate::illumination::Light;
-use crate::scene::{Motion, Object, Scene, Shape};
+use crate::scene::{Camera, Motion, Object, Scene, Shape, View};
 use crate::solid::Primitive;
 use glam::{DMat4, DVec3};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
@@ -179,4 +179,43 @@ fn what_emits_cannot_move_and_nothing_moves_twice() {
     assert!(failed(&twice).contains("no object 3"));
     twice.motions = vec![(0, Motion { axis: DVec3::ZERO, ..STILL })];
     assert!(failed(&twice).contains("axis"));
+}
+
+#[test]
+fn a_camera_that_moves_sees_what_a_still_one_sees_of_objects_that_move_the_other_way() {
+    let plates = || {
+        let small = |x: f64, y: f64, reflectance: f64| plate(0.5, DVec3::new(x, y, 0.1 * x), reflectance);
+        // The last comes into view as the shutter closes.
+        vec![small(-0.4, 0.0, 0.3), small(0.3, 0.2, 0.6), small(1.35, 0.0, 0.9)]
+    };
+    for (camera_motion, opposite) in [
+        (Motion { by: DVec3::X * 0.9, ..STILL }, Motion { by: DVec3::X * -0.9, ..STILL }),
+        (Motion { angle: 0.8, ..STILL }, Motion { angle: -0.8, ..STILL }),
+    ] {
+        let mut still = ambient(plates(), 0, opposite, 32);
+        still.motions = (0..3).map(|object| (object, opposite)).collect();
+        let moving = Scene { motions: Vec::new(), ..still.clone() };
+        let eye = Camera {
+            from: DVec3::Y * 5.0,
+            at: DVec3::ZERO,
+            up: DVec3::NEG_Z,
+            field_of_view: 2.0 * 0.2_f64.atan().to_degrees(),
+            near: 0.0,
+            far: None,
+            lens: None,
+            parallel: None,
+            motion: None,
+        };
+        let [by_camera, by_objects] = [
+            trace(&moving, Some(View::Camera(Camera { motion: Some(camera_motion), ..eye })), false, 1),
+            trace(&still, Some(View::Camera(eye)), false, 1),
+        ];
+        let mut seen = [0.0; 2];
+        for (x, y) in (0..32).flat_map(|x| (0..32).map(move |y| (x, y))) {
+            let [one, other] = [&by_camera, &by_objects].map(|rendering| red(rendering, x, y));
+            assert!((one - other).abs() < 1e-9, "{x} {y}: {one} {other}");
+            seen = [seen[0] + one, seen[1].max(red(&by_camera, 31, y))];
+        }
+        assert!(seen[0] > 10.0 && seen[1] > 0.02, "{seen:?}");
+    }
 }

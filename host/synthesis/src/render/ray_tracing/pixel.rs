@@ -28,13 +28,13 @@ impl PixelSampler<'_> {
         let PixelSampler { world, eye, order, .. } = self;
         let pixel = u64::from(y) * u64::from(order.width) + u64::from(x);
         let sampler = PathSampler::new(order.seed, pixel, index, order.samples);
-        let sampler = match world.moves() {
+        let sampler = match world.moves() || eye.moves() {
             true => sampler.at_random_time(world.prepared().settings.geometry.shutter),
             false => sampler,
         };
         let ([dx, dy], weight) = sampler.position(order.filter);
         let at = [f64::from(x) + dx, f64::from(y) + dy];
-        let bounded = eye.ray(at, sampler.point(SampleDimension::Lens));
+        let bounded = eye.ray_at(at, sampler.point(SampleDimension::Lens), sampler.time);
         self.sample_along(bounded, weight, &sampler, scratch, log)
     }
 

@@ -93,6 +93,7 @@ fn still_life() -> Scene {
         far: None,
         lens: None,
         parallel: None,
+        motion: None,
     };
     let mut scene = scene(objects, lights, 40);
     (scene.camera, scene.ambient, scene.background) =
@@ -161,6 +162,7 @@ fn a_mirror_shows_the_luminance_of_what_it_reflects() {
         far: None,
         lens: None,
         parallel: None,
+        motion: None,
     };
     let seen = |scene: &Scene, z: f64| red(&trace(scene, Some(View::Camera(look(z))), false, 1), 0, 0);
     assert!((seen(&scene, -7.0) - 0.8 * 0.5 * 0.3).abs() < 1e-6, "the wall, 3 above its foot");
@@ -184,6 +186,7 @@ fn two_facing_mirrors_end_by_depth_or_by_energy() {
         far: None,
         lens: None,
         parallel: None,
+        motion: None,
     };
     scene.settings.light.reflection_depth = 5;
     assert_eq!(trace(&scene, Some(View::Camera(straight_down)), false, 1).rays.reflected, 5);
@@ -227,6 +230,7 @@ fn no_surface_shadows_itself_at_any_scale_or_place() {
             far: None,
             lens: None,
             parallel: None,
+            motion: None,
         });
         let rendering = trace(&scene, None, false, 2);
         let covered: Vec<_> = rendering.picture.pixels().iter().filter(|p| p.coverage > 0.0).collect();
@@ -258,6 +262,7 @@ fn grazing_light_on_a_plane_is_not_shadowed_by_the_plane() {
                 far: None,
                 lens: None,
                 parallel: None,
+                motion: None,
             });
             let rendering = trace(&scene, None, false, 2);
             for pixel in rendering.picture.pixels() {

@@ -66,6 +66,7 @@ fn filtered_tiles_to_the_horizon_agree_with_many_points() {
         far: None,
         lens: None,
         parallel: None,
+        motion: None,
     };
     let at = |samples: u32, filter: f64, motif: &Motif| {
         let mut scene = square(painted(motif.clone(), sized(0.06)), 32);

@@ -535,7 +535,7 @@ impl Renderer for ScanLine<'_> {
         if self.world.prepared().settings.image.filter != Filter::Box {
             left_out.push("pixels are means over their areas: the filter is a box");
         }
-        if self.plan.needs(Stage::Motion) {
+        if self.plan.needs(Stage::Motion) || view.moves() {
             left_out.push("what moves stands where it is in the middle of the time in which the shutter is open");
         }
         if let View::Camera(camera) = view

@@ -80,7 +80,17 @@ fn spot() -> crate::illumination::Light {
 }
 
 fn camera(from: DVec3, at: DVec3) -> Camera {
-    Camera { from, at, up: DVec3::Y, field_of_view: 35.0, near: 0.0, far: None, lens: None, parallel: None }
+    Camera {
+        from,
+        at,
+        up: DVec3::Y,
+        field_of_view: 35.0,
+        near: 0.0,
+        far: None,
+        lens: None,
+        parallel: None,
+        motion: None,
+    }
 }
 
 fn usual() -> Camera {

@@ -3,7 +3,7 @@
 use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::Ray;
 use crate::numeric::sampling::disk;
-use crate::scene::{Camera, Lens, Projection, View};
+use crate::scene::{Camera, Lens, Motion, Projection, View};
 use glam::{DMat3, DVec3, DVec4};
 
 /// A ray from the origin into the picture, in the place of one that an eye does not have.
@@ -48,6 +48,8 @@ pub(in crate::render) struct CameraRays {
     /// Clip coordinates a pixel to the right and a pixel down.
     step: [f64; 2],
     kind: Kind,
+    /// How the camera moves while the shutter is open.
+    motion: Option<Motion>,
     /// Part of a pixel that a ray stands for, as a side of a square; 0 where no one asks for it.
     part: f64,
 }
@@ -72,7 +74,11 @@ impl CameraRays {
             View::Projection(projection) => Kind::of_matrix(projection, bounds)?,
         };
         let step = [(x_max - x_min) / f64::from(width), (y_min - y_max) / f64::from(height)];
-        Some(CameraRays { corner: [x_min, y_max], step, kind, part: 0.0 })
+        let motion = match view {
+            View::Camera(camera) => camera.motion,
+            View::Projection(_) => None,
+        };
+        Some(CameraRays { corner: [x_min, y_max], step, kind, motion, part: 0.0 })
     }
 
     /// The position of a camera; none for views along parallel lines and by matrices.
@@ -81,6 +87,11 @@ impl CameraRays {
             Kind::Camera { from, .. } => Some(from),
             Kind::Matrix { .. } => None,
         }
+    }
+
+    /// Whether the rays of a point of the picture differ from time to time.
+    pub(in crate::render) fn moves(&self) -> bool {
+        self.motion.is_some()
     }
 
     /// The place in the picture, in pixels from the left upper corner, of clip coordinates, divided by the fourth.
@@ -108,6 +119,16 @@ impl CameraRays {
         let width = (apart - one.direction * apart.dot(one.direction)).length() * self.part;
         let growth = (two.direction - one.direction).length() * self.part;
         Some(BoundedRay { cone: RayCone { width, growth }, ..bounded })
+    }
+
+    /// The ray through a point of the picture at a time.
+    ///
+    /// - `time`: from the middle of the time in which the shutter is open.
+    #[inline]
+    pub(in crate::render) fn ray_at(&self, at: [f64; 2], through: [f64; 2], time: f64) -> Option<BoundedRay> {
+        let bounded = self.ray(at, through)?;
+        let Some(motion) = self.motion else { return Some(bounded) };
+        Some(BoundedRay { ray: motion.at(time).carried(&bounded.ray), ..bounded })
     }
 
     /// The ray without its cone.
@@ -229,7 +250,17 @@ mod tests {
 
     fn camera() -> Camera {
         let (from, at) = (DVec3::new(3.0, 2.0, 9.0), DVec3::new(0.5, 1.0, -1.0));
-        Camera { from, at, up: DVec3::Y, field_of_view: 35.0, near: 2.0, far: Some(30.0), lens: None, parallel: None }
+        Camera {
+            from,
+            at,
+            up: DVec3::Y,
+            field_of_view: 35.0,
+            near: 2.0,
+            far: Some(30.0),
+            lens: None,
+            parallel: None,
+            motion: None,
+        }
     }
 
     #[test]

@@ -64,9 +64,9 @@ impl ScatterCells {
     /// [`ShapeError`], if there is no ground or a skewed one.
     pub(in crate::scene) fn new(scatter: &Scatter, side: f64, angle: f64) -> Result<ScatterCells, ShapeError> {
         let Scatter { on, count, density, slope: [flattest, steepest], height, .. } = scatter;
-        let standing = Standing::new(scatter);
         let frame = GroundFrame::of(on).ok_or_else(|| ShapeError::NoCells { object: on.name.clone() })?;
         let GroundFrame { to_instances, size } = frame;
+        let standing = Standing::new(scatter).within(to_instances);
         let surface = ScatterSurface::new(on, density, None, angle)?;
         let vertical = to_instances.matrix3.transpose() * DVec3::Y;
         let slope = vertical.y.clamp(-1.0, 1.0).acos().to_degrees();

@@ -17,7 +17,7 @@ pub(super) use cells::ScatterCells;
 pub(super) use parts::ScatterParts;
 pub(super) use places::FoundPlaces;
 
-use super::object::{Scatter, Shape};
+use super::object::{Scatter, Shape, Sway};
 use crate::octree::{MOST_CELLS, MOST_IN_CELL, MOST_INSTANCES};
 
 impl Scatter {
@@ -53,6 +53,12 @@ impl Scatter {
             ("upright", (0.0..=1.0).contains(upright)),
             ("shares", shares.len() == prototypes && shares.iter().all(is_share)),
         ];
+        if let Some(Sway { wind, time, lean }) = &self.sway {
+            wind.check().map_err(|error| error.to_string())?;
+            if !time.is_finite() || !(0.0..90.0).contains(lean) {
+                return Err("sway is out of range".into());
+            }
+        }
         match rows.into_iter().find(|(_, is_sound)| !is_sound) {
             Some((what, _)) => Err(format!("{what} is out of range")),
             None => self.check_counts(),

@@ -1,10 +1,16 @@
 //! How an instance stands that is somewhere by chance.
 
-use super::super::object::Scatter;
+use super::super::object::{Scatter, Sway};
 use crate::numeric::sampling::{RandomStream, disk_across, part_of};
 use crate::octree::{Instance, Prototype};
+use crate::procedural::Wind;
 use glam::{DAffine3, DMat3, DVec3};
 use std::f64::consts::TAU;
+
+/// At this speed what the wind bends leans as far as is told, units of length a second.
+const SWAY_SPEED: f64 = 10.0;
+/// Gusts that are faster than the mean speed by more than so many standard deviations bend no more.
+const STRONGEST: f64 = 2.0;
 
 /// What is drawn for each instance, and within which ranges.
 #[derive(Clone, Debug)]
@@ -16,6 +22,9 @@ pub(super) struct Standing {
     lean: f64,
     upright: f64,
     sink: f64,
+    sway: Option<Sway>,
+    /// From coordinates in which places are told to those of the instances; a rotation and a translation.
+    to_instances: DAffine3,
     /// Of the shares of the prototypes, the part up to each.
     below: Vec<f64>,
     pub(super) shares: Vec<f64>,
@@ -24,10 +33,16 @@ pub(super) struct Standing {
 
 impl Standing {
     pub(super) fn new(scatter: &Scatter) -> Standing {
-        let Scatter { scale, turn, lean, upright, sink, ref shares, seed, .. } = *scatter;
+        let Scatter { scale, turn, lean, upright, sink, ref shares, ref sway, seed, .. } = *scatter;
         let below = parts_below(shares.iter().copied());
         let (turn, lean) = (turn.to_radians(), lean.to_radians());
-        Standing { scale, turn, lean, upright, sink, below, shares: shares.clone(), seed }
+        let (shares, sway, to_instances) = (shares.clone(), sway.clone(), DAffine3::IDENTITY);
+        Standing { scale, turn, lean, upright, sink, sway, to_instances, below, shares, seed }
+    }
+
+    /// These, with places that are told in other coordinates.
+    pub(super) fn within(self, to_instances: DAffine3) -> Standing {
+        Standing { to_instances, ..self }
     }
 
     /// Whether there is nothing to place.
@@ -42,6 +57,7 @@ impl Standing {
         let up = self.up(normal, vertical);
         let offset = disk_across(up, random.point());
         let up = (up + offset * self.lean.tan()).try_normalize().unwrap_or(up);
+        let up = self.bent(at, up);
         let turned = (self.turn * (random.uniform() - 0.5)).rem_euclid(TAU);
         // Where nothing is turned, x stays as much along x as it can.
         let across = [DVec3::X, DVec3::Z].map(|axis| axis - up * up.dot(axis));
@@ -55,6 +71,22 @@ impl Standing {
         let variation = (random.uniform() * 65_536.0) as u16;
         let placement = DAffine3 { matrix3, translation: at - up * (self.sink * scale) };
         Instance { prototype: prototype as u16, variation, placement }
+    }
+
+    /// Where an axis points when the wind bends it.
+    fn bent(&self, at: DVec3, up: DVec3) -> DVec3 {
+        let Some(Sway { wind, time, lean }) = &self.sway else { return up };
+        let velocity = wind.at(self.to_instances.transform_point3(at), *time);
+        let speed = velocity.length().min(strongest(wind));
+        let towards = self.to_instances.matrix3.transpose() * velocity.normalize_or_zero();
+        let across = towards - up * towards.dot(up);
+        (up + across * slant(*lean, speed)).try_normalize().unwrap_or(up)
+    }
+
+    /// How far an axis leans at the most, by chance and by the wind, radians.
+    fn most_lean(&self) -> f64 {
+        let bent = |Sway { wind, lean, .. }: &Sway| slant(*lean, strongest(wind)).atan();
+        self.lean + self.sway.as_ref().map_or(0.0, bent)
     }
 
     /// Where the axis of one points that does not lean.
@@ -72,7 +104,7 @@ impl Standing {
     ///
     /// - `vertical`: up, where the normal of the surface is y.
     pub(super) fn level_reach(&self, prototypes: &[Prototype], vertical: DVec3) -> (f64, [f64; 2]) {
-        let tilt = self.up(DVec3::Y, vertical).y.clamp(-1.0, 1.0).acos() + self.lean;
+        let tilt = self.up(DVec3::Y, vertical).y.clamp(-1.0, 1.0).acos() + self.most_lean();
         let (sine, cosine) = if tilt < TAU / 4.0 { tilt.sin_cos() } else { (1.0, 0.0) };
         let corners = prototypes.iter().filter(|of| !of.bounds().is_empty()).flat_map(|of| of.bounds().corners());
         let (mut along, mut heights) = (0.0_f64, [0.0_f64; 2]);
@@ -86,6 +118,18 @@ impl Standing {
         }
         (along * self.scale[1], heights.map(|height| height * self.scale[1]))
     }
+}
+
+/// The speed beyond which nothing is bent more.
+fn strongest(wind: &Wind) -> f64 {
+    wind.mean.length() * (1.0 + STRONGEST * wind.gusts.hypot(wind.turbulence))
+}
+
+/// The tangent of the angle by which the wind bends an axis across it.
+///
+/// - `lean`: the angle at [`SWAY_SPEED`], degrees. `speed`: of the wind.
+fn slant(lean: f64, speed: f64) -> f64 {
+    lean.to_radians().tan() * (speed / SWAY_SPEED).powi(2)
 }
 
 /// For each of some amounts, what part of their sum those up to it are; nothing if the sum is 0.

@@ -1,32 +1,20 @@
 //! Tests of scattered instances: how many, where, and how they stand.
 
-use super::super::object::{Instances, Object, Placing, Scatter, Shape};
+use super::super::object::{Instances, Object, Placing, Scatter, Shape, Sway};
 use super::ScatterParts;
 use crate::illumination::Paint;
 use crate::illumination::texture::{Band, Motif, NumberTexture, Pattern, TextureMapping, Varying};
 use crate::numeric::bounds::Bounds;
-use crate::octree::{Instance, InstanceParts};
+use crate::octree::{CellInstances, Instance, InstanceParts, Octree, OctreeSettings, Prototype};
+use crate::procedural::Wind;
 use crate::solid::Primitive;
+use crate::surface::Tolerance;
 use glam::{DMat3, DMat4, DVec3};
+use std::sync::Arc;
 
 /// Everything about the origin, on a level square of 10 or on something else.
 fn scatter(count: usize) -> Scatter {
-    Scatter {
-        on: on(Shape::Ground { size: 10.0 }, DMat4::IDENTITY),
-        count,
-        cell: None,
-        distance: 0.0,
-        density: NumberTexture::Constant(1.0),
-        slope: [0.0, 180.0],
-        height: [f64::NEG_INFINITY, f64::INFINITY],
-        scale: [1.0, 1.0],
-        turn: 360.0,
-        lean: 0.0,
-        upright: 0.0,
-        sink: 0.0,
-        shares: vec![1.0],
-        seed: 7,
-    }
+    Scatter { seed: 7, ..Scatter::over(on(Shape::Ground { size: 10.0 }, DMat4::IDENTITY), count) }
 }
 
 fn on(shape: Shape, transform: DMat4) -> Object {
@@ -245,4 +233,79 @@ fn cells_that_cannot_be_are_refused() {
     assert!(refusal(Scatter { on: on(Shape::Ground { size: 10.0 }, skewed), ..in_cells(1.0) }).contains("not skewed"));
     assert!(refusal(Scatter { distance: 0.1, ..in_cells(1.0) }).contains("a distance is not kept"));
     assert!(refusal(Scatter { count: 1 << 23, ..in_cells(1.0) }).contains("instances in a cell"));
+}
+
+/// A wind along x.
+fn wind(speed: f64, gusts: f64) -> Wind {
+    Wind {
+        mean: DVec3::X * speed,
+        gusts,
+        gust_size: 4.0,
+        turbulence: 0.5 * gusts,
+        eddy_size: 2.0,
+        octaves: 2,
+        period: None,
+        seed: 3,
+    }
+}
+
+#[test]
+fn the_wind_bends_by_the_square_of_its_speed_the_way_it_blows() {
+    let bent = |wind: &Wind, time: f64, of: Scatter| {
+        all(&Scatter { sway: Some(Sway { wind: wind.clone(), time, lean: 6.0 }), ..of })
+    };
+    let axis = |instance: &Instance| instance.placement.matrix3.y_axis.normalize();
+    for (speed, degrees) in
+        [(0.0, 0.0_f64), (10.0, 6.0), (20.0, (4.0 * 6.0_f64.to_radians().tan()).atan().to_degrees())]
+    {
+        for instance in bent(&wind(speed, 0.0), 3.0, scatter(40)) {
+            let leans = axis(&instance).angle_between(DVec3::Y).to_degrees();
+            assert!((leans - degrees).abs() < 1e-5 && axis(&instance).z.abs() < 1e-12, "{speed}: {leans}");
+        }
+    }
+    // It changes where nothing is but how it stands, as long as it is of one time; and a storm lays all flat.
+    let gusty = wind(10.0, 0.5);
+    let [now, again, later] = [1.0, 1.0, 1.3].map(|time| bent(&gusty, time, scatter(200)));
+    assert!(now == again && now != later);
+    for (one, other) in now.iter().zip(&later) {
+        assert_eq!((one.placement.translation, one.variation), (other.placement.translation, other.variation));
+    }
+    let leaning: Vec<f64> = now.iter().map(|one| axis(one).angle_between(DVec3::Y)).collect();
+    let most = ((1.0 + 2.0 * 0.5_f64.hypot(0.25)).powi(2) * 6.0_f64.to_radians().tan()).atan();
+    assert!(leaning.iter().all(|angle| *angle <= most + 1e-9) && leaning.iter().any(|angle| *angle > 0.2));
+    assert!(bent(&wind(1e6, 0.3), 1e6, scatter(50)).iter().all(|one| axis(one).y < 1e-3 && axis(one).x > 0.3));
+}
+
+#[test]
+fn cells_hold_what_the_wind_bends_in_them_however_the_ground_is_placed() {
+    let shape = Shape::Solid(Primitive::Box { size: DVec3::new(0.1, 1.0, 0.1) }.into());
+    let mesh = on(shape, DMat4::from_translation(DVec3::Y * 0.5));
+    let mesh = mesh.in_place(mesh.shape.tessellate(Tolerance { chord: 1e-3, angle: 45.0 }).expect("a box")).mesh;
+    let octree = Octree::sharing(Arc::new(mesh.vertices), Arc::new(mesh.triangles), &OctreeSettings::default());
+    let prototype = Prototype::surface(Arc::new(octree.expect("small")), 0);
+    let post = prototype.bounds();
+    let sway = |speed: f64| Some(Sway { wind: wind(speed, 0.6), time: 2.0, lean: 10.0 });
+    for turned in [DMat4::IDENTITY, DMat4::from_rotation_y(2.0), DMat4::from_rotation_z(0.4)] {
+        for speed in [5.0, 20.0, 1e6] {
+            let ground = on(Shape::Ground { size: 10.0 }, turned);
+            let scatter = Scatter { on: ground, cell: Some(1.0), sway: sway(speed), upright: 1.0, ..scatter(3) };
+            let cells = super::ScatterCells::new(&scatter, 1.0, 45.0).expect("a ground");
+            let grid = cells.grid(std::slice::from_ref(&prototype));
+            for number in 0..cells.count_of_all() {
+                let cell = [number / 30, number / 3 % 10];
+                let instance = cells.instance(cell.map(|side| side as u32), (number % 3) as u32);
+                let own = Bounds::of(post.corners().map(|corner| instance.placement.transform_point3(corner)));
+                let corner = DVec3::new(cell[0] as f64 - 5.0, 0.0, cell[1] as f64 - 5.0);
+                let (over, [low, high]) = (grid.overhang + 1e-9, grid.heights);
+                let least = DVec3::new(corner.x - over, low - 1e-9, corner.z - over);
+                let most = DVec3::new(corner.x + 1.0 + over, high + 1e-9, corner.z + 1.0 + over);
+                assert!(own.min.cmpge(least).all() && own.max.cmple(most).all(), "{speed}: {own:?} {grid:?}");
+            }
+            // Where it is bent does not depend on how its cell is turned.
+            let of_all = cells.instance_of_all(7).placement;
+            let bends = wind(speed, 0.6).at(of_all.translation, 2.0).normalize();
+            let y = of_all.matrix3.y_axis.normalize();
+            assert!(y.dot(DVec3::Y.cross(bends)).abs() < 1e-6, "{y} {bends}");
+        }
+    }
 }

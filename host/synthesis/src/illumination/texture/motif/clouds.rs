@@ -1,8 +1,8 @@
 //! Clouds of a second paint in the first.
 
 use super::super::TextureError;
-use super::super::noise::octaves;
 use super::sampled::Sampled;
+use crate::numeric::noise::octaves;
 
 /// Most octaves of noise.
 const MOST_OCTAVES: u32 = 16;

@@ -1,8 +1,8 @@
 //! Veins of a second paint in the first.
 
-use super::super::noise::octaves;
 use super::super::{TextureError, positive};
 use super::sampled::{Sampled, check_turbulence, sinc};
+use crate::numeric::noise::octaves;
 use std::f64::consts::TAU;
 
 /// Refuses veins that stray by a negative amount, or are too narrow.

@@ -1,8 +1,8 @@
 //! Rings of early and late wood about an axis.
 
 use super::super::TextureError;
-use super::super::noise::octaves;
 use super::sampled::{Sampled, check_turbulence, sinc};
+use crate::numeric::noise::octaves;
 use glam::DVec3;
 
 /// The place in a ring of wood where the late wood ends and the next year begins.
