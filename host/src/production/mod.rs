@@ -17,8 +17,9 @@ use crate::{
     render::{RenderError, RenderOrder, Watch, World, radiosity::Radiosity, tiles::Tiling},
     scene::{Camera, Interreflection, Prepared, Projection, Scene, View},
     workstation::{
-        Drawing, DrawnInstances, InitialView, Session, StructureCommands, WorkstationError, network, raster, structure,
-        tiles,
+        Drawing, DrawnInstances, DrawnMotion, InitialView, Session, StructureCommands, WorkstationError,
+        motion::{self, MOTION_KEY},
+        network, raster, structure, tiles,
     },
 };
 use glam::{DMat4, DVec3};
@@ -92,6 +93,8 @@ pub struct Sent {
     pub points: usize,
     /// What is drawn of the instances, in a scene that has any.
     pub instances: Option<DrawnInstances>,
+    /// What moves, in a scene where something does.
+    pub motion: Option<DrawnMotion>,
     /// From when they were chosen until the workstation had them, seconds.
     pub seconds: f64,
 }
@@ -99,8 +102,8 @@ pub struct Sent {
 impl Sent {
     /// - `begun`: when it was chosen.
     fn of(shown: &StructureCommands, begun: Instant) -> Sent {
-        let StructureCommands { lines, points, instances, .. } = *shown;
-        Sent { lines, points, instances, seconds: begun.elapsed().as_secs_f64() }
+        let StructureCommands { lines, points, instances, motion, .. } = *shown;
+        Sent { lines, points, instances, motion, seconds: begun.elapsed().as_secs_f64() }
     }
 }
 
@@ -150,7 +153,11 @@ impl Production {
             // The node that shades was made anew.
             self.session.commands(&network::shading())?;
         }
+        let moved = self.sent.motion.is_some();
         self.sent = Sent::of(&shown, begun);
+        if moved && self.sent.motion.is_none() {
+            self.label(MOTION_KEY.0, "")?;
+        }
         (self.prepared, self.initial, self.depth_clipping) = (Arc::new(prepared), initial, shown.depth_clipping);
         if keeps_dials { Ok(self.session.synchronize()?) } else { self.reset() }
     }
@@ -276,7 +283,7 @@ impl Production {
         Ok(self.session.commands(&[network::label(key, text)])?)
     }
 
-    /// Puts the dials back to where they began.
+    /// Puts the dials back to where they began, and lets what moves begin anew.
     ///
     /// # Errors
     /// [`ProductionError::Workstation`].
@@ -284,6 +291,9 @@ impl Production {
         self.session.commands(&network::reset())?;
         if self.sent.instances.is_some() {
             self.session.commands(&network::reset_detail())?;
+        }
+        if self.sent.motion.is_some() {
+            self.session.commands(&motion::restart())?;
         }
         if self.is_lit {
             self.session.commands(&network::shade())?;

@@ -12,15 +12,16 @@ pub mod tiles;
 mod parts;
 mod instancing;
 pub mod network;
+pub mod motion;
 pub mod structure;
 pub mod session;
 pub mod emulator;
 
-pub use drawing::{Drawing, DrawnEdges};
+pub use drawing::{Drawing, DrawnEdges, MotionPeriod};
 pub use emulator::Emulator;
 pub use error::WorkstationError;
 pub use initial_view::InitialView;
 pub use names::ROOT;
 pub use session::Session;
-pub use structure_commands::{DrawnInstances, StructureCommands};
+pub use structure_commands::{DrawnInstances, DrawnMotion, StructureCommands};
 pub use timeouts::Timeouts;

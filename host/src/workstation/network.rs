@@ -64,22 +64,22 @@ const DETAIL_SUM: &str = "PERIS_D";
 
 /// A small builder: names of ours are known to be legal.
 #[derive(Debug, Default)]
-struct Build {
-    commands: Vec<Command>,
+pub(super) struct Build {
+    pub(super) commands: Vec<Command>,
 }
 
 impl Build {
-    fn function(&mut self, instance: &str, function: &str) {
+    pub(super) fn function(&mut self, instance: &str, function: &str) {
         let object = Object::Function { function: name(function), size: None };
         self.commands.push(Command::Define { name: Some(name(instance)), object });
     }
 
-    fn connect(&mut self, source: &str, output: u16, input: u32, to: &str) {
+    pub(super) fn connect(&mut self, source: &str, output: u16, input: u32, to: &str) {
         let destination = Destination { input: Input::Number(input), name: name(to) };
         self.commands.push(Command::Connect(Arc { source: name(source), output, destination }));
     }
 
-    fn send(&mut self, value: Value, input: u32, to: &str) {
+    pub(super) fn send(&mut self, value: Value, input: u32, to: &str) {
         self.commands.push(send(value, input, to));
     }
 

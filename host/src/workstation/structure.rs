@@ -7,6 +7,7 @@ use super::{
     Drawing, InitialView, StructureCommands, WorkstationError,
     facets::{self, mirrored},
     instancing::{self, CHOSEN_LEVEL, ShownInstances},
+    motion,
     names::{DETAIL, ROOT, name},
     parts::{Fineness, MaterialPart, parts},
     tiles,
@@ -35,10 +36,12 @@ pub fn delete() -> Command {
     Command::Delete(vec![NamePattern::Prefix(ROOT.to_string())])
 }
 
-/// Deletes the objects of a scene whose structure is about to be defined anew, what their polygons look like, and what
-/// their instances place. Its nodes, and the arcs to them, stay.
+/// Deletes the objects of a scene whose structure is about to be defined anew, what their polygons look like, what their
+/// instances place, and what moves them. Its other nodes, and the arcs to them, stay.
 pub fn delete_objects() -> Command {
-    Command::Delete([format!("{ROOT}.O"), format!("{ROOT}_A"), format!("{ROOT}_I")].map(NamePattern::Prefix).into())
+    let moving = [format!("{ROOT}.{}", motion::NODE_PREFIX), motion::NETWORK_PREFIX.to_owned()];
+    let objects = [format!("{ROOT}.O"), format!("{ROOT}_A"), format!("{ROOT}_I")];
+    Command::Delete(objects.into_iter().chain(moving).map(NamePattern::Prefix).collect())
 }
 
 /// The commands that build the structure [`ROOT`] and display it; [`delete`] comes before them.
@@ -46,7 +49,8 @@ pub fn delete_objects() -> Command {
 /// Its nodes `CLIP`, `VIEW`, `LOOK`, `T`, `RX`, `RY`, `RZ`, `S` take values from networks; `MATRIX` is an XFORM
 /// MATRIX node below them all, whose matrix takes scene coordinates (z negated) to clip space. `PICK` is a SET PICKING,
 /// OFF at first: what is picked of object n has the identifier `On`. In a scene with instances, `DETAIL` is a
-/// SET LEVEL_OF_DETAIL that all of them obey.
+/// SET LEVEL_OF_DETAIL that all of them obey. What moves alike is in one structure `MOVEn`, whose nodes `T` and `R` a
+/// network moves and turns; its commands are the last.
 ///
 /// - `initial`: from where it is seen. `bounds`: a box around what is looked at, over which the depth cue runs.
 ///
@@ -113,19 +117,16 @@ pub fn with_light(
         out.operate(Some(DETAIL), Operate::SetLevelOfDetail(CHOSEN_LEVEL));
     }
     out.operate(Some("PICK"), Operate::SetPicking(false));
-    for (index, parts) in objects.into_iter().enumerate() {
-        let number = format!("O{}", index + 1);
-        out.begin(&number);
-        out.operate(None, Operate::SetPickingIdentifier(name(&number)));
-        if let Some(nodes) = placed.remove(&index) {
-            out.commands.extend(nodes);
-        }
-        for (k, MaterialPart { material, data }) in (1..).zip(parts) {
-            // The colour of vectors has no value: brightness comes from the intensity.
-            let [hue, saturation] = facets::hue_saturation(facets::main_color(&material));
-            out.operate(None, Operate::SetColor { hue, saturation });
-            let node = if k == 1 { "D".to_owned() } else { format!("D{k}") };
-            out.commands.push(Command::Define { name: Some(name(&node)), object: data });
+    let moving = if drawing.motion.is_some() { motion::groups(scene) } else { Vec::new() };
+    let mut stands = vec![true; objects.len()];
+    moving.iter().flat_map(|group| &group.objects).for_each(|index| stands[*index] = false);
+    for index in (0..objects.len()).filter(|index| stands[*index]) {
+        self::object(&mut out, index, std::mem::take(&mut objects[index]), placed.remove(&index));
+    }
+    for (number, group) in (1..).zip(&moving) {
+        group.begin(number, &mut out);
+        for &index in &group.objects {
+            self::object(&mut out, index, std::mem::take(&mut objects[index]), placed.remove(&index));
         }
         out.end();
     }
@@ -137,7 +138,30 @@ pub fn with_light(
     }
     out.end();
     out.commands.push(Command::Display(name(ROOT)));
+    if let Some(period) = drawing.motion.filter(|_| !moving.is_empty()) {
+        let (network, drawn) = motion::network(&moving, period);
+        out.commands.extend(network);
+        out.motion = Some(drawn);
+    }
     Ok(out)
+}
+
+/// The structure of an object.
+///
+/// - `index`: its number in the scene, from 0. `placed`: the nodes of its instances, if it has any.
+fn object(out: &mut StructureCommands, index: usize, parts: Vec<MaterialPart>, placed: Option<Vec<Command>>) {
+    let number = format!("O{}", index + 1);
+    out.begin(&number);
+    out.operate(None, Operate::SetPickingIdentifier(name(&number)));
+    out.commands.extend(placed.into_iter().flatten());
+    for (k, MaterialPart { material, data }) in (1..).zip(parts) {
+        // The colour of vectors has no value: brightness comes from the intensity.
+        let [hue, saturation] = facets::hue_saturation(facets::main_color(&material));
+        out.operate(None, Operate::SetColor { hue, saturation });
+        let node = if k == 1 { "D".to_owned() } else { format!("D{k}") };
+        out.commands.push(Command::Define { name: Some(name(&node)), object: data });
+    }
+    out.end();
 }
 
 /// Viewport, projection, eye, and what the dials change.

@@ -8,6 +8,8 @@ use protocol::{
 
 /// Steps of detail in which instances are drawn: in full, coarse, as outlines, as strokes.
 pub const DETAILS: usize = 4;
+/// Frames that clocks of the workstation count in a second.
+pub const FRAMES_PER_SECOND: u32 = 60;
 
 /// What a scene becomes on the workstation.
 #[derive(Clone, Debug, Default)]
@@ -22,6 +24,8 @@ pub struct StructureCommands {
     pub depth_clipping: bool,
     /// What is drawn of the instances, in a scene that has any.
     pub instances: Option<DrawnInstances>,
+    /// What moves, in a scene where something does.
+    pub motion: Option<DrawnMotion>,
 }
 
 /// What of the instances of a scene is drawn.
@@ -33,6 +37,17 @@ pub struct DrawnInstances {
     pub drawn: [u64; DETAILS],
     /// Vectors, or corners of polygons, that draw them.
     pub lines: usize,
+}
+
+/// What of a scene moves on the workstation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DrawnMotion {
+    /// Objects that move.
+    pub objects: usize,
+    /// Motions that are different from each other.
+    pub motions: usize,
+    /// Frames of 1/60 s after which all begin anew.
+    pub frames: i32,
 }
 
 impl StructureCommands {
@@ -70,5 +85,19 @@ impl DrawnInstances {
         let left = self.count - all.min(self.count);
         let left = if left > 0 { format!("; {left} are left out, the smallest in the picture") } else { String::new() };
         format!("{all} of {} instances drawn{parts}{left}", self.count)
+    }
+}
+
+impl DrawnMotion {
+    /// How long all move before they begin anew, seconds.
+    pub fn seconds(&self) -> f64 {
+        f64::from(self.frames) / f64::from(FRAMES_PER_SECOND)
+    }
+
+    /// What moves, and how long, in one line.
+    pub fn describe(&self) -> String {
+        let counted = |count: usize, word: &str| format!("{count} {word}{}", if count == 1 { "" } else { "s" });
+        let (objects, motions) = (counted(self.objects, "object"), counted(self.motions, "motion"));
+        format!("{objects} in {motions}, which begin anew every {} s", (self.seconds() * 1e3).round() / 1e3)
     }
 }

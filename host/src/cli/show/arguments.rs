@@ -2,7 +2,7 @@
 
 use crate::cli::timeouts::TimeoutArguments;
 use crate::cli::{SCRIPT_HELP, ScriptArguments};
-use crate::workstation::{Drawing, DrawnEdges};
+use crate::workstation::{Drawing, DrawnEdges, MotionPeriod};
 use clap::Args;
 use protocol::address::Address;
 use std::{num::NonZeroUsize, path::PathBuf};
@@ -55,6 +55,10 @@ pub(super) struct ShowArguments {
     /// [default: 40000, which the machine draws 30 times a second, and 200000 corners]
     #[arg(long, value_name = "COUNT", value_parser = crate::cli::values::vectors)]
     pub(super) most: Option<usize>,
+    /// What moves begins anew after so many seconds; the unit of time of a script is a second [default: when all that only
+    /// turns is back where it was, and 4 s where something moves along]
+    #[arg(long = "loop", value_name = "SECONDS", value_parser = crate::cli::values::period)]
+    pub(super) period: Option<f64>,
     /// Opens no window, even if there is a display: operator commands from standard input do all
     #[arg(long, conflicts_with = "to")]
     pub(super) headless: bool,
@@ -80,6 +84,7 @@ impl ShowArguments {
             tolerance: self.tolerance,
             facets: self.facets,
             most: self.most,
+            motion: Some(self.period.map_or(MotionPeriod::Seamless, MotionPeriod::Seconds)),
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::{
     production::{Production, Sent},
     render::tiles::Tiling,
     script::Evaluated,
-    workstation::{DrawnInstances, Emulator, Session, Timeouts, network::KEYS},
+    workstation::{DrawnInstances, DrawnMotion, Emulator, Session, Timeouts, motion::MOTION_KEY, network::KEYS},
 };
 use arguments::ShowArguments;
 use clap::{Args, FromArgMatches};
@@ -25,7 +25,7 @@ use view_reporter::ViewReporter;
 
 pub(super) const ROW: SubcommandRow = SubcommandRow {
     name: "show",
-    summary: "Shows a scene on a PS 340 with dials and keys: key 1 renders the view there, key 4 stops that, key 2 resets, key 3 tells the view as a line of a script, key 12 ends.",
+    summary: "Shows a scene on a PS 340 with dials and keys: key 1 renders the view there, key 4 stops that, key 2 resets, key 3 tells the view as a line of a script, key 5 stops what moves or lets it go on, key 12 ends.",
     arguments: ShowArguments::augment_args,
     run: |matches| run(&ShowArguments::from_arg_matches(matches)?),
 };
@@ -61,7 +61,9 @@ fn run(arguments: &ShowArguments) -> Result<(), CommandFailure> {
     if arguments.once {
         return Ok(());
     }
-    for (number, label, _) in KEYS.iter().filter(|_| !arguments.json) {
+    let keys = KEYS.iter().map(|&(number, label, _)| (number, label));
+    let keys = keys.chain(production.sent().motion.map(|_| MOTION_KEY));
+    for (number, label) in keys.filter(|_| !arguments.json) {
         say!("key {number}: {label}");
     }
     let mut told = ViewReporter::new(file, arguments.json);
@@ -97,7 +99,7 @@ fn start(arguments: &ShowArguments, timeouts: Timeouts) -> Result<Emulator, Comm
 
 /// Says what was sent.
 fn report(arguments: &ShowArguments, line: &Address, sent: Sent, light: Option<&Tiling>) {
-    let Sent { lines, points, instances, seconds } = sent;
+    let Sent { lines, points, instances, motion, seconds } = sent;
     let light = light.map(|light| (light.elements, light.tiles.len(), light.corners(), light.tolerance));
     if arguments.json {
         let light = light.map(|(elements, polygons, corners, tolerance)| {
@@ -110,13 +112,20 @@ fn report(arguments: &ShowArguments, line: &Address, sent: Sent, light: Option<&
                 "count": count, "full": full, "coarse": coarse, "outlines": outlines, "strokes": strokes, "vectors": lines,
             })
         });
+        let motion = motion.map(|motion: DrawnMotion| {
+            serde_json::json!({
+                "objects": motion.objects, "motions": motion.motions, "period_seconds": motion.seconds(),
+            })
+        });
         let known = serde_json::json!({
-            "line": line, "vectors": lines, "points": points, "instances": instances, "light": light, "seconds": seconds,
+            "line": line, "vectors": lines, "points": points, "instances": instances, "motion": motion, "light": light,
+            "seconds": seconds,
         });
         return say!("{known}");
     }
     say!("{lines} vectors ({points} points) shown on {line} after {seconds:.3} s");
     instances.iter().for_each(|instances| say!("{}", instances.describe()));
+    motion.iter().for_each(|motion| say!("{}", motion.describe()));
     if let Some((elements, polygons, corners, tolerance)) = light {
         let steps = tolerance * 255.0;
         say!(

@@ -10,6 +10,7 @@ use crate::{
     scene::Scene,
     workstation::{
         Emulator, WorkstationError,
+        motion::MOTION_KEY,
         network::{FunctionKey, KEY_PREFIX, KEYS},
     },
 };
@@ -106,6 +107,8 @@ impl<'a> Server<'a> {
                 Some(FunctionKey::Reset) => self.production.reset()?,
                 Some(FunctionKey::Camera) => self.view_reporter.report(self.production)?,
                 Some(FunctionKey::End) => return Ok(()),
+                // The workstation has done what it asks for.
+                None if number == Some(MOTION_KEY.0) => {}
                 None => say!("message: {}", String::from_utf8_lossy(&message)),
             }
         }
@@ -166,6 +169,7 @@ impl<'a> Server<'a> {
         if !self.arguments.json {
             say!("{} vectors shown anew after {:.3} s", sent.lines, sent.seconds);
             sent.instances.iter().for_each(|instances| say!("{}", instances.describe()));
+            sent.motion.iter().for_each(|motion| say!("{}", motion.describe()));
         }
         Ok(())
     }
