@@ -40,6 +40,8 @@ pub struct Model {
     initial: InitialView,
     structure: StructureCommands,
     is_lit: bool,
+    /// The scene, if something moves in it.
+    moving: Option<Arc<Scene>>,
     begun: Instant,
 }
 
@@ -62,7 +64,8 @@ impl Model {
         let own = InitialView::of(&prepared)?;
         let initial = initial.map_or(own, |initial| InitialView { elongation: own.elongation, ..initial });
         let shown = structure::with_light(scene, &initial, &prepared.subject(), drawing, light)?;
-        Ok(Model { prepared, initial, structure: shown, is_lit: light.is_some(), begun })
+        let moving = shown.motion.map(|_| Arc::new(scene.clone()));
+        Ok(Model { prepared, initial, structure: shown, is_lit: light.is_some(), moving, begun })
     }
 
     /// From where it is seen before dials turn it.
@@ -79,6 +82,7 @@ pub struct Production {
     session: Session,
     depth_clipping: bool,
     is_lit: bool,
+    moving: Option<Arc<Scene>>,
     sent: Sent,
     /// Width and height of the image on the raster screen, if one was sent.
     image: Option<[u32; 2]>,
@@ -128,7 +132,7 @@ impl Production {
     /// # Errors
     /// [`ProductionError::Workstation`].
     pub fn show(model: Model, mut session: Session) -> Result<Production, ProductionError> {
-        let Model { prepared, initial, structure: shown, is_lit, begun } = model;
+        let Model { prepared, initial, structure: shown, is_lit, moving, begun } = model;
         session.show(&shown, initial.movement())?;
         if is_lit {
             session.commands(&tiles::settings(prepared.background))?;
@@ -137,7 +141,8 @@ impl Production {
         }
         let sent = Sent::of(&shown, begun);
         let depth_clipping = shown.depth_clipping;
-        Ok(Production { prepared: Arc::new(prepared), initial, session, depth_clipping, is_lit, sent, image: None })
+        let prepared = Arc::new(prepared);
+        Ok(Production { prepared, initial, session, depth_clipping, is_lit, moving, sent, image: None })
     }
 
     /// Shows another scene in place of this one, which was shown with light if that is.
@@ -147,17 +152,16 @@ impl Production {
     /// # Errors
     /// [`ProductionError::Workstation`].
     pub fn replace(&mut self, model: Model, keeps_dials: bool) -> Result<(), ProductionError> {
-        let Model { prepared, initial, structure: shown, begun, .. } = model;
+        let Model { prepared, initial, structure: shown, moving, begun, .. } = model;
         self.session.replace(&shown, initial.movement())?;
         if self.is_lit {
             // The node that shades was made anew.
             self.session.commands(&network::shading())?;
         }
-        let moved = self.sent.motion.is_some();
-        self.sent = Sent::of(&shown, begun);
-        if moved && self.sent.motion.is_none() {
+        if self.moving.is_some() && moving.is_none() {
             self.label(MOTION_KEY.0, "")?;
         }
+        (self.sent, self.moving) = (Sent::of(&shown, begun), moving);
         (self.prepared, self.initial, self.depth_clipping) = (Arc::new(prepared), initial, shown.depth_clipping);
         if keeps_dials { Ok(self.session.synchronize()?) } else { self.reset() }
     }
@@ -188,6 +192,15 @@ impl Production {
     /// [`ProductionError::Workstation`].
     pub fn view(&mut self) -> Result<DMat4, ProductionError> {
         Ok(self.session.view()?)
+    }
+
+    /// Reads back how long what moves has done so, seconds from the middle of the time in which the shutter is open; 0
+    /// where nothing moves.
+    ///
+    /// # Errors
+    /// [`ProductionError::Workstation`].
+    pub fn motion_seconds(&mut self) -> Result<f64, ProductionError> {
+        Ok(if self.moving.is_some() { self.session.motion_seconds()? } else { 0.0 })
     }
 
     /// What a matrix that was read back shows of the scene.
@@ -227,18 +240,25 @@ impl Production {
 
     /// Begins to ray-trace the view of a matrix that was read back, beside whatever else is done.
     ///
-    /// - `display`: how the image is shown; an automatic exposure is metered from this view.
+    /// - `seconds`: how long what moves has done so, as [`motion_seconds`](Self::motion_seconds) reads it back; 0 is the
+    ///   scene as it was shown. `display`: how the image is shown; an automatic exposure is metered from this view.
     ///
     /// # Errors
     /// [`ProductionError::Thread`].
     pub fn begin_rendering(
         &self,
         matrix: &DMat4,
+        seconds: f64,
         options: &RenderOrder,
         display: &DisplayTransform,
     ) -> Result<Progressive, ProductionError> {
         let view = View::Projection(self.projection(matrix));
-        Progressive::begin(self.prepared.clone(), view, *options, *display)
+        let (shown, moving) = (self.prepared.clone(), self.moving.clone().filter(|_| seconds != 0.0));
+        let prepared = move || match moving {
+            Some(scene) => Ok(Arc::new(Prepared::new(&scene.after(seconds))?)),
+            None => Ok(shown),
+        };
+        Progressive::begin(prepared, view, *options, *display)
     }
 
     /// Shows an image on the raster screen, whose radiance is the light of the display. It is there when this returns.
@@ -292,7 +312,7 @@ impl Production {
         if self.sent.instances.is_some() {
             self.session.commands(&network::reset_detail())?;
         }
-        if self.sent.motion.is_some() {
+        if self.moving.is_some() {
             self.session.commands(&motion::restart())?;
         }
         if self.is_lit {

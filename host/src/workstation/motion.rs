@@ -9,7 +9,7 @@
 use super::drawing::MotionPeriod;
 use super::facets::mirrored;
 use super::names::ROOT;
-use super::network::{Build, label};
+use super::network::{Build, Question, label};
 use super::structure_commands::{DrawnMotion, FRAMES_PER_SECOND, StructureCommands};
 use crate::scene::{Motion, Scene};
 use glam::{DAffine3, DQuat, DVec3};
@@ -37,6 +37,14 @@ const CLOCK: &str = "PERIS_MOTION";
 const FRAME: &str = "PERIS_MOTION_FRAME";
 /// The function that gives the time of the motions, seconds.
 const TIME: &str = "PERIS_MOTION_TIME";
+/// The function that tells the host the frame of the period when it gets TRUE at `<1>`.
+const FRAME_TRIGGER: &str = "PERIS_MOTION_NOW";
+/// The function that gives the frame of the period as text.
+const FRAME_TEXT: &str = "PERIS_MOTION_TEXT";
+/// What the text begins with; the number follows.
+const FRAME_PREFIX: &str = "FRAME ";
+/// Asks for the frame of the period.
+pub(super) const FRAME_NOW: Question = Question::new("the time of what moves", FRAME_TRIGGER, FRAME_TEXT, FRAME_PREFIX);
 /// What all names of the network begin with, and none of another.
 pub(super) const NETWORK_PREFIX: &str = CLOCK;
 /// What the names of the nodes that hold moving objects begin with, and none of another.
@@ -146,6 +154,13 @@ pub(super) fn network(groups: &[MovingGroup], period: MotionPeriod) -> (Vec<Comm
     build.send(Value::Boolean(true), 3, CLOCK);
     build.send(Value::Integer(1), 6, CLOCK);
     build.connect(CLOCK, 1, 1, FRAME);
+    build.function(FRAME_TRIGGER, "CONSTANT");
+    build.connect(FRAME, 1, 2, FRAME_TRIGGER);
+    build.function("PERIS_MOTION_PRINT", "PRINT");
+    build.connect(FRAME_TRIGGER, 1, 1, "PERIS_MOTION_PRINT");
+    build.function(FRAME_TEXT, "CCONCATENATE");
+    build.send(Value::string(FRAME_PREFIX), 1, FRAME_TEXT);
+    build.connect("PERIS_MOTION_PRINT", 1, 2, FRAME_TEXT);
     let (key, text) = MOTION_KEY;
     build.function("PERIS_MOTION_KEY", "EQC");
     build.send(Value::Integer(key), 2, "PERIS_MOTION_KEY");

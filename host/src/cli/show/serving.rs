@@ -177,7 +177,8 @@ impl<'a> Server<'a> {
     /// Begins to render the view that is set.
     fn render(&mut self) -> Result<(), CommandFailure> {
         let matrix = self.production.view()?;
-        self.rendering = Some(self.production.begin_rendering(&matrix, &self.options, &self.display)?);
+        let seconds = self.production.motion_seconds()?;
+        self.rendering = Some(self.production.begin_rendering(&matrix, seconds, &self.options, &self.display)?);
         self.write_label("0 %")
     }
 
@@ -233,8 +234,11 @@ impl<'a> Server<'a> {
                     false => format!("stopped after {seconds:.3} s at {least} to {most} samples"),
                 }
             }
-            // The person at the dials may have set a view that shows nothing; that ends nothing.
-            Err(error @ (ProductionError::Render(_) | ProductionError::Thread(_))) => format!("not rendered: {error}"),
+            // The person at the dials may have set a view that shows nothing, and something may have moved too far away;
+            // that ends nothing.
+            Err(error @ (ProductionError::Render(_) | ProductionError::Scene(_) | ProductionError::Thread(_))) => {
+                format!("not rendered: {error}")
+            }
             Err(error) => return Err(error.into()),
         };
         say!("{text}");
