@@ -1,5 +1,6 @@
 //! Where a scene comes from: a script file, or a name.
 
+use super::values::seconds;
 use super::{CommandFailure, Exit, output};
 use crate::mesh;
 use crate::octree::Octree;
@@ -22,12 +23,16 @@ pub struct ScriptArguments {
     /// Lets the script read below another folder than its own, too; may be given more than once
     #[arg(long, value_name = "FOLDER")]
     allow: Vec<PathBuf>,
+    /// The time of the picture, for a scene that is a function of it: what the script gets from time(), and when the
+    /// shutter begins to count [default: 0]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
+    time: Option<f64>,
 }
 
 impl ScriptArguments {
     /// Whether there are none.
     pub(super) fn is_empty(&self) -> bool {
-        self.given.is_empty()
+        self.given.is_empty() && self.time.is_none()
     }
 }
 
@@ -85,16 +90,25 @@ pub fn load(name: &str, definitions: &ScriptArguments) -> Result<Evaluated, Comm
     let path = Path::new(name);
     if is_mesh(path) {
         if !definitions.is_empty() {
-            return Err(CommandFailure::new(Exit::Usage, anyhow::anyhow!("-D is for a script, and {name} is none")));
+            return Err(CommandFailure::new(
+                Exit::Usage,
+                anyhow::anyhow!("-D and --time are for a script, and {name} is none"),
+            ));
         }
         return Ok(Evaluated {
             scene: Scene::of_mesh(path),
             name: stem(name).into(),
             printed: Vec::new(),
+            is_timed: false,
             files: Vec::new(),
         });
     }
-    let inputs = Inputs { definitions: definitions.given.clone(), allowed: definitions.allow.clone() };
+    let inputs = Inputs {
+        definitions: definitions.given.clone(),
+        allowed: definitions.allow.clone(),
+        time: definitions.time.unwrap_or_default(),
+        shutter: None,
+    };
     let stage = stage!("evaluating the script");
     let evaluated = script::load(name, &inputs)?;
     drop(stage);

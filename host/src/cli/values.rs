@@ -7,6 +7,8 @@ use std::num::NonZeroUsize;
 const MAX_THREADS: usize = 1024;
 /// Most vectors of a picture that instances are thinned out to.
 const MAX_VECTORS: usize = 1_000_000;
+/// The latest time of a scene, seconds: frames beyond it would be no longer apart than numbers are.
+const MOST_SECONDS: f64 = 1e9;
 /// Least memory that a command may be given, bytes: less than its own code and stacks is no use.
 const LEAST_MEMORY: u64 = 64 << 20;
 /// Longest period of what moves on a workstation, seconds.
@@ -40,6 +42,12 @@ pub(super) fn bytes(text: &str) -> Result<u64, String> {
     bytes
         .map(|bytes| bytes as u64)
         .ok_or_else(|| format!("give at least {}, such as 512M", memory::readable(LEAST_MEMORY)))
+}
+
+/// Reads a time of a scene, seconds.
+pub(super) fn seconds(text: &str) -> Result<f64, String> {
+    let seconds = text.parse().ok().filter(|seconds: &f64| seconds.abs() <= MOST_SECONDS);
+    seconds.ok_or_else(|| format!("give a number of seconds, from -{MOST_SECONDS:e} to {MOST_SECONDS:e}"))
 }
 
 /// Reads a length above 0.

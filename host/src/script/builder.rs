@@ -1,6 +1,7 @@
 //! The scene while a script builds it.
 
-use super::definition::{ParameterAssignment, ScriptParameters};
+use super::definition::ScriptParameters;
+use super::evaluated::Inputs;
 use super::folders::Folders;
 use super::handle::{CallResult, Handle};
 use crate::database::Library;
@@ -23,8 +24,14 @@ pub(super) struct Builder {
     motions: Vec<Option<Motion>>,
     /// How many objects of each kind there have been.
     of_kind: HashMap<&'static str, u32>,
-    /// When the shutter opens and closes.
-    pub(super) shutter: [f64; 2],
+    /// When the shutter opens and closes, seconds from the time of the picture, if it was said.
+    pub(super) shutter: Option<[f64; 2]>,
+    /// The time of the picture, seconds.
+    time: f64,
+    /// The time that the script gets, seconds.
+    now: f64,
+    /// Whether the script asked for the time.
+    pub(super) asked_time: bool,
     /// Below which it reads.
     pub(super) folders: Folders,
     /// Values of parameters.
@@ -35,24 +42,37 @@ pub(super) struct Builder {
 
 impl Builder {
     /// An empty scene.
-    pub(super) fn new(folders: Folders, given: &[ParameterAssignment]) -> Builder {
+    ///
+    /// - `now`: the time that the script gets, seconds.
+    pub(super) fn new(folders: Folders, inputs: &Inputs, now: f64) -> Builder {
         Builder {
             scene: Scene::default(),
             objects: Vec::new(),
             positions: Vec::new(),
             motions: Vec::new(),
             of_kind: HashMap::new(),
-            shutter: [0.0, 1.0],
+            shutter: inputs.shutter,
+            time: inputs.time,
+            now,
+            asked_time: false,
             folders,
-            definitions: ScriptParameters::new(given),
+            definitions: ScriptParameters::new(&inputs.definitions),
             library: Library::default(),
         }
     }
 
-    /// The scene as it stands.
-    pub(super) fn finish(&self) -> Scene {
-        let [open, close] = self.shutter;
-        let middle = 0.5 * (open + close);
+    /// The time, for the script.
+    pub(super) fn ask_time(&mut self) -> f64 {
+        self.asked_time = true;
+        self.now
+    }
+
+    /// The scene as it stands, and when its shutter opens and closes, seconds from the time of the picture.
+    pub(super) fn finish(&self) -> (Scene, [f64; 2]) {
+        // A script that moves things itself shows an instant, unless it says otherwise.
+        let unsaid = if self.asked_time { [0.0; 2] } else { [0.0, 1.0] };
+        let [open, close] = self.shutter.unwrap_or(unsaid);
+        let middle = self.time + 0.5 * (open + close);
         let mut scene = self.scene.clone();
         scene.settings.geometry.shutter = close - open;
         for (object, motion) in self.objects.iter().zip(&self.motions) {
@@ -68,7 +88,7 @@ impl Builder {
                 scene.origins.of.insert(object.name.clone(), *position);
             }
         }
-        scene
+        (scene, [open, close])
     }
 
     /// Notes that a call gave an object its shape.

@@ -52,17 +52,28 @@ pub(super) fn read(path: &Path) -> Result<String, ScriptError> {
     memory::read_text(path, MAX_SCRIPT_BYTES).map_err(failed)
 }
 
-/// Runs a script.
+/// What one run of a script made.
+pub(super) struct ScriptRun {
+    /// The scene, what was printed, and the files that were read.
+    pub(super) made: Evaluated,
+    /// When the shutter opens and closes, seconds from the time of the picture.
+    pub(super) shutter: [f64; 2],
+    /// Whether the script asked for the time.
+    pub(super) asked_time: bool,
+}
+
+/// Runs a script once.
 ///
 /// - `text`: the script.
 /// - `name`: what messages call it.
 /// - `folder`: where the relative paths in it begin.
 /// - `inputs`: what it is given.
+/// - `now`: what it gets when it asks for the time, seconds.
 ///
 /// # Errors
 /// [`ScriptError`], with line and column where there are any.
-pub fn evaluate(text: &str, name: &str, folder: &Path, inputs: &Inputs) -> Result<Evaluated, ScriptError> {
-    let state: State = Rc::new(RefCell::new(Builder::new(Folders::new(folder, &inputs.allowed), &inputs.definitions)));
+pub(super) fn run(text: &str, name: &str, folder: &Path, inputs: &Inputs, now: f64) -> Result<ScriptRun, ScriptError> {
+    let state: State = Rc::new(RefCell::new(Builder::new(Folders::new(folder, &inputs.allowed), inputs, now)));
     let printed = Rc::new(RefCell::new(Printed::default()));
     let mut engine = limited();
     let lines = Rc::clone(&printed);
@@ -90,12 +101,15 @@ pub fn evaluate(text: &str, name: &str, folder: &Path, inputs: &Inputs) -> Resul
         let (parameter, value, known) = (parameter.clone(), value.clone(), state.borrow().definitions.list());
         return Err(ScriptError::Definition { file: name.to_owned(), parameter, value, known });
     }
-    let mut scene = state.borrow().finish();
+    let (mut scene, shutter) = state.borrow().finish();
     scene.origins.file = name.to_owned();
     scene.check().map_err(|source| ScriptError::Scene { file: name.to_owned(), source: Box::new(source) })?;
     let printed = printed.take().finish();
     let files = state.borrow().folders.named();
-    Ok(Evaluated { scene, name: name.to_owned(), printed, files })
+    let asked_time = state.borrow().asked_time;
+    let is_timed = asked_time || !scene.motions.is_empty();
+    let made = Evaluated { scene, name: name.to_owned(), printed, is_timed, files };
+    Ok(ScriptRun { made, shutter, asked_time })
 }
 
 fn limited() -> Engine {
@@ -117,8 +131,10 @@ fn limited() -> Engine {
     for symbol in FORBIDDEN {
         engine.disable_symbol(symbol);
     }
-    // A scene is the same at any time, and its script does not wait.
-    let refuse = || -> Answer { Err("a scene script can neither wait nor read the clock".into()) };
+    // A scene is a function of the time that it is given, whenever its script runs, and the script does not wait.
+    let refuse = || -> Answer {
+        Err("a scene script can neither wait nor read the clock; time() is the time of the picture".into())
+    };
     engine.register_fn("sleep", move |_: rhai::INT| refuse());
     engine.register_fn("sleep", move |_: rhai::FLOAT| refuse());
     engine.register_fn("timestamp", refuse);

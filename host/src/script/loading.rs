@@ -1,9 +1,10 @@
 //! Scripts from files and from the program.
 
-use super::engine::{self, evaluate};
+use super::engine;
 use super::error::ScriptError;
 use super::evaluated::{Evaluated, Inputs};
 use super::shipped::EMBEDDED;
+use super::timed::evaluate;
 use crate::spelling;
 use std::path::Path;
 

@@ -33,6 +33,7 @@ mod functions;
 mod error;
 mod evaluated;
 mod engine;
+mod timed;
 mod shipped;
 mod loading;
 
@@ -45,7 +46,6 @@ mod tests;
 
 pub use camera_call::camera_call;
 pub use definition::ParameterAssignment;
-pub use engine::evaluate;
 pub use error::{MAX_OPERATIONS, ScriptError};
 pub use evaluated::{Evaluated, Inputs};
 pub use function::Function;
@@ -53,3 +53,4 @@ pub use functions::{functions, reference};
 pub use loading::{load, load_file};
 pub use parameter::Parameter;
 pub use shipped::{EMBEDDED, Embedded};
+pub use timed::evaluate;

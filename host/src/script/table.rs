@@ -94,17 +94,23 @@ pub(super) const FUNCTIONS: &[Function] = &[
         |builder| builder.let_move(object, Motion { by, through, axis, angle: angle.to_radians() })
     },
     function! {
+        time()
+        "Gives the time of the picture, seconds: what --time says, or the frame of an animation; otherwise 0. A scene is a function of it: the same at the same time, whatever was rendered before."
+        "sphere(1).translate(0, 2 * abs(sin(PI() * time())), 0);"
+        |builder| Ok(Dynamic::from(builder.ask_time()))
+    },
+    function! {
         shutter(
-            open: required(ANY_NUMBER, "when it opens"),
+            open: required(ANY_NUMBER, "when it opens, seconds from the time of the picture"),
             close: required(ANY_NUMBER, "when it closes; not before"),
         )
-        "Sets when the shutter opens and closes: samples of ray tracing see what moves at times between. Other pictures show the middle."
+        "Sets when the shutter opens and closes: samples of ray tracing see at times between what is moving(), and what the script places by the time(). Other pictures show the middle. Without it, the shutter is open for half the time from frame to frame of an animation; in single pictures from 0 to 1, or for an instant where the script asks for the time()."
         "shutter(0, 0.5);"
         |builder| {
             if close < open {
                 return Err(format!("it closes at {close}, before it opens at {open}"));
             }
-            builder.shutter = [open, close];
+            builder.shutter = Some([open, close]);
             Ok(Dynamic::UNIT)
         }
     },

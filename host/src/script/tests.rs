@@ -130,6 +130,58 @@ fn what_moves_stands_where_it_is_in_the_middle_of_the_shutter() {
     }
 }
 
+/// What a script makes at a time, with the shutter of an animation.
+fn at_time(text: &str, time: f64, shutter: Option<[f64; 2]>) -> crate::scene::Scene {
+    let made = evaluate(text, "timed.rhai", Path::new(""), &Inputs { time, shutter, ..Inputs::default() });
+    let made = made.unwrap_or_else(|e| panic!("{e}"));
+    assert!(made.is_timed, "{text}");
+    made.scene
+}
+
+#[test]
+fn what_a_script_moves_by_the_time_moves_as_what_moves_by_itself() {
+    let by_itself = "sphere(1).moving(#{ by: [3, -1, 0], axis: \"z\", angle: 40, through: [0, 0, 0] });";
+    let by_time = "sphere(1).rotate(\"z\", 40 * time()).translate(3 * time(), -time(), 0);";
+    for (said, shutter) in [("", Some([0.0, 0.02])), ("shutter(0.25, 0.75);", None), ("shutter(-1, 1);", None)] {
+        for time in [0.0, 1.5, -20.0] {
+            let [one, other] = [by_itself, by_time].map(|text| at_time(&format!("{text}{said}"), time, shutter));
+            let difference = one.objects[0].transform - other.objects[0].transform;
+            assert!(difference.abs_diff_eq(glam::DMat4::ZERO, 1e-12), "{said} {time}: {difference}");
+            let half = 0.5 * one.settings.geometry.shutter;
+            assert_eq!(one.settings.geometry.shutter, other.settings.geometry.shutter);
+            for part in [-half, 0.3 * half, half] {
+                let [here, there] = [&one, &other].map(|scene| {
+                    (scene.motions[0].1.at(part).matrix() * scene.objects[0].transform).transform_point3(DVec3::X)
+                });
+                assert!((here - there).length() < 1e-11, "{said} {time} {part}: {here} {there}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_scene_is_a_function_of_the_time_and_shows_an_instant_without_a_shutter() {
+    let text = "print(time()); sphere(1 + time()); cube(1).translate(0, time(), 0); cube(1).emits(time());";
+    for time in [0.5, 0.0, 0.5] {
+        let scene = at_time(text, time, None);
+        assert_eq!((scene.settings.geometry.shutter, scene.motions.len()), (0.0, 0));
+        assert_eq!(scene.objects[1].transform.w_axis.y, time);
+    }
+    // While the shutter is open what grows, and what emits light, stands as it does in the middle.
+    let lamp = "cube(1).emits(3).translate(0, time(), 0);";
+    let open = at_time(&format!("{text}{lamp}"), 2.0, Some([0.0, 0.5]));
+    assert_eq!(open.motions.iter().map(|(object, _)| *object).collect::<Vec<_>>(), [1]);
+    assert_eq!([1, 3].map(|object: usize| open.objects[object].transform.w_axis.y), [2.25; 2]);
+    // Objects that come and go have no motion that is known.
+    let comes = "cube(1).translate(0, time(), 0); if time() > 2.1 { sphere(1); }";
+    assert!(at_time(comes, 2.0, Some([0.0, 0.5])).motions.is_empty());
+    // What is not asked for takes no further run.
+    let still = evaluate("print(1); cube(1);", "a", Path::new(""), &Inputs { time: 3.0, ..Inputs::default() }).unwrap();
+    assert!(!still.is_timed && still.printed.len() == 1);
+    let printed = evaluate("print(time()); shutter(0, 1);", "a", Path::new(""), &Inputs::default()).unwrap().printed;
+    assert_eq!(printed, ["0.5"]);
+}
+
 #[test]
 fn a_function_of_a_script_becomes_a_distribution_or_an_error_with_its_place() {
     let made = run("

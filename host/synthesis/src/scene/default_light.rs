@@ -53,9 +53,8 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] if its triangles cannot be made.
     fn in_default_light(mut self) -> Result<Scene, SceneError> {
-        let is_emissive = |object: &Object| object.materials(&[]).0.iter().any(|m| m.emission != Color::BLACK);
         let has_light = !self.lights.is_empty() || self.ambient != RgbPower::ZERO;
-        if !has_light && !self.objects.is_empty() && !self.objects.iter().any(is_emissive) {
+        if !has_light && !self.objects.is_empty() && !self.objects.iter().any(Object::emits) {
             let prepared = Prepared::new(&self)?;
             let (camera, bounds) = (prepared.camera, prepared.subject());
             if bounds.is_empty() {

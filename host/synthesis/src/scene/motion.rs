@@ -2,8 +2,13 @@
 
 use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::Ray;
-use glam::{DMat4, DQuat, DVec3};
+use glam::{DMat3, DMat4, DQuat, DVec3};
 use serde::{Deserialize, Serialize};
+
+/// A map whose axes are so far from being at right angles, or of unit length, is no rigid motion.
+const SKEW: f64 = 1e-9;
+/// About an axis that stays, nothing turns by less, radians: the axis would be too far away to be known.
+const LEAST_TURN: f64 = 1e-5;
 
 /// How something turns and moves on evenly: after the time t it is turned by t `angle`, and moved by t `by`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -36,6 +41,47 @@ impl Motion {
             return Err(format!("the axis {} about which it turns has not the length 1", self.axis));
         }
         Ok(())
+    }
+
+    /// The motion of what is at three places, one after the other, in the middle of which is its time 0; none if no rigid
+    /// motion brings it from the first to the last, or if it stands still.
+    ///
+    /// Two motions do: about an axis that stays, as of a door, and about the object's own origin, which moves straight on,
+    /// as of a wheel. The one that comes nearer to the place in the middle is taken. It turns by less than half a turn.
+    ///
+    /// - `places`: own coordinates to those of the scene, affine.
+    /// - `duration`: from the first to the last, above 0.
+    pub fn through(places: &[DMat4; 3], duration: f64) -> Option<Motion> {
+        let [first, middle, last] = places;
+        let whole = *last * first.inverse();
+        let turn = DMat3::from_mat4(whole);
+        let skew = (turn * turn.transpose() - DMat3::IDENTITY).to_cols_array();
+        let is_rigid = skew.iter().all(|part| part.abs() < SKEW) && turn.determinant() > 0.0;
+        if !is_rigid || !whole.is_finite() || whole == DMat4::IDENTITY {
+            return None;
+        }
+        let rotation = DQuat::from_mat3(&turn).normalize();
+        let rotation = if rotation.w < 0.0 { -rotation } else { rotation };
+        // The arc cosine of w would not know small angles.
+        let angle = 2.0 * rotation.xyz().length().atan2(rotation.w);
+        let axis = rotation.xyz().try_normalize().unwrap_or(DVec3::Y);
+        let origin = first.w_axis.truncate();
+        let of_wheel =
+            Motion { by: (last.w_axis.truncate() - origin) / duration, through: origin, axis, angle: angle / duration };
+        let shift = whole.w_axis.truncate();
+        let along = axis * shift.dot(axis);
+        let across = shift - along;
+        let of_door = (angle > LEAST_TURN).then(|| Motion {
+            by: along / duration,
+            through: 0.5 * (across + axis.cross(across) / (0.5 * angle).tan()),
+            ..of_wheel
+        });
+        let error = |motion: &Motion| {
+            let there = motion.at(0.5 * duration).matrix() * *first;
+            (there.w_axis - middle.w_axis).length()
+        };
+        let nearest = of_door.filter(|door| error(door) < error(&of_wheel)).unwrap_or(of_wheel);
+        Some(nearest.since(0.5 * duration))
     }
 
     /// Where it is after a time.
@@ -136,6 +182,36 @@ mod tests {
         let point = DVec3::new(2.0, 1.0, -1.0);
         let later = motion.since(0.4).at(0.25).point(middle.point(point));
         assert!((later - motion.at(0.65).point(point)).length() < 1e-14);
+    }
+
+    #[test]
+    fn what_is_at_three_places_moves_through_them() {
+        let shape = DMat4::from_scale_rotation_translation(
+            DVec3::new(1.0, 2.0, -0.5),
+            DQuat::from_rotation_x(0.7),
+            DVec3::new(3.0, 1.0, 2.0),
+        );
+        let door = Motion { by: DVec3::Y * 0.2, through: DVec3::new(-4.0, 0.0, 1.0), axis: DVec3::Y, angle: 1.3 };
+        let wheel = Motion { through: shape.w_axis.truncate(), ..rolling() };
+        let lift = Motion { angle: 0.0, ..rolling() };
+        for (motion, tolerance) in [(door, 1e-13), (wheel, 1e-13), (lift, 1e-14)] {
+            for duration in [1e-3, 0.4] {
+                let at = |time: f64| motion.at(time).matrix() * shape;
+                let places = [at(1.0), at(1.0 + 0.5 * duration), at(1.0 + duration)];
+                let found = Motion::through(&places, duration).expect("it moves");
+                for (time, place) in [-0.5, -0.2, 0.0, 0.5].map(|t| (t * duration, at(1.0 + (t + 0.5) * duration))) {
+                    let off = found.at(time).matrix() * places[1] - place;
+                    let largest = off.to_cols_array().into_iter().map(f64::abs).fold(0.0, f64::max);
+                    assert!(largest < tolerance / duration.min(1e-1), "{motion:?} {duration} {time}: {largest:e}");
+                }
+            }
+        }
+        let still = [shape; 3];
+        let grows = [shape, shape, shape * DMat4::from_scale(DVec3::splat(1.1))];
+        let mirrored = [shape, shape, shape * DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0))];
+        for places in [still, grows, mirrored] {
+            assert_eq!(Motion::through(&places, 1.0), None);
+        }
     }
 
     #[test]

@@ -261,6 +261,11 @@ impl Object {
         }
     }
 
+    /// Whether any of its surface emits light.
+    pub fn emits(&self) -> bool {
+        self.operand_materials().iter().any(|material| !material.emission.is_black())
+    }
+
     /// It, with the material of the whole that it is part of if it has none.
     pub fn within(&self, whole: &Option<Material>) -> Cow<'_, Object> {
         match (self.own_material(), whole) {
