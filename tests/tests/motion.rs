@@ -7,7 +7,7 @@ use host::{
     render::{RenderOrder, Watch},
     scene::{Prepared, Scene},
     script,
-    workstation::{Drawing, InitialView, MotionPeriod, Session, Timeouts, structure},
+    workstation::{Drawing, FlipBook, InitialView, MotionPeriod, Session, Timeouts, structure},
 };
 use protocol::wire::write_commands;
 use ps340::{
@@ -245,4 +245,77 @@ fn a_scene_in_place_of_another_has_its_own_motions_or_none() {
     let seconds = production.motion_seconds().expect("it answers");
     machine.operator_command("frames 5");
     assert!(seconds > 0.0 && production.motion_seconds().expect("it answers") == seconds, "one press stops it");
+}
+
+/// What stands; what jumps; what grows; instances that turn; what comes and goes; all as functions of the time.
+const CHANGING: &str = r#"
+    box(6, 0.1, 4).translate(0, -1.5, 0).material([0.2, 0.5, 0.2]);
+    box(0.4, 0.4, 0.4).rotate("z", 50 * time()).scale(1 + time(), 1, 1).translate(1.5, 2 * abs(sin(PI() * time())), 0.5);
+    box(0.5 + time(), 0.3, 0.2).translate(-1, 0.5, 0);
+    instances(box(0.3, 0.2, 0.1), [[0, 0.5, 0], #{ at: [0.4, 0, 0.2], turn: 30 }]).rotate("y", 90 * time());
+    if time() > 0.2 && time() < 0.6 { box(0.2, 0.2, 0.2).translate(0, 0, 1.5); }
+    directional_light(#{ direction: [-1, -2, -1.5], irradiance: 1 });
+    camera(#{ from: [2, 3, 12], at: [0, 0, 0], field_of_view: 30, near: 5, far: 25 });
+"#;
+/// Pictures in a second.
+const RATE: u32 = 24;
+
+fn changing(time: f64) -> Scene {
+    let inputs = script::Inputs { time, ..script::Inputs::default() };
+    script::evaluate(CHANGING, "changing", Path::new(""), &inputs).expect("a scene").scene
+}
+
+fn flip_book(pictures: u32) -> FlipBook {
+    let scene = |number: u32| changing(f64::from(number) / f64::from(RATE));
+    FlipBook::new(scene(0), (1..pictures).map(scene).collect(), RATE)
+}
+
+#[test]
+fn a_flip_book_shows_each_picture_at_its_time_and_sends_what_stays_once() {
+    let book = flip_book(24);
+    let prepared = Prepared::new(book.first()).expect("a scene");
+    let initial = InitialView::of(&prepared).expect("a camera");
+    let shown = structure::pictures(&book, &initial, &prepared.subject(), &drawing(false, None)).expect("it is drawn");
+    assert_eq!(shown.motion.map(|motion| (motion.objects, motion.pictures, motion.frames)), Some((4, 24, 60)));
+    // A floor, two boxes and two instances once, and another box in 24 sizes.
+    assert_eq!(shown.lines, 12 * (1 + 1 + 1 + 2 + 24));
+    let mut sent = Vec::new();
+    write_commands(&shown.commands, &mut sent).expect("it can be sent");
+    let mut machine = Machine::new(Settings::default());
+    machine.step([Input::Attach(LINE)], 0);
+    machine.step([Input::Bytes(LINE, sent)], 0);
+    let mut passed = 0;
+    for frame in [1, 2, 3, 14, 15, 20, 37, 59, 60, 62, 63] {
+        pass(&mut machine, frame - passed);
+        passed = frame;
+        // 24 pictures in 60 frames.
+        let number = frame % 60 * RATE / 60;
+        let mut still = showing(&changing(f64::from(number) / f64::from(RATE)), false, None);
+        pass(&mut still, 1);
+        let off = difference(&strokes(&machine), &strokes(&still));
+        assert!(off < 1e-6, "frame {frame} shows picture {number} off by {off}");
+        assert_eq!(book.scene(f64::from(frame % 60) / 60.0), &changing(f64::from(number) / f64::from(RATE)));
+    }
+}
+
+#[test]
+fn a_flip_book_that_is_too_large_is_refused_with_its_number() {
+    let fine = Drawing { tolerance: 1e-4, ..Drawing::default() };
+    let ball = |radius: f64| {
+        let text = format!("sphere({radius}); camera(#{{ from: [0, 0, 9], at: [0, 0, 0], field_of_view: 30 }});");
+        script::evaluate(&text, "ball", Path::new(""), &script::Inputs::default()).expect("a scene").scene
+    };
+    let book = FlipBook::new(ball(1.0), (0..400).map(|k| ball(1.1 + f64::from(k))).collect(), 24);
+    let prepared = Prepared::new(book.first()).expect("a scene");
+    let initial = InitialView::of(&prepared).expect("a camera");
+    let refused = structure::pictures(&book, &initial, &prepared.subject(), &fine).expect_err("it is too large");
+    let text = refused.to_string();
+    assert!(text.contains("1000000 at most") && text.contains("--tolerance"), "{text}");
+    let instances = |turn: f64| {
+        let text = format!("instances(box(1, 1, 1), [[0, 0, 0], #{{ at: [2, 0, 0], turn: {turn} }}]);");
+        script::evaluate(&text, "pair", Path::new(""), &script::Inputs::default()).expect("a scene").scene
+    };
+    let book = FlipBook::new(instances(0.0), vec![instances(20.0)], 24);
+    let refused = structure::pictures(&book, &initial, &prepared.subject(), &fine).expect_err("they are others");
+    assert!(refused.to_string().contains("instances"), "{refused}");
 }

@@ -15,9 +15,9 @@ use crate::{
     picture::{Picture, display::DisplayTransform},
     plan::Plan,
     render::{RenderError, RenderOrder, Watch, World, radiosity::Radiosity, tiles::Tiling},
-    scene::{Camera, Interreflection, Prepared, Projection, Scene, View},
+    scene::{Camera, Interreflection, Prepared, Projection, Scene, SceneError, View},
     workstation::{
-        Drawing, DrawnInstances, DrawnMotion, InitialView, Session, StructureCommands, WorkstationError,
+        Drawing, DrawnInstances, DrawnMotion, FlipBook, InitialView, Session, StructureCommands, WorkstationError,
         motion::{self, MOTION_KEY},
         network, raster, structure, tiles,
     },
@@ -40,8 +40,7 @@ pub struct Model {
     initial: InitialView,
     structure: StructureCommands,
     is_lit: bool,
-    /// The scene, if something moves in it.
-    moving: Option<Arc<Scene>>,
+    moving: Option<MovingScene>,
     begun: Instant,
 }
 
@@ -64,13 +63,45 @@ impl Model {
         let own = InitialView::of(&prepared)?;
         let initial = initial.map_or(own, |initial| InitialView { elongation: own.elongation, ..initial });
         let shown = structure::with_light(scene, &initial, &prepared.subject(), drawing, light)?;
-        let moving = shown.motion.map(|_| Arc::new(scene.clone()));
+        let moving = shown.motion.map(|_| MovingScene::OfMotions(Arc::new(scene.clone())));
         Ok(Model { prepared, initial, structure: shown, is_lit: light.is_some(), moving, begun })
+    }
+
+    /// Models the pictures of a flip-book, which are seen by the camera of the first scene.
+    ///
+    /// # Errors
+    /// [`ProductionError`].
+    pub fn of_pictures(book: FlipBook, drawing: &Drawing) -> Result<Model, ProductionError> {
+        let prepared = Prepared::new(book.first())?;
+        let begun = Instant::now();
+        let initial = InitialView::of(&prepared)?;
+        let structure = structure::pictures(&book, &initial, &prepared.subject(), drawing)?;
+        let moving = structure.motion.map(|_| MovingScene::OfPictures(Arc::new(book)));
+        Ok(Model { prepared, initial, structure, is_lit: false, moving, begun })
     }
 
     /// From where it is seen before dials turn it.
     pub fn initial(&self) -> &InitialView {
         &self.initial
+    }
+}
+
+/// A scene in which something moves on the workstation.
+#[derive(Clone, Debug)]
+enum MovingScene {
+    /// By its motions.
+    OfMotions(Arc<Scene>),
+    /// From picture to picture.
+    OfPictures(Arc<FlipBook>),
+}
+
+impl MovingScene {
+    /// It after seconds, ready to be rendered.
+    fn prepared(&self, seconds: f64) -> Result<Prepared, SceneError> {
+        match self {
+            MovingScene::OfMotions(scene) => Prepared::new(&scene.after(seconds)),
+            MovingScene::OfPictures(book) => Prepared::new(book.scene(seconds)),
+        }
     }
 }
 
@@ -82,7 +113,7 @@ pub struct Production {
     session: Session,
     depth_clipping: bool,
     is_lit: bool,
-    moving: Option<Arc<Scene>>,
+    moving: Option<MovingScene>,
     sent: Sent,
     /// Width and height of the image on the raster screen, if one was sent.
     image: Option<[u32; 2]>,
@@ -255,7 +286,7 @@ impl Production {
         let view = View::Projection(self.projection(matrix));
         let (shown, moving) = (self.prepared.clone(), self.moving.clone().filter(|_| seconds != 0.0));
         let prepared = move || match moving {
-            Some(scene) => Ok(Arc::new(Prepared::new(&scene.after(seconds))?)),
+            Some(scene) => Ok(Arc::new(scene.prepared(seconds)?)),
             None => Ok(shown),
         };
         Progressive::begin(prepared, view, *options, *display)

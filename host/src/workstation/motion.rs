@@ -2,7 +2,7 @@
 //!
 //! # Method
 //! A motion takes a point p to `T(c + t b) R(a, t w) T(-c) p`: b is the velocity, a the axis, which goes through c, and w
-//! the angle in a unit of time, which is a second. With z negated that is `T(t b') M Z(t w') M^-1 p`, where M brings z to
+//! the angle in a unit of time, which is a second. With z negated that is `T(t b') M Z(t w) M^-1 p`, where M brings z to
 //! the axis and Z turns about z. M stays, so that the network sends a vector and a rotation about z, whatever the axis. One
 //! clock counts frames for all; after a period the count begins anew. What moves alike has the same nodes.
 
@@ -12,7 +12,7 @@ use super::names::ROOT;
 use super::network::{Build, Question, label};
 use super::structure_commands::{DrawnMotion, FRAMES_PER_SECOND, StructureCommands};
 use crate::scene::{Motion, Scene};
-use glam::{DAffine3, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 use protocol::{
     Value,
     command::{Axis, Command, Operate},
@@ -34,7 +34,7 @@ pub const MOTION_KEY: (i32, &str) = (5, "MOTION");
 /// The clock, which sends the number of each frame.
 const CLOCK: &str = "PERIS_MOTION";
 /// The function that gives the frame of the period, from 0.
-const FRAME: &str = "PERIS_MOTION_FRAME";
+pub(super) const FRAME: &str = "PERIS_MOTION_FRAME";
 /// The function that gives the time of the motions, seconds.
 const TIME: &str = "PERIS_MOTION_TIME";
 /// The function that tells the host the frame of the period when it gets TRUE at `<1>`.
@@ -97,19 +97,12 @@ impl MovingGroup {
         }
     }
 
-    /// The axis in the coordinates of the workstation, z upward, and how far it turns about it in a second, radians.
-    fn axis(&self) -> (DVec3, f64) {
-        let Motion { axis, angle, .. } = self.motion;
-        // A mirror turns the sense of a rotation.
-        let axis = -mirrored(axis).normalize_or(DVec3::Z);
-        // Of an axis and the opposite one, the one nearer to z is brought there without loss.
-        if axis.z < 0.0 { (-axis, -angle) } else { (axis, angle) }
-    }
-
     /// Brings z to the axis, in the coordinates of the workstation.
     fn to_axis(&self) -> DAffine3 {
-        let turn = DQuat::from_rotation_arc(DVec3::Z, self.axis().0);
-        DAffine3::from_rotation_translation(turn, mirrored(self.motion.through))
+        // A mirror turns the sense of a rotation: the axis of that is opposite.
+        let axis = -mirrored(self.motion.axis).normalize_or(DVec3::Z);
+        let (x, y) = axis.any_orthonormal_pair();
+        DAffine3::from_mat3_translation(DMat3::from_cols(x, y, axis), mirrored(self.motion.through))
     }
 
     /// Sends the time of all to its nodes.
@@ -127,7 +120,7 @@ impl MovingGroup {
         if self.motion.angle != 0.0 {
             let [degrees, turn] = ["D", "R"].map(|letter| format!("PERIS_MOTION_{letter}{number}"));
             build.function(&degrees, "MULC");
-            build.send(Value::Real(self.axis().1.to_degrees()), 2, &degrees);
+            build.send(Value::Real(self.motion.angle.to_degrees()), 2, &degrees);
             build.connect(TIME, 1, 1, &degrees);
             build.function(&turn, "ZROTATE");
             build.connect(&degrees, 1, 1, &turn);
@@ -136,19 +129,28 @@ impl MovingGroup {
     }
 }
 
-/// The network that moves groups, whose structures have begun with [`MovingGroup::begin`]: it runs at once, and a key
-/// stops it and lets it go on.
+/// The network that moves groups, whose structures have begun with [`MovingGroup::begin`].
 pub(super) fn network(groups: &[MovingGroup], period: MotionPeriod) -> (Vec<Command>, DrawnMotion) {
     let frames = frames(groups, period);
     let mut build = Build::default();
     build.function(TIME, "MULC");
+    build.connect(FRAME, 1, 1, TIME);
     build.send(Value::Real(1.0 / f64::from(FRAMES_PER_SECOND)), 2, TIME);
     for (number, group) in (1..).zip(groups) {
         group.drive(number, &mut build);
     }
+    clock(frames, &mut build);
+    let objects = groups.iter().map(|group| group.objects.len()).sum();
+    (build.commands, DrawnMotion { objects, motions: groups.len(), pictures: 0, frames })
+}
+
+/// The clock of a network, from whose function [`FRAME`] the arcs to the others are there already. It runs at once, and a
+/// key stops it and lets it go on.
+///
+/// - `frames`: of the period.
+pub(super) fn clock(frames: i32, build: &mut Build) {
     build.function(FRAME, "MODC");
     build.send(Value::Integer(frames), 2, FRAME);
-    build.connect(FRAME, 1, 1, TIME);
     build.function(CLOCK, "CLFRAMES");
     build.send(Value::Integer(1), 1, CLOCK);
     build.send(Value::Boolean(true), 3, CLOCK);
@@ -174,8 +176,6 @@ pub(super) fn network(groups: &[MovingGroup], period: MotionPeriod) -> (Vec<Comm
     build.commands.push(label(key, text));
     build.commands.extend(restart());
     build.send(Value::Boolean(true), 4, CLOCK);
-    let objects = groups.iter().map(|group| group.objects.len()).sum();
-    (build.commands, DrawnMotion { objects, motions: groups.len(), frames })
 }
 
 /// Lets all motions begin anew, whether they are stopped or not.
@@ -192,6 +192,11 @@ fn frames(groups: &[MovingGroup], period: MotionPeriod) -> i32 {
         MotionPeriod::Seconds(seconds) => seconds,
         MotionPeriod::Seamless => seamless_seconds(groups).unwrap_or(OTHERWISE_SECONDS),
     };
+    frames_of(seconds)
+}
+
+/// Seconds in frames, at least one.
+pub(super) fn frames_of(seconds: f64) -> i32 {
     ((seconds * f64::from(FRAMES_PER_SECOND)).round() as i32).max(1)
 }
 
@@ -247,7 +252,7 @@ mod tests {
             let Command::Define { object: Node::Operate { operate, .. }, .. } = command else { continue };
             whole *= match operate {
                 Operate::Translate(_) => DMat4::from_translation(mirrored(group.motion.by) * seconds),
-                Operate::Rotate { .. } => DMat4::from_rotation_z(group.axis().1 * seconds),
+                Operate::Rotate { .. } => DMat4::from_rotation_z(group.motion.angle * seconds),
                 Operate::Matrix4x3(matrix) => *matrix,
                 other => panic!("{other:?}"),
             };

@@ -1,6 +1,7 @@
 //! Commands of a display structure, as they are gathered.
 
 use super::names::name;
+use glam::{DAffine3, DMat4, DVec3};
 use protocol::{
     Name,
     command::{Command, Object as Node, Operate},
@@ -39,6 +40,14 @@ pub struct DrawnInstances {
     pub lines: usize,
 }
 
+/// The node that places something, in the left-handed space of the workstation.
+///
+/// - `placement`: in the space of scenes.
+pub(super) fn placing(placement: &DAffine3) -> Operate {
+    let mirror = DMat4::from_scale(DVec3::new(1.0, 1.0, -1.0));
+    Operate::Matrix4x3(mirror * DMat4::from(*placement) * mirror)
+}
+
 /// What of a scene moves on the workstation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawnMotion {
@@ -46,6 +55,8 @@ pub struct DrawnMotion {
     pub objects: usize,
     /// Motions that are different from each other.
     pub motions: usize,
+    /// Pictures that follow each other where objects change otherwise than by such motions; else 0.
+    pub pictures: usize,
     /// Frames of 1/60 s after which all begin anew.
     pub frames: i32,
 }
@@ -97,7 +108,11 @@ impl DrawnMotion {
     /// What moves, and how long, in one line.
     pub fn describe(&self) -> String {
         let counted = |count: usize, word: &str| format!("{count} {word}{}", if count == 1 { "" } else { "s" });
-        let (objects, motions) = (counted(self.objects, "object"), counted(self.motions, "motion"));
+        let objects = counted(self.objects, "object");
+        let motions = match self.pictures {
+            0 => counted(self.motions, "motion"),
+            pictures => counted(pictures, "picture"),
+        };
         format!("{objects} in {motions}, which begin anew every {} s", (self.seconds() * 1e3).round() / 1e3)
     }
 }

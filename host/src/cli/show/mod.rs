@@ -19,7 +19,7 @@ use clap::{Args, FromArgMatches};
 use edits::WatchedFiles;
 use files::Destination;
 use protocol::address::Address;
-use ready::modelled;
+use ready::{flip_book, modelled};
 use serving::Server;
 use view_reporter::ViewReporter;
 
@@ -40,10 +40,18 @@ fn run(arguments: &ShowArguments) -> Result<(), CommandFailure> {
     }
     let file = arguments.camera.as_ref().map(Destination::of).transpose()?;
     let watched = arguments.watch.then(|| WatchedFiles::of(&arguments.script));
-    let evaluated = load(&arguments.script, &arguments.definitions)?;
+    let mut times = arguments.times();
+    let first = times.as_mut().and_then(Iterator::next);
+    let evaluated = match first {
+        Some(time) => load(&arguments.script, &arguments.definitions.at(time))?,
+        None => load(&arguments.script, &arguments.definitions)?,
+    };
     let camera = evaluated.scene.camera;
     let Evaluated { scene, files, .. } = source::lit(evaluated)?;
-    let (model, light) = modelled(&scene, arguments, None)?;
+    let (model, light) = match times {
+        Some(times) => (flip_book(&scene, times, arguments)?, None),
+        None => modelled(&scene, arguments, None)?,
+    };
     let edits = watched.map(|watched| edits::watch(arguments, watched, &files, camera, *model.initial()));
     let timeouts = arguments.waits.timeouts();
     let (mut emulator, line) = match &arguments.to {
@@ -57,6 +65,9 @@ fn run(arguments: &ShowArguments) -> Result<(), CommandFailure> {
     let session = Session::attach(&line, timeouts)?;
     let mut production = Production::show(model, session)?;
     report(arguments, &line, production.sent(), light.as_ref());
+    if first.is_some() && production.sent().motion.is_none() {
+        warn("nothing changes from picture to picture");
+    }
     drop(light);
     if arguments.once {
         return Ok(());
@@ -114,7 +125,7 @@ fn report(arguments: &ShowArguments, line: &Address, sent: Sent, light: Option<&
         });
         let motion = motion.map(|motion: DrawnMotion| {
             serde_json::json!({
-                "objects": motion.objects, "motions": motion.motions, "period_seconds": motion.seconds(),
+                "objects": motion.objects, "motions": motion.motions, "pictures": motion.pictures, "period_seconds": motion.seconds(),
             })
         });
         let known = serde_json::json!({
