@@ -204,7 +204,8 @@ fn the_host_renders_what_moves_as_it_stands_on_the_machine_and_a_reset_lets_it_b
     machine.operator_command("frames 20");
     machine.operator_command("key 5");
     let seconds = production.motion_seconds().expect("it answers");
-    assert!(seconds >= 1.0 / 60.0 && seconds < 2.0 && (seconds * 60.0).fract() < 1e-9, "{seconds}");
+    let frame = (seconds * 60.0).round();
+    assert!((1.0..120.0).contains(&frame) && (seconds * 60.0 - frame).abs() < 1e-9, "{seconds}");
     let matrix = production.view().expect("it answers");
     let order = RenderOrder { width: 64, height: 64, samples: 2, ..RenderOrder::of(&scene().settings) };
     let display = DisplayTransform::LINEAR;
@@ -299,23 +300,15 @@ fn a_flip_book_shows_each_picture_at_its_time_and_sends_what_stays_once() {
 }
 
 #[test]
-fn a_flip_book_that_is_too_large_is_refused_with_its_number() {
-    let fine = Drawing { tolerance: 1e-4, ..Drawing::default() };
-    let ball = |radius: f64| {
-        let text = format!("sphere({radius}); camera(#{{ from: [0, 0, 9], at: [0, 0, 0], field_of_view: 30 }});");
-        script::evaluate(&text, "ball", Path::new(""), &script::Inputs::default()).expect("a scene").scene
-    };
-    let book = FlipBook::new(ball(1.0), (0..400).map(|k| ball(1.1 + f64::from(k))).collect(), 24);
-    let prepared = Prepared::new(book.first()).expect("a scene");
-    let initial = InitialView::of(&prepared).expect("a camera");
-    let refused = structure::pictures(&book, &initial, &prepared.subject(), &fine).expect_err("it is too large");
-    let text = refused.to_string();
-    assert!(text.contains("1000000 at most") && text.contains("--tolerance"), "{text}");
+fn a_flip_book_of_instances_that_become_others_is_refused() {
     let instances = |turn: f64| {
         let text = format!("instances(box(1, 1, 1), [[0, 0, 0], #{{ at: [2, 0, 0], turn: {turn} }}]);");
         script::evaluate(&text, "pair", Path::new(""), &script::Inputs::default()).expect("a scene").scene
     };
-    let book = FlipBook::new(instances(0.0), vec![instances(20.0)], 24);
-    let refused = structure::pictures(&book, &initial, &prepared.subject(), &fine).expect_err("they are others");
-    assert!(refused.to_string().contains("instances"), "{refused}");
+    let book = FlipBook::new(instances(0.0), vec![instances(20.0)], RATE);
+    let prepared = Prepared::new(book.first()).expect("a scene");
+    let initial = InitialView::of(&prepared).expect("a camera");
+    let refused = structure::pictures(&book, &initial, &prepared.subject(), &Drawing::default());
+    let text = refused.expect_err("they are others").to_string();
+    assert!(text.contains("instances are others in other pictures"), "{text}");
 }

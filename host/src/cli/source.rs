@@ -30,7 +30,7 @@ pub struct ScriptArguments {
 }
 
 impl ScriptArguments {
-    /// The same at another time, seconds.
+    /// These arguments with a time instead of their own, seconds.
     pub(super) fn at(&self, time: f64) -> ScriptArguments {
         ScriptArguments { time: Some(time), ..self.clone() }
     }

@@ -185,3 +185,23 @@ fn pictures(changing: &[ChangingObject<'_>]) -> usize {
 fn picture(number: usize) -> String {
     format!("{STRUCTURE_PREFIX}_{number}")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_points_than_are_sent_are_refused_with_their_number() {
+        assert_eq!(check_points(MOST_POINTS), Ok(()));
+        let text = check_points(1_234_567).expect_err("it is too much").to_string();
+        assert!(text.contains("1234567 points") && text.contains("1000000 at most"), "{text}");
+    }
+
+    #[test]
+    fn a_time_has_the_scene_of_its_picture_and_late_ones_that_of_the_last() {
+        let scene = |background: f64| Scene { background: glam::DVec3::splat(background), ..Scene::default() };
+        let book = FlipBook::new(scene(0.0), vec![scene(1.0), scene(2.0)], 24);
+        let shown = [0.0, 0.04, 1.0 / 24.0, 0.08, 2.0 / 24.0, 9.0].map(|seconds| book.scene(seconds).background.x);
+        assert_eq!(shown, [0.0, 0.0, 1.0, 1.0, 2.0, 2.0]);
+    }
+}

@@ -300,9 +300,9 @@ mod tests {
         assert_eq!(chosen(&[1.0]), 21_600, "six minutes");
         assert_eq!(chosen(&[0.1]), 240, "an hour is too long");
         assert_eq!(chosen(&[1.0, 2f64.sqrt()]), 240, "they never meet");
-        let moving = group(motion([1.0, 0.0, 0.0], [0.0, 0.0, 1.0], 50.0));
-        assert_eq!(frames(&[moving.clone()], MotionPeriod::Seamless), 240);
-        assert_eq!(frames(&[moving.clone()], MotionPeriod::Seconds(7.21)), 433);
-        assert_eq!(frames(&[moving], MotionPeriod::Seconds(1e-6)), 1);
+        let moving = [group(motion([1.0, 0.0, 0.0], [0.0, 0.0, 1.0], 50.0))];
+        assert_eq!(frames(&moving, MotionPeriod::Seamless), 240);
+        assert_eq!(frames(&moving, MotionPeriod::Seconds(7.21)), 433);
+        assert_eq!(frames(&moving, MotionPeriod::Seconds(1e-6)), 1);
     }
 }
