@@ -96,7 +96,7 @@ enum MovingScene {
 }
 
 impl MovingScene {
-    /// It after seconds, ready to be rendered.
+    /// The scene as it stands after seconds, ready to be rendered.
     fn prepared(&self, seconds: f64) -> Result<Prepared, SceneError> {
         match self {
             MovingScene::OfMotions(scene) => Prepared::new(&scene.after(seconds)),
@@ -225,8 +225,8 @@ impl Production {
         Ok(self.session.view()?)
     }
 
-    /// Reads back how long what moves has done so, seconds from the middle of the time in which the shutter is open; 0
-    /// where nothing moves.
+    /// Reads back how long everything has moved since it began, or began anew, seconds: at 0 the scene stands as it was
+    /// shown. 0 where nothing moves.
     ///
     /// # Errors
     /// [`ProductionError::Workstation`].
@@ -271,8 +271,8 @@ impl Production {
 
     /// Begins to ray-trace the view of a matrix that was read back, beside whatever else is done.
     ///
-    /// - `seconds`: how long what moves has done so, as [`motion_seconds`](Self::motion_seconds) reads it back; 0 is the
-    ///   scene as it was shown. `display`: how the image is shown; an automatic exposure is metered from this view.
+    /// - `seconds`: how long everything has moved, as [`motion_seconds`](Self::motion_seconds) reads it back.
+    /// - `display`: how the image is shown; an automatic exposure is metered from this view.
     ///
     /// # Errors
     /// [`ProductionError::Thread`].

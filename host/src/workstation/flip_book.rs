@@ -43,6 +43,8 @@ pub(super) struct ChangingObject<'a> {
 }
 
 impl FlipBook {
+    /// The flip-book of scenes that follow each other.
+    ///
     /// - `first`: the scene of the first picture, which says how it is seen and lit. `rest`: those of the others.
     /// - `rate`: pictures in a second, 1..=60; what is beyond is the nearest of these.
     pub fn new(first: Scene, rest: Vec<Scene>, rate: u32) -> FlipBook {
@@ -106,7 +108,9 @@ impl FlipBook {
 }
 
 impl<'a> ChangingObject<'a> {
-    /// - `all`: it in each picture, none where it is not.
+    /// Tells the forms of an object apart.
+    ///
+    /// - `index`: its number in the scenes, from 0. `all`: it in each picture, none where it is not.
     fn new(index: usize, all: &[Option<&'a Object>]) -> Result<ChangingObject<'a>, WorkstationError> {
         let mut forms: Vec<&Object> = Vec::new();
         let mut places = Vec::with_capacity(all.len());

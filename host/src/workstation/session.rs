@@ -253,8 +253,8 @@ impl Session {
         Ok(DMat4::from_cols_array_2d(&rows))
     }
 
-    /// The time of what moves at the workstation, seconds from the middle of the time in which the shutter is open; the
-    /// scene that was shown moves.
+    /// How long everything in a scene that moves at the workstation has done so since it began, or began anew, seconds; by
+    /// the network that came with the scene, in whatever session.
     ///
     /// # Errors
     /// [`WorkstationError::Timeout`], [`WorkstationError::Closed`], [`WorkstationError::Answer`].

@@ -125,7 +125,8 @@ fn report(arguments: &ShowArguments, line: &Address, sent: Sent, light: Option<&
         });
         let motion = motion.map(|motion: DrawnMotion| {
             serde_json::json!({
-                "objects": motion.objects, "motions": motion.motions, "pictures": motion.pictures, "period_seconds": motion.seconds(),
+                "objects": motion.objects, "motions": motion.motions, "pictures": motion.pictures,
+                "period_seconds": motion.seconds(),
             })
         });
         let known = serde_json::json!({
