@@ -30,6 +30,11 @@ pub struct ScriptArguments {
 }
 
 impl ScriptArguments {
+    /// These arguments with a time instead of their own, seconds.
+    pub(super) fn at(&self, time: f64) -> ScriptArguments {
+        ScriptArguments { time: Some(time), ..self.clone() }
+    }
+
     /// Whether there are none.
     pub(super) fn is_empty(&self) -> bool {
         self.given.is_empty() && self.time.is_none()

@@ -11,6 +11,8 @@ const MAX_VECTORS: usize = 1_000_000;
 const MOST_SECONDS: f64 = 1e9;
 /// Least memory that a command may be given, bytes: less than its own code and stacks is no use.
 const LEAST_MEMORY: u64 = 64 << 20;
+/// Longest period of what moves on a workstation, seconds.
+const MAX_PERIOD: f64 = 3600.0;
 
 /// Reads a number of threads.
 pub(super) fn threads(text: &str) -> Result<NonZeroUsize, String> {
@@ -52,6 +54,12 @@ pub(super) fn seconds(text: &str) -> Result<f64, String> {
 pub(super) fn length(text: &str) -> Result<f64, String> {
     let length = text.parse().ok().filter(|length| *length > 0.0 && *length < f64::INFINITY);
     length.ok_or_else(|| "give a length above 0".to_string())
+}
+
+/// Reads the period of what moves on a workstation, seconds.
+pub(super) fn period(text: &str) -> Result<f64, String> {
+    let seconds = text.parse().ok().filter(|seconds| *seconds > 0.0 && *seconds <= MAX_PERIOD);
+    seconds.ok_or_else(|| format!("give a number of seconds, above 0 and at most {MAX_PERIOD}"))
 }
 
 /// Reads a distance as a part of a diagonal.

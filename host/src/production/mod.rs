@@ -15,10 +15,11 @@ use crate::{
     picture::{Picture, display::DisplayTransform},
     plan::Plan,
     render::{RenderError, RenderOrder, Watch, World, radiosity::Radiosity, tiles::Tiling},
-    scene::{Camera, Interreflection, Prepared, Projection, Scene, View},
+    scene::{Camera, Interreflection, Prepared, Projection, Scene, SceneError, View},
     workstation::{
-        Drawing, DrawnInstances, InitialView, Session, StructureCommands, WorkstationError, network, raster, structure,
-        tiles,
+        Drawing, DrawnInstances, DrawnMotion, FlipBook, InitialView, Session, StructureCommands, WorkstationError,
+        motion::{self, MOTION_KEY},
+        network, raster, structure, tiles,
     },
 };
 use glam::{DMat4, DVec3};
@@ -39,6 +40,7 @@ pub struct Model {
     initial: InitialView,
     structure: StructureCommands,
     is_lit: bool,
+    moving: Option<MovingScene>,
     begun: Instant,
 }
 
@@ -61,12 +63,45 @@ impl Model {
         let own = InitialView::of(&prepared)?;
         let initial = initial.map_or(own, |initial| InitialView { elongation: own.elongation, ..initial });
         let shown = structure::with_light(scene, &initial, &prepared.subject(), drawing, light)?;
-        Ok(Model { prepared, initial, structure: shown, is_lit: light.is_some(), begun })
+        let moving = shown.motion.map(|_| MovingScene::OfMotions(Arc::new(scene.clone())));
+        Ok(Model { prepared, initial, structure: shown, is_lit: light.is_some(), moving, begun })
+    }
+
+    /// Models the pictures of a flip-book, which are seen by the camera of the first scene.
+    ///
+    /// # Errors
+    /// [`ProductionError`].
+    pub fn of_pictures(book: FlipBook, drawing: &Drawing) -> Result<Model, ProductionError> {
+        let prepared = Prepared::new(book.first())?;
+        let begun = Instant::now();
+        let initial = InitialView::of(&prepared)?;
+        let structure = structure::pictures(&book, &initial, &prepared.subject(), drawing)?;
+        let moving = structure.motion.map(|_| MovingScene::OfPictures(Arc::new(book)));
+        Ok(Model { prepared, initial, structure, is_lit: false, moving, begun })
     }
 
     /// From where it is seen before dials turn it.
     pub fn initial(&self) -> &InitialView {
         &self.initial
+    }
+}
+
+/// A scene in which something moves on the workstation.
+#[derive(Clone, Debug)]
+enum MovingScene {
+    /// By its motions.
+    OfMotions(Arc<Scene>),
+    /// From picture to picture.
+    OfPictures(Arc<FlipBook>),
+}
+
+impl MovingScene {
+    /// The scene as it stands after seconds, ready to be rendered.
+    fn prepared(&self, seconds: f64) -> Result<Prepared, SceneError> {
+        match self {
+            MovingScene::OfMotions(scene) => Prepared::new(&scene.after(seconds)),
+            MovingScene::OfPictures(book) => Prepared::new(book.scene(seconds)),
+        }
     }
 }
 
@@ -78,6 +113,7 @@ pub struct Production {
     session: Session,
     depth_clipping: bool,
     is_lit: bool,
+    moving: Option<MovingScene>,
     sent: Sent,
     /// Width and height of the image on the raster screen, if one was sent.
     image: Option<[u32; 2]>,
@@ -92,6 +128,8 @@ pub struct Sent {
     pub points: usize,
     /// What is drawn of the instances, in a scene that has any.
     pub instances: Option<DrawnInstances>,
+    /// What moves, in a scene where something does.
+    pub motion: Option<DrawnMotion>,
     /// From when they were chosen until the workstation had them, seconds.
     pub seconds: f64,
 }
@@ -99,8 +137,8 @@ pub struct Sent {
 impl Sent {
     /// - `begun`: when it was chosen.
     fn of(shown: &StructureCommands, begun: Instant) -> Sent {
-        let StructureCommands { lines, points, instances, .. } = *shown;
-        Sent { lines, points, instances, seconds: begun.elapsed().as_secs_f64() }
+        let StructureCommands { lines, points, instances, motion, .. } = *shown;
+        Sent { lines, points, instances, motion, seconds: begun.elapsed().as_secs_f64() }
     }
 }
 
@@ -125,7 +163,7 @@ impl Production {
     /// # Errors
     /// [`ProductionError::Workstation`].
     pub fn show(model: Model, mut session: Session) -> Result<Production, ProductionError> {
-        let Model { prepared, initial, structure: shown, is_lit, begun } = model;
+        let Model { prepared, initial, structure: shown, is_lit, moving, begun } = model;
         session.show(&shown, initial.movement())?;
         if is_lit {
             session.commands(&tiles::settings(prepared.background))?;
@@ -134,7 +172,8 @@ impl Production {
         }
         let sent = Sent::of(&shown, begun);
         let depth_clipping = shown.depth_clipping;
-        Ok(Production { prepared: Arc::new(prepared), initial, session, depth_clipping, is_lit, sent, image: None })
+        let prepared = Arc::new(prepared);
+        Ok(Production { prepared, initial, session, depth_clipping, is_lit, moving, sent, image: None })
     }
 
     /// Shows another scene in place of this one, which was shown with light if that is.
@@ -144,13 +183,16 @@ impl Production {
     /// # Errors
     /// [`ProductionError::Workstation`].
     pub fn replace(&mut self, model: Model, keeps_dials: bool) -> Result<(), ProductionError> {
-        let Model { prepared, initial, structure: shown, begun, .. } = model;
+        let Model { prepared, initial, structure: shown, moving, begun, .. } = model;
         self.session.replace(&shown, initial.movement())?;
         if self.is_lit {
             // The node that shades was made anew.
             self.session.commands(&network::shading())?;
         }
-        self.sent = Sent::of(&shown, begun);
+        if self.moving.is_some() && moving.is_none() {
+            self.label(MOTION_KEY.0, "")?;
+        }
+        (self.sent, self.moving) = (Sent::of(&shown, begun), moving);
         (self.prepared, self.initial, self.depth_clipping) = (Arc::new(prepared), initial, shown.depth_clipping);
         if keeps_dials { Ok(self.session.synchronize()?) } else { self.reset() }
     }
@@ -181,6 +223,15 @@ impl Production {
     /// [`ProductionError::Workstation`].
     pub fn view(&mut self) -> Result<DMat4, ProductionError> {
         Ok(self.session.view()?)
+    }
+
+    /// Reads back how long everything has moved since it began, or began anew, seconds: at 0 the scene stands as it was
+    /// shown. 0 where nothing moves.
+    ///
+    /// # Errors
+    /// [`ProductionError::Workstation`].
+    pub fn motion_seconds(&mut self) -> Result<f64, ProductionError> {
+        Ok(if self.moving.is_some() { self.session.motion_seconds()? } else { 0.0 })
     }
 
     /// What a matrix that was read back shows of the scene.
@@ -220,6 +271,7 @@ impl Production {
 
     /// Begins to ray-trace the view of a matrix that was read back, beside whatever else is done.
     ///
+    /// - `seconds`: how long everything has moved, as [`motion_seconds`](Self::motion_seconds) reads it back.
     /// - `display`: how the image is shown; an automatic exposure is metered from this view.
     ///
     /// # Errors
@@ -227,11 +279,17 @@ impl Production {
     pub fn begin_rendering(
         &self,
         matrix: &DMat4,
+        seconds: f64,
         options: &RenderOrder,
         display: &DisplayTransform,
     ) -> Result<Progressive, ProductionError> {
         let view = View::Projection(self.projection(matrix));
-        Progressive::begin(self.prepared.clone(), view, *options, *display)
+        let (shown, moving) = (self.prepared.clone(), self.moving.clone().filter(|_| seconds != 0.0));
+        let prepared = move || match moving {
+            Some(scene) => Ok(Arc::new(scene.prepared(seconds)?)),
+            None => Ok(shown),
+        };
+        Progressive::begin(prepared, view, *options, *display)
     }
 
     /// Shows an image on the raster screen, whose radiance is the light of the display. It is there when this returns.
@@ -276,7 +334,7 @@ impl Production {
         Ok(self.session.commands(&[network::label(key, text)])?)
     }
 
-    /// Puts the dials back to where they began.
+    /// Puts the dials back to where they began, and lets what moves begin anew.
     ///
     /// # Errors
     /// [`ProductionError::Workstation`].
@@ -284,6 +342,9 @@ impl Production {
         self.session.commands(&network::reset())?;
         if self.sent.instances.is_some() {
             self.session.commands(&network::reset_detail())?;
+        }
+        if self.moving.is_some() {
+            self.session.commands(&motion::restart())?;
         }
         if self.is_lit {
             self.session.commands(&network::shade())?;

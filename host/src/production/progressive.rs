@@ -48,8 +48,10 @@ pub struct Progressive {
 
 impl Progressive {
     /// Begins to render.
+    ///
+    /// - `prepared`: makes the scene ready, in the thread of the rendering.
     pub(super) fn begin(
-        prepared: Arc<Prepared>,
+        prepared: impl FnOnce() -> Result<Arc<Prepared>, ProductionError> + Send + 'static,
         view: View,
         options: RenderOrder,
         display: DisplayTransform,
@@ -63,9 +65,9 @@ impl Progressive {
             let _stage = stage!("rendering the view");
             let watch = Watch { cancelled: &cancelled, memo: None };
             let mut part = |part: RenderingEvent| tell(part);
-            tell(RenderingEvent::End(
-                render_view(&prepared, &view, &options, &display, &watch, Some(&mut part)).map(Box::new),
-            ));
+            let rendered = prepared()
+                .and_then(|prepared| render_view(&prepared, &view, &options, &display, &watch, Some(&mut part)));
+            tell(RenderingEvent::End(rendered.map(Box::new)));
         };
         let thread = std::thread::Builder::new().name("rendering".into());
         thread.spawn(work).map_err(|error| ProductionError::Thread(error.to_string()))?;

@@ -22,6 +22,9 @@ pub struct Drawing {
     /// Vectors of a picture, or corners of its polygons, to which instances are thinned out; without it, as many as the
     /// machine draws 30 times a second, or shades within a second.
     pub most: Option<usize>,
+    /// How long what moves does so on the workstation before it begins anew; without it, everything stands where it is
+    /// in the middle of the time in which the shutter is open.
+    pub motion: Option<MotionPeriod>,
 }
 
 /// The edges of objects that are sent.
@@ -35,9 +38,26 @@ pub enum DrawnEdges {
     All,
 }
 
+/// How long what moves on the workstation does so before it begins anew.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MotionPeriod {
+    /// The shortest time of one second to ten minutes after which everything is back where it was, so that nobody sees
+    /// where it begins anew; four seconds if there is none.
+    Seamless,
+    /// So many seconds, rounded to frames of 1/60 s, at least one.
+    Seconds(f64),
+}
+
 impl Default for Drawing {
     fn default() -> Drawing {
-        Drawing { lines: DrawnEdges::Grid, crease_degrees: 25.0, tolerance: 1.0 / 400.0, facets: false, most: None }
+        Drawing {
+            lines: DrawnEdges::Grid,
+            crease_degrees: 25.0,
+            tolerance: 1.0 / 400.0,
+            facets: false,
+            most: None,
+            motion: None,
+        }
     }
 }
 

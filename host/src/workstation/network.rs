@@ -17,10 +17,28 @@ pub const SCALE_LIMITS: [f64; 2] = [-4.0, 8.0];
 
 /// What a message to the host begins with when a function key was pressed; the number follows.
 pub const KEY_PREFIX: &str = "KEY ";
+/// A question to a network on the workstation.
+pub(super) struct Question {
+    /// What is asked for, in words.
+    pub(super) what: &'static str,
+    /// The function that answers when it gets TRUE at `<1>`.
+    trigger: &'static str,
+    /// The function that gives the answer as text.
+    text: &'static str,
+    /// What the first message of the answer begins with.
+    pub(super) prefix: &'static str,
+    /// Messages of the answer.
+    pub(super) messages: usize,
+}
+
 /// The function that gives the matrix of the view when it gets TRUE at `<1>`.
 const VIEW_TRIGGER: &str = "PERIS_VIEW";
 /// The function that gives the matrix as text.
 const VIEW_TEXT: &str = "PERIS_PRINT";
+
+/// Asks for the matrix of the view: its kind, and its rows.
+pub(super) const VIEW: Question =
+    Question { messages: 5, ..Question::new("the matrix of the view", VIEW_TRIGGER, VIEW_TEXT, "MATRIX_4X4") };
 
 /// The function that asks for a shaded picture when no message came for a while.
 const IDLE_TIMER: &str = "PERIS_QUIET";
@@ -64,22 +82,22 @@ const DETAIL_SUM: &str = "PERIS_D";
 
 /// A small builder: names of ours are known to be legal.
 #[derive(Debug, Default)]
-struct Build {
-    commands: Vec<Command>,
+pub(super) struct Build {
+    pub(super) commands: Vec<Command>,
 }
 
 impl Build {
-    fn function(&mut self, instance: &str, function: &str) {
+    pub(super) fn function(&mut self, instance: &str, function: &str) {
         let object = Object::Function { function: name(function), size: None };
         self.commands.push(Command::Define { name: Some(name(instance)), object });
     }
 
-    fn connect(&mut self, source: &str, output: u16, input: u32, to: &str) {
+    pub(super) fn connect(&mut self, source: &str, output: u16, input: u32, to: &str) {
         let destination = Destination { input: Input::Number(input), name: name(to) };
         self.commands.push(Command::Connect(Arc { source: name(source), output, destination }));
     }
 
-    fn send(&mut self, value: Value, input: u32, to: &str) {
+    pub(super) fn send(&mut self, value: Value, input: u32, to: &str) {
         self.commands.push(send(value, input, to));
     }
 
@@ -167,18 +185,33 @@ pub fn label(key: i32, text: &str) -> Command {
     send(Value::string(text), 1, &format!("FLABEL{key}"))
 }
 
-/// Asks for the matrix of the view, whoever set up the network that answers.
-pub(super) fn request_view() -> Vec<Command> {
-    let mut build = Build::default();
-    build.connect(VIEW_TEXT, 1, 1, "HOST_MESSAGE");
-    build.send(Value::Boolean(true), 1, VIEW_TRIGGER);
-    build.commands
-}
+impl Question {
+    /// A question whose answer is one message.
+    ///
+    /// - `what`: is asked for, in words. `trigger`: the function that answers when it gets TRUE at `<1>`. `text`: that
+    ///   gives the answer. `prefix`: what this begins with.
+    pub(super) const fn new(
+        what: &'static str,
+        trigger: &'static str,
+        text: &'static str,
+        prefix: &'static str,
+    ) -> Question {
+        Question { what, trigger, text, prefix, messages: 1 }
+    }
 
-/// Ends the question: the answers to others who ask do not come here.
-pub(super) fn leave_view() -> Command {
-    let destination = Some(Destination { input: Input::Number(1), name: name("HOST_MESSAGE") });
-    Command::Disconnect { source: name(VIEW_TEXT), output: Some(1), destination }
+    /// Asks, whoever set up the network that answers.
+    pub(super) fn ask(&self) -> Vec<Command> {
+        let mut build = Build::default();
+        build.connect(self.text, 1, 1, "HOST_MESSAGE");
+        build.send(Value::Boolean(true), 1, self.trigger);
+        build.commands
+    }
+
+    /// Ends the question: the answers to others who ask do not come here.
+    pub(super) fn leave(&self) -> Command {
+        let destination = Some(Destination { input: Input::Number(1), name: name("HOST_MESSAGE") });
+        Command::Disconnect { source: name(self.text), output: Some(1), destination }
+    }
 }
 
 /// Shades the light of a solution on the raster screen when the dials have stood still for a while: the vectors turn

@@ -1,6 +1,12 @@
 //! A session with a workstation over its host line.
 
-use super::{StructureCommands, Timeouts, WorkstationError, network, structure};
+use super::{
+    StructureCommands, Timeouts, WorkstationError,
+    motion::FRAME_NOW,
+    network::{self, Question},
+    structure,
+    structure_commands::FRAMES_PER_SECOND,
+};
 use glam::DMat4;
 use protocol::{
     Value,
@@ -236,21 +242,7 @@ impl Session {
     /// # Errors
     /// [`WorkstationError::Timeout`], [`WorkstationError::Closed`], [`WorkstationError::Answer`].
     pub fn view(&mut self) -> Result<DMat4, WorkstationError> {
-        self.commands(&network::request_view())?;
-        let mut lines = Vec::new();
-        let mut others = VecDeque::new();
-        let wait = Wait::begin("the matrix of the view", self.timeouts.answer);
-        while lines.len() < 5 {
-            let message = self.next(&wait)?;
-            if lines.is_empty() && !message.starts_with(b"MATRIX_4X4") {
-                others.push_back(message);
-            } else {
-                lines.push(String::from_utf8_lossy(&message).into_owned());
-            }
-        }
-        others.append(&mut self.messages);
-        self.messages = others;
-        self.commands(&[network::leave_view()])?;
+        let lines = self.answer(&network::VIEW)?;
         let mut rows = [[0.0; 4]; 4];
         for (row, line) in rows.iter_mut().zip(&lines[1..]) {
             let failed = || WorkstationError::Answer { answer: line.clone(), expected: "a row of four numbers" };
@@ -259,6 +251,38 @@ impl Session {
             *row = numbers.collect::<Option<Vec<f64>>>().and_then(|n| n.try_into().ok()).ok_or_else(failed)?;
         }
         Ok(DMat4::from_cols_array_2d(&rows))
+    }
+
+    /// How long everything in a scene that moves at the workstation has done so since it began, or began anew, seconds; by
+    /// the network that came with the scene, in whatever session.
+    ///
+    /// # Errors
+    /// [`WorkstationError::Timeout`], [`WorkstationError::Closed`], [`WorkstationError::Answer`].
+    pub fn motion_seconds(&mut self) -> Result<f64, WorkstationError> {
+        let answer = self.answer(&FRAME_NOW)?.concat();
+        let frame = answer.strip_prefix(FRAME_NOW.prefix).and_then(|number| number.trim().parse::<i32>().ok());
+        let failed = || WorkstationError::Answer { answer: answer.clone(), expected: "the number of a frame" };
+        Ok(f64::from(frame.ok_or_else(failed)?) / f64::from(FRAMES_PER_SECOND))
+    }
+
+    /// The messages that answer a question; others that come meanwhile are kept.
+    fn answer(&mut self, question: &Question) -> Result<Vec<String>, WorkstationError> {
+        self.commands(&question.ask())?;
+        let mut lines = Vec::new();
+        let mut others = VecDeque::new();
+        let wait = Wait::begin(question.what, self.timeouts.answer);
+        while lines.len() < question.messages {
+            let message = self.next(&wait)?;
+            if lines.is_empty() && !message.starts_with(question.prefix.as_bytes()) {
+                others.push_back(message);
+            } else {
+                lines.push(String::from_utf8_lossy(&message).into_owned());
+            }
+        }
+        others.append(&mut self.messages);
+        self.messages = others;
+        self.commands(&[question.leave()])?;
+        Ok(lines)
     }
 
     /// Shows a scene, with its dials, labels and keys. The scene is there when this returns.

@@ -6,7 +6,9 @@
 use super::{
     Drawing, InitialView, StructureCommands, WorkstationError,
     facets::{self, mirrored},
+    flip_book::{self, ChangingObject, FlipBook},
     instancing::{self, CHOSEN_LEVEL, ShownInstances},
+    motion,
     names::{DETAIL, ROOT, name},
     parts::{Fineness, MaterialPart, parts},
     tiles,
@@ -14,7 +16,7 @@ use super::{
 use crate::{
     numeric::bounds::Bounds,
     render::tiles::Tiling,
-    scene::{Camera, Scene, Shape},
+    scene::{Camera, Object, Scene, Shape},
     surface::Tolerance,
 };
 use glam::{DMat3, DVec2, DVec3};
@@ -35,10 +37,13 @@ pub fn delete() -> Command {
     Command::Delete(vec![NamePattern::Prefix(ROOT.to_string())])
 }
 
-/// Deletes the objects of a scene whose structure is about to be defined anew, what their polygons look like, and what
-/// their instances place. Its nodes, and the arcs to them, stay.
+/// Deletes the objects of a scene whose structure is about to be defined anew, what their polygons look like, what their
+/// instances place, and what moves them. Its other nodes, and the arcs to them, stay.
 pub fn delete_objects() -> Command {
-    Command::Delete([format!("{ROOT}.O"), format!("{ROOT}_A"), format!("{ROOT}_I")].map(NamePattern::Prefix).into())
+    let nodes = [motion::NODE_PREFIX, flip_book::PICTURES].map(|node| format!("{ROOT}.{node}"));
+    let others = [motion::NETWORK_PREFIX, flip_book::STRUCTURE_PREFIX].map(str::to_owned);
+    let objects = [format!("{ROOT}.O"), format!("{ROOT}_A"), format!("{ROOT}_I")];
+    Command::Delete(objects.into_iter().chain(nodes).chain(others).map(NamePattern::Prefix).collect())
 }
 
 /// The commands that build the structure [`ROOT`] and display it; [`delete`] comes before them.
@@ -46,7 +51,8 @@ pub fn delete_objects() -> Command {
 /// Its nodes `CLIP`, `VIEW`, `LOOK`, `T`, `RX`, `RY`, `RZ`, `S` take values from networks; `MATRIX` is an XFORM
 /// MATRIX node below them all, whose matrix takes scene coordinates (z negated) to clip space. `PICK` is a SET PICKING,
 /// OFF at first: what is picked of object n has the identifier `On`. In a scene with instances, `DETAIL` is a
-/// SET LEVEL_OF_DETAIL that all of them obey.
+/// SET LEVEL_OF_DETAIL that all of them obey. What moves alike is in one structure `MOVEn`, whose nodes `T` and `R` a
+/// network moves and turns; its commands are the last.
 ///
 /// - `initial`: from where it is seen. `bounds`: a box around what is looked at, over which the depth cue runs.
 ///
@@ -73,21 +79,69 @@ pub fn with_light(
     drawing: &Drawing,
     light: Option<&Tiling>,
 ) -> Result<StructureCommands, WorkstationError> {
+    assembled(scene, initial, bounds, drawing, light, Vec::new())
+}
+
+/// The commands that [`commands`] gives for the first scene of a flip-book, and the others, which a network shows one after
+/// the other. Nothing moves in them otherwise.
+///
+/// # Errors
+/// [`WorkstationError::Scene`], if an object cannot be tessellated, if instances are not the same, or for too many points.
+pub fn pictures(
+    book: &FlipBook,
+    initial: &InitialView,
+    bounds: &Bounds,
+    drawing: &Drawing,
+) -> Result<StructureCommands, WorkstationError> {
+    let changing = book.changing()?;
+    let (count, drawing) = (changing.len(), Drawing { motion: None, ..*drawing });
+    let mut out = assembled(book.first(), initial, bounds, &drawing, None, changing)?;
+    if count > 0 {
+        let (network, drawn) = book.network(count);
+        out.commands.extend(network);
+        out.motion = Some(drawn);
+    }
+    Ok(out)
+}
+
+/// - `changing`: objects that are not the same in all pictures of a flip-book, whose first one this is.
+fn assembled(
+    scene: &Scene,
+    initial: &InitialView,
+    bounds: &Bounds,
+    drawing: &Drawing,
+    light: Option<&Tiling>,
+    changing: Vec<ChangingObject<'_>>,
+) -> Result<StructureCommands, WorkstationError> {
     let camera = &initial.camera;
     let mut out =
         StructureCommands { depth_clipping: camera.far.is_some() || camera.near > 0.0, ..StructureCommands::default() };
     let angle = scene.settings.geometry.angle;
-    let mut objects = Vec::with_capacity(scene.objects.len());
-    for (number, object) in (1..).zip(&scene.objects) {
+    let made = |object: &Object, surfaces: &str, out: &mut StructureCommands| {
         let fineness = Fineness {
             tolerance: Tolerance::new(drawing.tolerance * object.shape.extent().unwrap_or(1.0), angle),
             eye: camera.from,
             most_triangles: None,
         };
-        objects.push(match object.shape {
-            Shape::Instances(_) => Vec::new(),
-            _ => parts(object, &format!("{ROOT}_A{number}"), &fineness, drawing, &mut out)?,
-        });
+        match object.shape {
+            Shape::Instances(_) => Ok(Vec::new()),
+            _ => parts(object, surfaces, &fineness, drawing, out),
+        }
+    };
+    let mut stands = vec![true; scene.objects.len()];
+    changing.iter().filter(|object| object.index < scene.objects.len()).for_each(|object| stands[object.index] = false);
+    let mut objects = Vec::with_capacity(scene.objects.len());
+    for ((number, object), stands) in (1..).zip(&scene.objects).zip(&stands) {
+        let surfaces = format!("{ROOT}_A{number}");
+        objects.push(if *stands { made(object, &surfaces, &mut out)? } else { Vec::new() });
+    }
+    let mut forms = Vec::new();
+    for object in &changing {
+        for (number, form) in object.forms.iter().enumerate() {
+            let surfaces = format!("{ROOT}_A{}_F{}", object.index + 1, number + 1);
+            forms.push((object.index, object.structure(number), made(form, &surfaces, &mut out)?));
+            flip_book::check_points(out.points)?;
+        }
     }
     let shown = instancing::instances(scene, initial, drawing, out.lines, &mut out)?;
     let mut placed = HashMap::new();
@@ -101,6 +155,14 @@ pub fn with_light(
         let bytes = u32::try_from(shaded as u64 * BYTES_PER_VERTEX).unwrap_or(u32::MAX);
         out.commands.push(Command::ReserveWorkingStorage(bytes));
     }
+    for (index, structure, parts) in forms {
+        // The level of detail of the root numbers the pictures.
+        let level = Operate::SetLevelOfDetail(CHOSEN_LEVEL);
+        let level = Command::Define { name: None, object: Node::Operate { operate: level, applied_to: None } };
+        let nodes = placed.remove(&index).map(|nodes| std::iter::once(level).chain(nodes).collect());
+        self::object(&mut out, &structure, index, parts, nodes);
+    }
+    flip_book::define_pictures(&changing, &mut out);
     out.begin(ROOT);
     view(&mut out, initial, bounds);
     if drawing.facets {
@@ -113,21 +175,20 @@ pub fn with_light(
         out.operate(Some(DETAIL), Operate::SetLevelOfDetail(CHOSEN_LEVEL));
     }
     out.operate(Some("PICK"), Operate::SetPicking(false));
-    for (index, parts) in objects.into_iter().enumerate() {
-        let number = format!("O{}", index + 1);
-        out.begin(&number);
-        out.operate(None, Operate::SetPickingIdentifier(name(&number)));
-        if let Some(nodes) = placed.remove(&index) {
-            out.commands.extend(nodes);
-        }
-        for (k, MaterialPart { material, data }) in (1..).zip(parts) {
-            // The colour of vectors has no value: brightness comes from the intensity.
-            let [hue, saturation] = facets::hue_saturation(facets::main_color(&material));
-            out.operate(None, Operate::SetColor { hue, saturation });
-            let node = if k == 1 { "D".to_owned() } else { format!("D{k}") };
-            out.commands.push(Command::Define { name: Some(name(&node)), object: data });
+    let moving = if drawing.motion.is_some() { motion::groups(scene) } else { Vec::new() };
+    moving.iter().flat_map(|group| &group.objects).for_each(|index| stands[*index] = false);
+    for index in (0..objects.len()).filter(|index| stands[*index]) {
+        self::object(&mut out, &own(index), index, std::mem::take(&mut objects[index]), placed.remove(&index));
+    }
+    for (number, group) in (1..).zip(&moving) {
+        group.begin(number, &mut out);
+        for &index in &group.objects {
+            self::object(&mut out, &own(index), index, std::mem::take(&mut objects[index]), placed.remove(&index));
         }
         out.end();
+    }
+    if !changing.is_empty() {
+        flip_book::place_pictures(&changing, &mut out);
     }
     if let Some(light) = light {
         out.operate(None, Operate::SetDisplays { scopes: Scopes::All, on: false });
@@ -137,7 +198,43 @@ pub fn with_light(
     }
     out.end();
     out.commands.push(Command::Display(name(ROOT)));
+    if let Some(period) = drawing.motion.filter(|_| !moving.is_empty()) {
+        let (network, drawn) = motion::network(&moving, period);
+        out.commands.extend(network);
+        out.motion = Some(drawn);
+    }
     Ok(out)
+}
+
+/// The name of an object in the root, and what is picked of it.
+///
+/// - `index`: its number in the scene, from 0.
+fn own(index: usize) -> String {
+    format!("O{}", index + 1)
+}
+
+/// The structure of an object.
+///
+/// - `structure`: its name. `index`: the number of the object in the scene, from 0. `placed`: the nodes of its instances, if
+///   it has any.
+fn object(
+    out: &mut StructureCommands,
+    structure: &str,
+    index: usize,
+    parts: Vec<MaterialPart>,
+    placed: Option<Vec<Command>>,
+) {
+    out.begin(structure);
+    out.operate(None, Operate::SetPickingIdentifier(name(&own(index))));
+    out.commands.extend(placed.into_iter().flatten());
+    for (k, MaterialPart { material, data }) in (1..).zip(parts) {
+        // The colour of vectors has no value: brightness comes from the intensity.
+        let [hue, saturation] = facets::hue_saturation(facets::main_color(&material));
+        out.operate(None, Operate::SetColor { hue, saturation });
+        let node = if k == 1 { "D".to_owned() } else { format!("D{k}") };
+        out.commands.push(Command::Define { name: Some(name(&node)), object: data });
+    }
+    out.end();
 }
 
 /// Viewport, projection, eye, and what the dials change.

@@ -1,6 +1,7 @@
 //! Commands of a display structure, as they are gathered.
 
 use super::names::name;
+use glam::{DAffine3, DMat4, DVec3};
 use protocol::{
     Name,
     command::{Command, Object as Node, Operate},
@@ -8,6 +9,8 @@ use protocol::{
 
 /// Steps of detail in which instances are drawn: in full, coarse, as outlines, as strokes.
 pub const DETAILS: usize = 4;
+/// Frames that clocks of the workstation count in a second.
+pub const FRAMES_PER_SECOND: u32 = 60;
 
 /// What a scene becomes on the workstation.
 #[derive(Clone, Debug, Default)]
@@ -22,6 +25,8 @@ pub struct StructureCommands {
     pub depth_clipping: bool,
     /// What is drawn of the instances, in a scene that has any.
     pub instances: Option<DrawnInstances>,
+    /// What moves, in a scene where something does.
+    pub motion: Option<DrawnMotion>,
 }
 
 /// What of the instances of a scene is drawn.
@@ -33,6 +38,27 @@ pub struct DrawnInstances {
     pub drawn: [u64; DETAILS],
     /// Vectors, or corners of polygons, that draw them.
     pub lines: usize,
+}
+
+/// The node that places something, in the left-handed space of the workstation.
+///
+/// - `placement`: in the space of scenes.
+pub(super) fn placing(placement: &DAffine3) -> Operate {
+    let mirror = DMat4::from_scale(DVec3::new(1.0, 1.0, -1.0));
+    Operate::Matrix4x3(mirror * DMat4::from(*placement) * mirror)
+}
+
+/// What of a scene moves on the workstation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DrawnMotion {
+    /// Objects that move.
+    pub objects: usize,
+    /// Motions that are different from each other.
+    pub motions: usize,
+    /// Pictures that follow each other where objects change otherwise than by such motions; else 0.
+    pub pictures: usize,
+    /// Frames of 1/60 s after which all begin anew.
+    pub frames: i32,
 }
 
 impl StructureCommands {
@@ -70,5 +96,23 @@ impl DrawnInstances {
         let left = self.count - all.min(self.count);
         let left = if left > 0 { format!("; {left} are left out, the smallest in the picture") } else { String::new() };
         format!("{all} of {} instances drawn{parts}{left}", self.count)
+    }
+}
+
+impl DrawnMotion {
+    /// How long all move before they begin anew, seconds.
+    pub fn seconds(&self) -> f64 {
+        f64::from(self.frames) / f64::from(FRAMES_PER_SECOND)
+    }
+
+    /// What moves, and how long, in one line.
+    pub fn describe(&self) -> String {
+        let counted = |count: usize, word: &str| format!("{count} {word}{}", if count == 1 { "" } else { "s" });
+        let objects = counted(self.objects, "object");
+        let motions = match self.pictures {
+            0 => counted(self.motions, "motion"),
+            pictures => counted(pictures, "picture"),
+        };
+        format!("{objects} in {motions}, which begin anew every {} s", (self.seconds() * 1e3).round() / 1e3)
     }
 }

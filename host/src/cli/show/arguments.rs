@@ -2,10 +2,13 @@
 
 use crate::cli::timeouts::TimeoutArguments;
 use crate::cli::{SCRIPT_HELP, ScriptArguments};
-use crate::workstation::{Drawing, DrawnEdges};
+use crate::workstation::{Drawing, DrawnEdges, MotionPeriod};
 use clap::Args;
 use protocol::address::Address;
-use std::{num::NonZeroUsize, path::PathBuf};
+use std::{num::NonZeroUsize, ops::Range, path::PathBuf};
+
+/// Most pictures of a flip-book.
+const MOST_PICTURES: u32 = 1_000;
 
 #[derive(Args, Clone, Debug)]
 pub(super) struct ShowArguments {
@@ -55,6 +58,17 @@ pub(super) struct ShowArguments {
     /// [default: 40000, which the machine draws 30 times a second, and 200000 corners]
     #[arg(long, value_name = "COUNT", value_parser = crate::cli::values::vectors)]
     pub(super) most: Option<usize>,
+    /// What moves begins anew after so many seconds; the unit of time of a script is a second [default: when all that only
+    /// turns is back where it was, and 4 s where something moves along]
+    #[arg(long = "loop", value_name = "SECONDS", value_parser = crate::cli::values::period)]
+    pub(super) period: Option<f64>,
+    /// Shows a scene that is a function of the time as a flip-book: 0..48 are 48 pictures, picture K of the time K / RATE, in
+    /// a loop. What changes is sent for all of them, an object of which only the place changes once
+    #[arg(long, value_name = "A..B", value_parser = frames, conflicts_with_all = ["time", "watch", "radiosity", "period"])]
+    pub(super) frames: Option<Range<u32>>,
+    /// Pictures in a second of a flip-book, 1 to 60
+    #[arg(long, default_value_t = 24, requires = "frames", value_parser = clap::value_parser!(u32).range(1..=60))]
+    pub(super) rate: u32,
     /// Opens no window, even if there is a display: operator commands from standard input do all
     #[arg(long, conflicts_with = "to")]
     pub(super) headless: bool,
@@ -72,6 +86,12 @@ pub(super) struct ShowArguments {
 }
 
 impl ShowArguments {
+    /// The times of the pictures of a flip-book, seconds; none if it is none.
+    pub(super) fn times(&self) -> Option<impl Iterator<Item = f64> + use<>> {
+        let rate = f64::from(self.rate);
+        self.frames.clone().map(|frames| frames.map(move |number| f64::from(number) / rate))
+    }
+
     /// The lines that are sent, and how they are made.
     pub(super) fn drawing(&self) -> Drawing {
         Drawing {
@@ -80,6 +100,30 @@ impl ShowArguments {
             tolerance: self.tolerance,
             facets: self.facets,
             most: self.most,
+            motion: Some(self.period.map_or(MotionPeriod::Seamless, MotionPeriod::Seconds)),
+        }
+    }
+}
+
+/// Reads which pictures of a flip-book there are.
+fn frames(text: &str) -> Result<Range<u32>, String> {
+    let read = |number: &str| number.parse::<u32>().ok();
+    let range = text.split_once("..").and_then(|(first, end)| Some(read(first)?..read(end)?));
+    let range = range.filter(|range| (1..=MOST_PICTURES as usize).contains(&range.len()));
+    range.ok_or_else(|| {
+        format!("give the first picture and the one after the last, as in 0..48, {MOST_PICTURES} at most")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_are_a_range_that_is_neither_empty_nor_long() {
+        assert_eq!((frames("0..48"), frames("7..8"), frames("5..1005")), (Ok(0..48), Ok(7..8), Ok(5..1005)));
+        for text in ["", "48", "0..", "..4", "4..4", "5..4", "0..1001", "-1..4", "0...4", "0..4294967295"] {
+            assert!(frames(text).is_err(), "{text}");
         }
     }
 }

@@ -12,20 +12,20 @@ use crate::{
     production::{Production, Sent},
     render::tiles::Tiling,
     script::Evaluated,
-    workstation::{DrawnInstances, Emulator, Session, Timeouts, network::KEYS},
+    workstation::{DrawnInstances, DrawnMotion, Emulator, Session, Timeouts, motion::MOTION_KEY, network::KEYS},
 };
 use arguments::ShowArguments;
 use clap::{Args, FromArgMatches};
 use edits::WatchedFiles;
 use files::Destination;
 use protocol::address::Address;
-use ready::modelled;
+use ready::{flip_book, modelled};
 use serving::Server;
 use view_reporter::ViewReporter;
 
 pub(super) const ROW: SubcommandRow = SubcommandRow {
     name: "show",
-    summary: "Shows a scene on a PS 340 with dials and keys: key 1 renders the view there, key 4 stops that, key 2 resets, key 3 tells the view as a line of a script, key 12 ends.",
+    summary: "Shows a scene on a PS 340 with dials and keys: key 1 renders the view there, key 4 stops that, key 2 resets, key 3 tells the view as a line of a script, key 5 stops what moves or lets it go on, key 12 ends.",
     arguments: ShowArguments::augment_args,
     run: |matches| run(&ShowArguments::from_arg_matches(matches)?),
 };
@@ -40,10 +40,18 @@ fn run(arguments: &ShowArguments) -> Result<(), CommandFailure> {
     }
     let file = arguments.camera.as_ref().map(Destination::of).transpose()?;
     let watched = arguments.watch.then(|| WatchedFiles::of(&arguments.script));
-    let evaluated = load(&arguments.script, &arguments.definitions)?;
+    let mut times = arguments.times();
+    let first = times.as_mut().and_then(Iterator::next);
+    let evaluated = match first {
+        Some(time) => load(&arguments.script, &arguments.definitions.at(time))?,
+        None => load(&arguments.script, &arguments.definitions)?,
+    };
     let camera = evaluated.scene.camera;
     let Evaluated { scene, files, .. } = source::lit(evaluated)?;
-    let (model, light) = modelled(&scene, arguments, None)?;
+    let (model, light) = match times {
+        Some(times) => (flip_book(&scene, times, arguments)?, None),
+        None => modelled(&scene, arguments, None)?,
+    };
     let edits = watched.map(|watched| edits::watch(arguments, watched, &files, camera, *model.initial()));
     let timeouts = arguments.waits.timeouts();
     let (mut emulator, line) = match &arguments.to {
@@ -57,11 +65,16 @@ fn run(arguments: &ShowArguments) -> Result<(), CommandFailure> {
     let session = Session::attach(&line, timeouts)?;
     let mut production = Production::show(model, session)?;
     report(arguments, &line, production.sent(), light.as_ref());
+    if first.is_some() && production.sent().motion.is_none() {
+        warn("nothing changes from picture to picture");
+    }
     drop(light);
     if arguments.once {
         return Ok(());
     }
-    for (number, label, _) in KEYS.iter().filter(|_| !arguments.json) {
+    let keys = KEYS.iter().map(|&(number, label, _)| (number, label));
+    let keys = keys.chain(production.sent().motion.map(|_| MOTION_KEY));
+    for (number, label) in keys.filter(|_| !arguments.json) {
         say!("key {number}: {label}");
     }
     let mut told = ViewReporter::new(file, arguments.json);
@@ -97,7 +110,7 @@ fn start(arguments: &ShowArguments, timeouts: Timeouts) -> Result<Emulator, Comm
 
 /// Says what was sent.
 fn report(arguments: &ShowArguments, line: &Address, sent: Sent, light: Option<&Tiling>) {
-    let Sent { lines, points, instances, seconds } = sent;
+    let Sent { lines, points, instances, motion, seconds } = sent;
     let light = light.map(|light| (light.elements, light.tiles.len(), light.corners(), light.tolerance));
     if arguments.json {
         let light = light.map(|(elements, polygons, corners, tolerance)| {
@@ -110,13 +123,21 @@ fn report(arguments: &ShowArguments, line: &Address, sent: Sent, light: Option<&
                 "count": count, "full": full, "coarse": coarse, "outlines": outlines, "strokes": strokes, "vectors": lines,
             })
         });
+        let motion = motion.map(|motion: DrawnMotion| {
+            serde_json::json!({
+                "objects": motion.objects, "motions": motion.motions, "pictures": motion.pictures,
+                "period_seconds": motion.seconds(),
+            })
+        });
         let known = serde_json::json!({
-            "line": line, "vectors": lines, "points": points, "instances": instances, "light": light, "seconds": seconds,
+            "line": line, "vectors": lines, "points": points, "instances": instances, "motion": motion, "light": light,
+            "seconds": seconds,
         });
         return say!("{known}");
     }
     say!("{lines} vectors ({points} points) shown on {line} after {seconds:.3} s");
     instances.iter().for_each(|instances| say!("{}", instances.describe()));
+    motion.iter().for_each(|motion| say!("{}", motion.describe()));
     if let Some((elements, polygons, corners, tolerance)) = light {
         let steps = tolerance * 255.0;
         say!(

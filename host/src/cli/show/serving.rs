@@ -10,6 +10,7 @@ use crate::{
     scene::Scene,
     workstation::{
         Emulator, WorkstationError,
+        motion::MOTION_KEY,
         network::{FunctionKey, KEY_PREFIX, KEYS},
     },
 };
@@ -106,6 +107,8 @@ impl<'a> Server<'a> {
                 Some(FunctionKey::Reset) => self.production.reset()?,
                 Some(FunctionKey::Camera) => self.view_reporter.report(self.production)?,
                 Some(FunctionKey::End) => return Ok(()),
+                // The workstation has done what it asks for.
+                None if number == Some(MOTION_KEY.0) => {}
                 None => say!("message: {}", String::from_utf8_lossy(&message)),
             }
         }
@@ -166,6 +169,7 @@ impl<'a> Server<'a> {
         if !self.arguments.json {
             say!("{} vectors shown anew after {:.3} s", sent.lines, sent.seconds);
             sent.instances.iter().for_each(|instances| say!("{}", instances.describe()));
+            sent.motion.iter().for_each(|motion| say!("{}", motion.describe()));
         }
         Ok(())
     }
@@ -173,7 +177,8 @@ impl<'a> Server<'a> {
     /// Begins to render the view that is set.
     fn render(&mut self) -> Result<(), CommandFailure> {
         let matrix = self.production.view()?;
-        self.rendering = Some(self.production.begin_rendering(&matrix, &self.options, &self.display)?);
+        let seconds = self.production.motion_seconds()?;
+        self.rendering = Some(self.production.begin_rendering(&matrix, seconds, &self.options, &self.display)?);
         self.write_label("0 %")
     }
 
@@ -229,8 +234,11 @@ impl<'a> Server<'a> {
                     false => format!("stopped after {seconds:.3} s at {least} to {most} samples"),
                 }
             }
-            // The person at the dials may have set a view that shows nothing; that ends nothing.
-            Err(error @ (ProductionError::Render(_) | ProductionError::Thread(_))) => format!("not rendered: {error}"),
+            // The person at the dials may have set a view that shows nothing, and something may have moved too far away;
+            // that ends nothing.
+            Err(error @ (ProductionError::Render(_) | ProductionError::Scene(_) | ProductionError::Thread(_))) => {
+                format!("not rendered: {error}")
+            }
             Err(error) => return Err(error.into()),
         };
         say!("{text}");

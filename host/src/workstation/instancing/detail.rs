@@ -4,7 +4,7 @@
 //! stroke: beyond that nothing is drawn.
 
 use super::super::parts::{Fineness, MaterialPart, attributes, parts, vectors};
-use super::super::structure_commands::{DETAILS, StructureCommands};
+use super::super::structure_commands::{DETAILS, StructureCommands, placing};
 use super::super::{Drawing, WorkstationError, facets, names::ROOT};
 use super::choice::STEP;
 use super::outline::{closed, outlines, stroke};
@@ -13,7 +13,7 @@ use super::variation::Variation;
 use crate::mesh::Polylines;
 use crate::scene::{GeometrySettings, Object};
 use crate::surface::Tolerance;
-use glam::{DAffine3, DMat4, DVec3};
+use glam::DVec3;
 use protocol::command::{Comparison, Object as Node, Operate};
 
 /// The level of detail at which something is drawn in full.
@@ -153,7 +153,7 @@ impl DetailBuilder<'_> {
                     let instance = placed.places.instance(number);
                     let (inner, placement) = placed.instance(number);
                     all[usize::from(instance.prototype)].variation.set(instance.variation, out);
-                    out.operate_on(&inner.name, matrix(&placement));
+                    out.operate_on(&inner.name, placing(&placement));
                     let drawn = &all[usize::from(instance.prototype)];
                     length += drawn.length[thinned.step] * inner.ball_at(&placement).1;
                 }
@@ -292,10 +292,4 @@ fn length(data: &Node) -> f64 {
 /// A tolerance that is a part of an object's diagonal.
 fn tolerance(object: &Object, part: f64, angle: f64) -> Tolerance {
     Tolerance::new(part * object.shape.extent().unwrap_or(1.0), angle)
-}
-
-/// The node that places an instance, in the left-handed space of the workstation.
-pub(super) fn matrix(placement: &DAffine3) -> Operate {
-    let mirror = DMat4::from_scale(DVec3::new(1.0, 1.0, -1.0));
-    Operate::Matrix4x3(mirror * DMat4::from(*placement) * mirror)
 }

@@ -16,12 +16,12 @@ mod detail;
 #[cfg(test)]
 mod tests;
 
-use super::structure_commands::{DrawnInstances, StructureCommands};
+use super::structure_commands::{DrawnInstances, StructureCommands, placing};
 use super::{Drawing, InitialView, WorkstationError};
 use crate::memory;
 use crate::scene::Scene;
 use choice::{Candidate, DrawingCost, largest, steps};
-use detail::{DetailBuilder, DrawnGroup, FULL, matrix};
+use detail::{DetailBuilder, DrawnGroup, FULL};
 use placed::PlacedObject;
 use protocol::command::{Command, Operate};
 use seen::SeenFrom;
@@ -114,7 +114,7 @@ pub(super) fn instances(
         }
         let (group, placement) = placed.instance(candidate.number as usize);
         drawn.variation.set(placed.places.instance(candidate.number as usize).variation, out);
-        out.operate_on(&group.name, matrix(&placement));
+        out.operate_on(&group.name, placing(&placement));
         sums.drawn[step] += 1;
         sums.lines += drawn.lines[step];
     }

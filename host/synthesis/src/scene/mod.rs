@@ -146,6 +146,20 @@ impl Scene {
 }
 
 impl Scene {
+    /// The scene as it is after some time of its motions, which go on from there.
+    ///
+    /// - `time`: in the unit of time of the motions; may be below 0.
+    pub fn after(&self, time: f64) -> Scene {
+        let mut scene = self.clone();
+        for (object, motion) in &mut scene.motions {
+            if let Some(object) = scene.objects.get_mut(*object as usize) {
+                object.transform = motion.at(time).matrix() * object.transform;
+            }
+            *motion = motion.since(time);
+        }
+        scene
+    }
+
     fn check_motions(&self) -> Result<(), SceneError> {
         let mut known = vec![false; self.objects.len()];
         for (index, motion) in &self.motions {
