@@ -11,6 +11,8 @@ mod values;
 mod timeouts;
 mod source;
 mod display;
+mod rendering_arguments;
+mod rendering;
 mod formula;
 mod render;
 mod show;
