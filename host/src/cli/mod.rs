@@ -15,6 +15,7 @@ mod rendering_arguments;
 mod rendering;
 mod formula;
 mod render;
+mod animate;
 mod show;
 mod job;
 mod compose;
