@@ -7,7 +7,12 @@ use super::exit::Exit;
 use super::progress;
 use crate::memory;
 use serde_json::Value;
-use std::{borrow::Cow, fmt::Arguments, io::Write};
+use std::collections::HashSet;
+use std::sync::{Mutex, PoisonError};
+use std::{borrow::Cow, fmt::Arguments, io, io::Write};
+
+/// The lines of standard error that are not said again; none while lines may be.
+static SAID: Mutex<Option<HashSet<String>>> = Mutex::new(None);
 
 /// Writes to standard output. When the reader has gone, as in `peris ... | head`, the program ends quietly.
 pub(super) fn write(text: Arguments<'_>) {
@@ -18,8 +23,30 @@ pub(super) fn write(text: Arguments<'_>) {
     }
 }
 
+/// Writes bytes to standard output. When the reader has gone, the program ends quietly.
+///
+/// # Errors
+/// [`io::Error`], as of a full disk.
+pub(super) fn write_bytes(bytes: &[u8]) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    let written = out.write_all(bytes).and_then(|()| out.flush());
+    match written {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => std::process::exit(Exit::Done as i32),
+        written => written,
+    }
+}
+
+/// From now on, a line on standard error is not said again: of the frames of an animation, most would say the same.
+pub(super) fn say_errors_once() {
+    SAID.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert_default();
+}
+
 /// Writes a line to standard error.
 pub(super) fn write_error(text: &str) {
+    let is_new = |said: &mut HashSet<String>| said.insert(text.to_owned());
+    if !SAID.lock().unwrap_or_else(PoisonError::into_inner).as_mut().is_none_or(is_new) {
+        return;
+    }
     progress::clear();
     eprintln!("{}", escaped(text));
 }
@@ -57,6 +84,11 @@ pub(super) fn report(mut known: Value) {
         object.insert("peak_memory_bytes".into(), memory::peak().into());
     }
     write(format_args!("{known:#}\n"));
+}
+
+/// Writes an object as one line of JSON, for commands that tell of one thing after the other.
+pub(super) fn report_line(known: &Value) {
+    write(format_args!("{known}\n"));
 }
 
 /// How often what is told before is placed, for the end of an enumeration; nothing without instances.

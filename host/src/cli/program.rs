@@ -4,8 +4,8 @@ use super::exit::{self, CommandFailure, Exit, story};
 use super::subcommand::SubcommandRow;
 use super::values::bytes;
 use super::{
-    boolean, check, compose, continuity, convert, database, diff, functions, interrupts, intersect, job, measure,
-    octree, output, plan, progress, render, show, study, tessellate,
+    animate, boolean, check, compose, continuity, convert, database, diff, functions, interrupts, intersect, job,
+    measure, octree, output, plan, progress, render, show, study, tessellate,
 };
 use crate::memory;
 use crate::stages::StageLayer;
@@ -28,6 +28,7 @@ pub const COMMANDS: &[SubcommandRow] = &[
     job::RUN,
     show::ROW,
     render::ROW,
+    animate::ROW,
     compose::ROW,
     diff::ROW,
     plan::ROW,

@@ -47,6 +47,8 @@ struct State {
     current: &'static str,
     /// The line on the terminal, and the stage of which it tells.
     bar: Option<(u64, ProgressBar)>,
+    /// What the stages are part of.
+    whole: String,
     /// What follows.
     then: String,
     record: StageRecord,
@@ -58,6 +60,7 @@ static STATE: LazyLock<Mutex<State>> = LazyLock::new(|| {
         open: Vec::new(),
         current: "",
         bar: None,
+        whole: String::new(),
         then: String::new(),
         record: StageRecord::new(false),
     })
@@ -121,7 +124,7 @@ impl State {
         if let Ok(style) = ProgressStyle::with_template("{msg} {elapsed}") {
             bar.set_style(style);
         }
-        bar.set_message(name);
+        bar.set_message(format!("{}{name}", self.whole));
         bar.enable_steady_tick(TICK);
         self.bar = Some((id, bar));
         if is_known {
@@ -141,7 +144,7 @@ impl State {
             && let Ok(style) = ProgressStyle::with_template("{prefix} [{bar:24}] {msg}")
         {
             bar.set_style(style.progress_chars("=> "));
-            bar.set_prefix(*name);
+            bar.set_prefix(format!("{}{name}", self.whole));
         }
         bar.set_length(STEPS);
         bar.set_position((progress.done / progress.all * STEPS as f64) as u64);
@@ -170,7 +173,7 @@ pub(super) fn clock(seconds: f64) -> String {
 }
 
 /// The time that is left, as far as what is done tells it.
-fn left(progress: &Progress, elapsed: Duration) -> String {
+pub(super) fn left(progress: &Progress, elapsed: Duration) -> String {
     let seconds = elapsed.as_secs_f64() * (progress.all / progress.done - 1.0);
     if seconds.is_finite() { format!(", {} left", clock(seconds)) } else { String::new() }
 }
@@ -189,6 +192,14 @@ pub(super) fn within(root: &str) -> Option<(&'static str, Option<Progress>)> {
 /// What follows the stages before the last one, for their lines, such as `48 samples`.
 pub(super) fn follow(what: &str) {
     state().then = format!(", then {what}");
+}
+
+/// What the stages from now on are part of, for their lines, such as `frame 12 of 240`.
+pub(super) fn lead(what: &str) {
+    let mut state = state();
+    // A line that is shown has another beginning.
+    state.clear();
+    state.whole = format!("{what}: ");
 }
 
 /// Takes the line off the terminal, before something else is said.

@@ -13,9 +13,9 @@ use std::path::{Path, PathBuf};
 /// Help for the argument SCRIPT.
 pub const SCRIPT_HELP: &str = "A scene script (.rhai), a mesh (.obj, .stl, .ply, .gltf, .glb, .cmesh), an octree that was kept (.octree), or the name of a scene that ships: teapot, primitives, flange, chess, car, crystal, manifold, materials, textures, room, cornell, caustic, ring, spectrum, mirror, flowers, pool, afternoon, vases, corner, motion";
 
-/// What the script is given.
+/// What the script is given at every time.
 #[derive(Args, Clone, Debug, Default)]
-pub struct ScriptArguments {
+pub(super) struct DefinitionArguments {
     /// Sets a parameter of the script; may be given more than once. A name that the script does not ask for is an error
     /// that lists those that it asks for
     #[arg(short = 'D', long = "define", value_name = "NAME=VALUE")]
@@ -23,6 +23,22 @@ pub struct ScriptArguments {
     /// Lets the script read below another folder than its own, too; may be given more than once
     #[arg(long, value_name = "FOLDER")]
     allow: Vec<PathBuf>,
+}
+
+impl DefinitionArguments {
+    /// What the script is given at a time.
+    ///
+    /// - `time`: of the picture, seconds. `shutter`: as in [`Inputs`].
+    pub(super) fn inputs(&self, time: f64, shutter: Option<[f64; 2]>) -> Inputs {
+        Inputs { definitions: self.given.clone(), allowed: self.allow.clone(), time, shutter }
+    }
+}
+
+/// What the script is given.
+#[derive(Args, Clone, Debug, Default)]
+pub struct ScriptArguments {
+    #[command(flatten)]
+    definitions: DefinitionArguments,
     /// The time of the picture, for a scene that is a function of it: what the script gets from time(), and when the
     /// shutter begins to count [default: 0]
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
@@ -37,7 +53,7 @@ impl ScriptArguments {
 
     /// Whether there are none.
     pub(super) fn is_empty(&self) -> bool {
-        self.given.is_empty() && self.time.is_none()
+        self.definitions.given.is_empty() && self.time.is_none()
     }
 }
 
@@ -86,19 +102,34 @@ pub(super) fn warn_of_short_scatters(prepared: &Prepared) {
     prepared.short_scatters.iter().for_each(|short| output::warn(&short.to_string()));
 }
 
+/// The scene of a time, to be looked at, as [`load_lit`] says it.
+///
+/// - `inputs`: what the script is given, and when.
+///
+/// # Errors
+/// A [`CommandFailure`] with [`super::Exit::Scene`].
+pub(super) fn load_lit_at(name: &str, inputs: &Inputs) -> Result<Evaluated, CommandFailure> {
+    lit(evaluate(name, inputs)?)
+}
+
 /// Runs the script that the command line names, or takes the mesh that it names as the only object of a scene; what the
 /// script prints goes to standard error.
 ///
 /// # Errors
 /// A [`CommandFailure`] with [`super::Exit::Scene`].
-pub fn load(name: &str, definitions: &ScriptArguments) -> Result<Evaluated, CommandFailure> {
+pub fn load(name: &str, arguments: &ScriptArguments) -> Result<Evaluated, CommandFailure> {
+    if !arguments.is_empty() && is_mesh(Path::new(name)) {
+        return Err(no_script(name));
+    }
+    evaluate(name, &arguments.definitions.inputs(arguments.time.unwrap_or_default(), None))
+}
+
+/// The scene of a script or a mesh.
+fn evaluate(name: &str, inputs: &Inputs) -> Result<Evaluated, CommandFailure> {
     let path = Path::new(name);
     if is_mesh(path) {
-        if !definitions.is_empty() {
-            return Err(CommandFailure::new(
-                Exit::Usage,
-                anyhow::anyhow!("-D and --time are for a script, and {name} is none"),
-            ));
+        if !inputs.definitions.is_empty() {
+            return Err(no_script(name));
         }
         return Ok(Evaluated {
             scene: Scene::of_mesh(path),
@@ -108,17 +139,16 @@ pub fn load(name: &str, definitions: &ScriptArguments) -> Result<Evaluated, Comm
             files: Vec::new(),
         });
     }
-    let inputs = Inputs {
-        definitions: definitions.given.clone(),
-        allowed: definitions.allow.clone(),
-        time: definitions.time.unwrap_or_default(),
-        shutter: None,
-    };
     let stage = stage!("evaluating the script");
-    let evaluated = script::load(name, &inputs)?;
+    let evaluated = script::load(name, inputs)?;
     drop(stage);
     evaluated.printed.iter().for_each(|line| output::write_error(line));
     Ok(evaluated)
+}
+
+/// What is said where a mesh is given what only a script takes.
+fn no_script(name: &str) -> CommandFailure {
+    CommandFailure::new(Exit::Usage, anyhow::anyhow!("-D and --time are for a script, and {name} is none"))
 }
 
 /// The name of a script without folder and ending, for the files that are made of it.

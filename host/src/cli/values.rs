@@ -8,7 +8,7 @@ const MAX_THREADS: usize = 1024;
 /// Most vectors of a picture that instances are thinned out to.
 const MAX_VECTORS: usize = 1_000_000;
 /// The latest time of a scene, seconds: frames beyond it would be no longer apart than numbers are.
-const MOST_SECONDS: f64 = 1e9;
+pub(super) const MOST_SECONDS: f64 = 1e9;
 /// Least memory that a command may be given, bytes: less than its own code and stacks is no use.
 const LEAST_MEMORY: u64 = 64 << 20;
 /// Longest period of what moves on a workstation, seconds.

@@ -67,7 +67,7 @@ pub(super) const FUNCTIONS: &[Function] = &[function! {
             }
         };
         let atmosphere = Atmosphere { turbidity, albedo: ground, altitude, elevation };
-        let sky = ClearSky::new(&atmosphere);
+        let sky = ClearSky::shared(&atmosphere);
         let done = add_sky(builder, &sky, azimuth, factor)?;
         let is_up = sky.sun.iter().any(|light| *light > 0.0);
         if !(is_up && sun) {

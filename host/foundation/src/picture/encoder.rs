@@ -40,10 +40,15 @@ pub fn png(
         writer.write_image_data(bytes)?;
         writer.finish()
     };
-    written(file).map_err(|error| match error {
+    written(file).map_err(encoding_error)
+}
+
+/// The error of an encoder of PNG files.
+pub(super) fn encoding_error(error: EncodingError) -> Error {
+    match error {
         EncodingError::IoError(error) => error,
         other => Error::other(other),
-    })
+    }
 }
 
 /// Linear sRGB as an EXR file, compressed by ZIP, its lines in order: the same bytes however many threads compress.

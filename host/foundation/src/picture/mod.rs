@@ -1,4 +1,5 @@
-//! Pictures in linear light, with coverage: files, how far two of them are apart, and how two become one.
+//! Pictures in linear light, with coverage: files, how far two of them are apart, how two become one, and how many
+//! become one that moves.
 
 /// The words of the rows of a table, for scripts and the command line.
 macro_rules! words {
@@ -26,6 +27,7 @@ macro_rules! named {
     }};
 }
 
+mod animated_png;
 mod compose;
 mod depth;
 mod difference;
@@ -35,9 +37,12 @@ mod error;
 mod file;
 mod filter;
 mod flip;
+mod frame_rate;
 mod provenance;
 pub mod source;
+mod y4m;
 
+pub use animated_png::animated_png;
 pub use compose::{Operator, compose, compose_by_depth};
 pub use depth::Deep;
 pub use difference::{Difference, RELATIVE_FLOOR, difference};
@@ -45,7 +50,9 @@ pub use error::PictureError;
 pub use file::pixel_of;
 pub use filter::Filter;
 pub use flip::{Flip, PIXELS_PER_DEGREE, PIXELS_PER_DEGREE_RANGE, error_map, flip};
+pub use frame_rate::FrameRate;
 pub use provenance::Provenance;
+pub use y4m::{y4m_frame, y4m_header};
 
 use crate::memory::prefer_large_pages;
 use protocol::raster::srgb_from_linear;

@@ -5,16 +5,13 @@ mod pixel;
 mod saved;
 mod views;
 
-use super::output::warn;
-use super::source::{load_lit, warn_of_emptiness, warn_of_short_scatters};
+use super::rendering::{self, PictureWriter, ReadyScene};
+use super::source::{load_lit, stem};
 use super::{CommandFailure, Exit, SubcommandRow, progress};
-use crate::picture::display::DisplayTransform;
 use crate::plan::Plan;
-use crate::render::metering::Meter;
 use crate::render::two_way::PhotonStore;
-use crate::render::{AnyRenderer, Film, Fingerprint, PreparedRenderer, RenderError, RenderOrder, Task, Watch};
-use crate::scene::Prepared;
-use crate::stages::{Workers, stage};
+use crate::render::{AnyRenderer, Fingerprint, PreparedRenderer, Task, Watch};
+use crate::stages::stage;
 use arguments::RenderArguments;
 use clap::{Args, FromArgMatches};
 use files::Destination;
@@ -35,20 +32,12 @@ fn run(arguments: &RenderArguments) -> Result<(), CommandFailure> {
     let outputs = arguments.destinations()?;
     let state = arguments.resume.as_ref().map(Destination::of).transpose()?;
     arguments.light.as_ref().map(Destination::of).transpose()?;
-    let mut scene = load_lit(&arguments.script, &arguments.definitions)?.scene;
-    warn_of_emptiness(&scene);
-    // Layers of a composition are put together as light, and exposed as a whole.
-    let display = arguments.display.over(if arguments.matte { DisplayTransform::LINEAR } else { scene.display })?;
-    // Several views are exposed as the first, which is that of the scene.
-    let meter = Meter::new(&scene.settings, &display, arguments.threads);
-    arguments.set(&mut scene.settings);
+    let scene = load_lit(&arguments.script, &arguments.definitions)?.scene;
+    let options = &arguments.rendering;
     let preparing = stage!("preparing");
-    let prepared = Prepared::new(&scene)?;
-    warn_of_short_scatters(&prepared);
+    let ReadyScene { scene, prepared, order, display, meter } = ReadyScene::new(scene, options, arguments.seconds)?;
     let views = arguments.views_of(&prepared)?;
-    let plan = Plan::of_views(&prepared, &views, arguments.everything);
-    let order = arguments.render_options(&prepared.settings);
-    check_denoising(&order)?;
+    let plan = Plan::of_views(&prepared, &views, options.everything);
     let every = Duration::from_secs_f64(arguments.checkpoint.min(1e9));
     let intermediate = Intermediate::of(arguments, &plan);
     let keeps = |(path, lasts): (&Path, bool)| PhotonStore::new(path, &scene, &prepared, every, lasts);
@@ -60,56 +49,38 @@ fn run(arguments: &RenderArguments) -> Result<(), CommandFailure> {
     if order.seconds.is_none() && order.target.is_none() {
         progress::follow(&format!("{} samples", order.samples));
     }
-    let mut all = ViewBatch {
-        arguments,
-        views: &views,
-        outputs: &outputs,
-        prepared: &prepared,
-        display: &display,
-        stops: 0.0,
-        build_seconds: 0.0,
-        radiosity: None,
-        saved: None,
-        comes_bit_by_bit: false,
+    let row = options.renderer.row();
+    let saved = match (row.adds_samples, &state, fingerprint) {
+        (true, Some(state), Some(print)) => Some(Saved::read(arguments, every, state, print, &order)?),
+        _ => None,
     };
-    let row = arguments.renderer.row();
-    if let (true, Some(state), Some(fingerprint)) = (row.adds_samples, &state, fingerprint) {
-        all.saved = Some(Saved::read(arguments, every, state, fingerprint, &order)?);
-    }
     let task = Task { prepared: &prepared, plan: &plan, photon_store: photon_store.as_ref(), watch };
-    let workers = Workers::new(arguments.threads).map_err(RenderError::from)?;
-    let PreparedRenderer { renderer, radiosity } = workers.install(|| arguments.renderer.prepare(&task))?;
-    all.radiosity = radiosity;
+    let PreparedRenderer { renderer, radiosity } = rendering::prepare(options, &task)?;
     if let (Some(pixel), AnyRenderer::BySamples(tracer)) = (arguments.pixel, &renderer) {
         let _stage = stage!("sampling the pixel");
         return pixel::explain(arguments, tracer, &views[0], &order, pixel);
     }
-    renderer.any().left_out(&views[0]).iter().for_each(|what| warn(&format!("by {}, {what}", row.word)));
-    all.stops = meter.stops(renderer.any(), &prepared, &views[..1], &watch)?;
-    all.build_seconds = preparing.seconds();
-    drop(preparing);
-    let ended = match &renderer {
-        AnyRenderer::Whole(renderer) => all.render(&mut |view, _, _| Ok(renderer.render(view, &order, &watch)?)),
-        AnyRenderer::BySamples(tracer) => {
-            all.comes_bit_by_bit = true;
-            all.render(&mut |view, film, checkpoints| {
-                let film = film.map_or_else(|| Film::new(order.width, order.height), Ok)?;
-                let film = if arguments.layers && state.is_none() { film.with_classes() } else { film };
-                Ok(tracer.resume(film, view, &order, &watch, checkpoints)?)
-            })
-        }
+    rendering::warn_of_left_out(options, &renderer, &views[0]);
+    // Several views are exposed as the first, which is that of the scene.
+    let stops = meter.stops(renderer.any(), &prepared, &views[..1], &watch)?;
+    let source = stem(&arguments.script);
+    let all = ViewBatch {
+        arguments,
+        views: &views,
+        outputs: &outputs,
+        writer: PictureWriter { arguments: options, source, prepared: &prepared, display: &display, stops },
+        build_seconds: preparing.seconds(),
+        radiosity,
+        saved,
+        comes_bit_by_bit: matches!(renderer, AnyRenderer::BySamples(_)),
     };
+    drop(preparing);
+    let classes = options.layers && state.is_none();
+    let ended = all.render(&mut |view, film, checkpoints| {
+        rendering::render(&renderer, (view, &order), &watch, classes, film, checkpoints)
+    });
     if ended.as_ref().map_or_else(|failure| failure.exit == Exit::Missed, |()| true) {
         intermediate.remove();
     }
     ended
-}
-
-/// Checks that a picture that is to be denoised has the samples for it.
-fn check_denoising(order: &RenderOrder) -> Result<(), CommandFailure> {
-    if order.denoise && order.samples < 2 {
-        let message = "--denoise needs 2 samples in each pixel: what differs between them is noise";
-        return Err(CommandFailure::new(Exit::Usage, anyhow::anyhow!(message)));
-    }
-    Ok(())
 }

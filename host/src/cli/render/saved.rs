@@ -2,6 +2,7 @@
 
 use super::arguments::RenderArguments;
 use crate::cli::CommandFailure;
+use crate::cli::rendering_arguments::RenderingArguments;
 use crate::plan::{Plan, Stage};
 use crate::render::{Film, Fingerprint, Memo, RenderOrder, RenderState, StateError};
 use files::Destination;
@@ -87,7 +88,7 @@ impl Intermediate {
             name.push(ending);
             Some(PathBuf::from(name))
         };
-        let row = arguments.renderer.row();
+        let row = arguments.rendering.renderer.row();
         let is_followed = row.can_map_photons && arguments.light.is_none() && plan.needs(Stage::PhotonMap);
         let is_solved = row.solves_radiosity || (row.adds_samples && plan.needs(Stage::Radiosity));
         Intermediate {
@@ -113,7 +114,7 @@ impl Intermediate {
     ) -> Result<Option<Memo>, CommandFailure> {
         let (Some(path), Some(fingerprint)) = (&self.radiosity, fingerprint) else { return Ok(None) };
         // What is left out depends on the views.
-        let RenderArguments { views, turn, everything, renderer, .. } = arguments;
+        let RenderArguments { views, turn, rendering: RenderingArguments { everything, renderer, .. }, .. } = arguments;
         let fingerprint = fingerprint.of_scene(&format!("{views:?} {turn:?} {everything} {renderer:?}"));
         Ok(Some(Memo::open(path, fingerprint)?))
     }

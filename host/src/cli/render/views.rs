@@ -3,24 +3,20 @@
 use super::arguments::RenderArguments;
 use super::saved::Saved;
 use crate::cli::interrupts::{self, InterruptGuard};
-use crate::cli::output::{self, warn};
-use crate::cli::source::stem;
+use crate::cli::output;
+use crate::cli::rendering::{PictureWriter, check_error};
 use crate::cli::{CommandFailure, Exit, progress};
 use crate::memory;
 use crate::octree::InstanceCosts;
-use crate::picture::display::{DisplayTransform, Tone, clipped};
-use crate::picture::{Picture, Provenance};
+use crate::picture::Picture;
 use crate::render::radiosity::RadiosityReport;
 use crate::render::ray_tracing::Checkpoints;
 use crate::render::{Film, Rendering};
-use crate::scene::{Prepared, View};
-use crate::stages::{StageTotal, stage};
+use crate::scene::View;
+use crate::stages::StageTotal;
 use files::Destination;
 use serde_json::Value;
 use std::path::Path;
-
-/// The part of the pixels that are clipped from which on it is told: less than it are lamps in sight.
-const REPORTED_CLIPPING: f64 = 1e-3;
 
 /// Renders a view: on a film that was begun before, if there is one, and keeping it from time to time.
 pub(super) type Render<'a> =
@@ -32,11 +28,8 @@ pub(super) struct ViewBatch<'a> {
     pub(super) views: &'a [View],
     /// The files of each view.
     pub(super) outputs: &'a [Vec<Destination>],
-    pub(super) prepared: &'a Prepared,
-    /// How PNG files are shown.
-    pub(super) display: &'a DisplayTransform,
-    /// The exposure of all views, stops.
-    pub(super) stops: f64,
+    /// How they are written; all have one exposure.
+    pub(super) writer: PictureWriter<'a>,
     /// How long it took until the first view could be rendered, seconds.
     pub(super) build_seconds: f64,
     /// What radiosity took.
@@ -77,7 +70,10 @@ impl ViewBatch<'_> {
             let rendering = render(view, film, checkpoints)?;
             let [least, most] = rendering.film.samples();
             let is_whole = least > 0;
-            let written = if is_whole { self.write(outputs, view, &rendering) } else { Ok(0.0) };
+            let written = match is_whole {
+                true => self.writer.write(outputs, view, &rendering, &self.writer.provenance(&rendering)),
+                false => Ok(0.0),
+            };
             // The state comes after the picture, and does not depend on it.
             let is_followed = rendering.complete && number + 1 < self.views.len();
             let kept = saved.map_or(Ok(()), |saved| match is_followed {
@@ -85,13 +81,7 @@ impl ViewBatch<'_> {
                 false => saved.write(number, &rendering.film),
             });
             drop(keeping);
-            let clipped = written?;
-            if clipped > REPORTED_CLIPPING && self.display.tone == Tone::Linear {
-                let part = 100.0 * clipped;
-                warn(&format!(
-                    "{part:.1}% of the pixels are brighter than white, and clipped; --tone filmic shows them"
-                ));
-            }
+            self.writer.warn_of_clipping(written?);
             if is_whole {
                 let outputs: Vec<&Path> = outputs.iter().map(Destination::path).collect();
                 match self.arguments.json {
@@ -117,79 +107,17 @@ impl ViewBatch<'_> {
                 }
             }
             interrupts::note_saved("pictures of finished views are written");
-            missing = missing.max(self.arguments.error.map_or(0.0, |target| rendering.film.missing(target)));
+            missing = missing.max(self.writer.missing(&rendering));
         }
-        match self.arguments.error {
-            Some(target) if missing > 0.0 => {
-                let message = format!(
-                    "{:.2}% of the pixels have a relative error above {target}; the picture is written all the same",
-                    100.0 * missing
-                );
-                Err(CommandFailure::new(Exit::Missed, anyhow::anyhow!(message)))
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// Writes the files of a view; the part of the pixels that are clipped in a PNG file, 0..=1.
-    fn write(&self, outputs: &[Destination], view: &View, rendering: &Rendering) -> Result<f64, CommandFailure> {
-        let _stage = stage!("writing");
-        let Rendering { picture, film, .. } = rendering;
-        let provenance = self.provenance(rendering);
-        let is_seen = outputs.iter().any(|file| !Picture::is_exr(file.path()));
-        let shown = match is_seen {
-            true => self.display.shown(picture, self.stops, view.pixel_angle(picture.width(), picture.height()))?,
-            false => Picture::new(1, 1)?,
-        };
-        let write = |file: &Destination| match (Picture::is_exr(file.path()), self.arguments.layers) {
-            (true, true) => film.write_layers(picture, file, self.prepared, &provenance),
-            (true, false) => picture.write_with(file, &provenance),
-            (false, _) => shown.write_with(file, &provenance),
-        };
-        // One that fails is no reason not to write the others.
-        let written: Vec<_> = outputs.iter().map(write).collect();
-        written.into_iter().collect::<Result<(), _>>()?;
-        Ok(clipped(&shown))
-    }
-
-    /// What the files of a view tell of how it was made.
-    fn provenance(&self, rendering: &Rendering) -> Provenance {
-        let renderer = self.arguments.renderer.row().option;
-        let source = stem(&self.arguments.script);
-        let seed = self.prepared.settings.image.seed;
-        let provenance = rendering.provenance(source, renderer, seed, self.display, self.stops);
-        match self.arguments.denoise {
-            true => provenance.with("Denoiser", "first-order regression"),
-            false => provenance,
-        }
+        check_error(&self.arguments.rendering, missing, "the picture is")
     }
 
     fn json(&self, outputs: &[&Path], rendering: &Rendering) -> serde_json::Value {
-        let picture = &rendering.picture;
-        serde_json::json!({
-            "files": outputs,
-            "width": picture.width(),
-            "height": picture.height(),
-            "samples": rendering.film.samples(),
-            "standard_error": Some(rendering.film.standard_error()).filter(|error| error.is_finite()),
-            "seed": self.prepared.settings.image.seed,
-            "exposure": self.stops,
-            "tone": self.display.tone.word(),
-            "triangles": self.prepared.triangles.len(),
-            "instances": self.prepared.instance_costs(),
-            "build_seconds": self.build_seconds,
-            "render_seconds": rendering.seconds,
-            "threads": rendering.threads,
-            "rays": rendering.rays,
-            "caught_light": rendering.flux_balance,
-            "spans": rendering.spans,
-            "finished_by_rays": rendering.finished,
-            "radiosity": self.radiosity,
-            "denoised": self.arguments.denoise,
-            "complete": rendering.complete,
-            "stages": progress::totals(),
-            "pixels_over_error": self.arguments.error.map(|target| rendering.film.missing(target)),
-        })
+        let mut known = self.writer.json(outputs, rendering);
+        known["build_seconds"] = self.build_seconds.into();
+        known["radiosity"] = serde_json::json!(self.radiosity);
+        known["stages"] = serde_json::json!(progress::totals());
+        known
     }
 
     fn report(&self, outputs: &[&Path], rendering: &Rendering) {
@@ -198,7 +126,7 @@ impl ViewBatch<'_> {
         let names: Vec<String> = outputs.iter().map(|p| p.display().to_string()).collect();
         let samples = if least == most { format!("{least}") } else { format!("{least} to {most}") };
         let error = rendering.film.standard_error();
-        let error = match (error.is_finite(), self.arguments.denoise) {
+        let error = match (error.is_finite(), self.arguments.rendering.denoise) {
             (true, false) => format!("standard error of luminance {error:.2e}"),
             (true, true) => format!("standard error of luminance {error:.2e} before it was denoised"),
             // One sample of each pixel tells nothing of its error.
@@ -214,7 +142,7 @@ impl ViewBatch<'_> {
         let (seconds, threads) = (rendering.seconds, rendering.threads);
         say!("rendered in {seconds:.3} s after {build_seconds:.3} s of preparation, on {threads} threads in {memory}");
         if outputs.iter().any(|output| !Picture::is_exr(output)) {
-            say!("exposed by {:+.2} stops, tone {}", self.stops, self.display.tone.word());
+            say!("exposed by {:+.2} stops, tone {}", self.writer.stops, self.writer.display.tone.word());
         }
         if self.arguments.stats {
             self.report_statistics(rendering);
@@ -227,8 +155,8 @@ impl ViewBatch<'_> {
             let times = if times > 1 { format!(", {times} times") } else { String::new() };
             say!("{seconds:>9.3} s  {:indent$}{name}{times}", "", indent = 2 * depth);
         }
-        say!("{} triangles", self.prepared.triangles.len());
-        if let Some(InstanceCosts { instances, stored, bytes, triangles }) = self.prepared.instance_costs() {
+        say!("{} triangles", self.writer.prepared.triangles.len());
+        if let Some(InstanceCosts { instances, stored, bytes, triangles }) = self.writer.prepared.instance_costs() {
             let (each, memory) = (bytes as f64 / stored.max(1) as f64, memory::readable(bytes as u64));
             let stored = if stored < instances { format!(", {stored} of them stored") } else { String::new() };
             say!("{instances} instances{stored} in {memory}, {each:.1} bytes each; they place {triangles} triangles");
@@ -238,7 +166,7 @@ impl ViewBatch<'_> {
         }
         self.radiosity.iter().flat_map(RadiosityReport::lines).for_each(|line| say!("{line}"));
         let Rendering { rays, spans, finished, .. } = rendering;
-        if !self.arguments.renderer.row().adds_samples {
+        if !self.arguments.rendering.renderer.row().adds_samples {
             say!("{} spans of surfaces, {} of shadow polygons", spans.surfaces, spans.shadows);
             if finished.pixels > 0 {
                 say!(

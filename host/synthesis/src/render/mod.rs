@@ -5,6 +5,7 @@ mod tally;
 mod features;
 mod film;
 mod order;
+mod content_hash;
 mod state;
 mod memo;
 mod watch;
@@ -31,6 +32,7 @@ mod instance_extreme_tests;
 #[cfg(test)]
 mod lamp_tests;
 
+pub use content_hash::ContentHash;
 pub use error::{RadiosityError, RenderError};
 pub use film::Film;
 pub use memo::Memo;

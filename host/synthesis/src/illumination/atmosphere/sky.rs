@@ -6,6 +6,7 @@ use super::scattering::Scattering;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Columns of a table of the sky: all around.
 pub const COLUMNS: usize = 128;
@@ -35,7 +36,23 @@ pub struct ClearSky {
     pub sun: Spectral,
 }
 
+/// The sky that was asked for last.
+static LAST: Mutex<Option<(Atmosphere, Arc<ClearSky>)>> = Mutex::new(None);
+
 impl ClearSky {
+    /// The sky of [`ClearSky::new`], found anew only if another one was asked for since: frames of an animation and runs
+    /// of its script mostly have the same one.
+    pub fn shared(atmosphere: &Atmosphere) -> Arc<ClearSky> {
+        let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = last().as_ref().filter(|(of, _)| of == atmosphere).map(|(_, sky)| Arc::clone(sky));
+        // It is not locked meanwhile: a thread that finds the sky may be given other work that asks for one.
+        known.unwrap_or_else(|| {
+            let sky = Arc::new(ClearSky::new(atmosphere));
+            *last() = Some((*atmosphere, Arc::clone(&sky)));
+            sky
+        })
+    }
+
     /// Finds the sky.
     ///
     /// Time: about a million steps along lines of sight, whatever the numbers.

@@ -9,6 +9,7 @@ use crate::color::{Extrapolation, Spectrum};
 use crate::numeric::sampling::{RandomStream, sphere};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
 fn sky(elevation: f64, turbidity: f64, albedo: f64) -> ClearSky {
     ClearSky::new(&Atmosphere { turbidity, albedo, altitude: 50.0, elevation: elevation.to_radians() })
@@ -185,4 +186,14 @@ fn a_higher_eye_has_a_darker_sky_above_and_the_ground_below() {
     let down = (ROWS - 1) * COLUMNS;
     assert!(low[down][GREEN] > 0.05 && high[down][GREEN] > 0.5 * low[down][GREEN]);
     assert!(to_top(TOP, 1.0) == 0.0);
+}
+
+#[test]
+fn a_sky_is_found_once_until_another_one_is_asked_for() {
+    let of = |elevation: f64| Atmosphere { turbidity: 2.0, albedo: 0.2, altitude: 0.0, elevation };
+    let first = ClearSky::shared(&of(0.3));
+    assert!(Arc::ptr_eq(&first, &ClearSky::shared(&of(0.3))));
+    assert_eq!(first.radiance, ClearSky::new(&of(0.3)).radiance);
+    let other = ClearSky::shared(&of(0.4));
+    assert!(!Arc::ptr_eq(&first, &other) && other.radiance != first.radiance);
 }

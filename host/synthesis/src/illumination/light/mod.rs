@@ -139,6 +139,14 @@ impl Light {
         }
     }
 
+    /// The picture of a sky, if it has one.
+    pub fn panorama(&self) -> Option<&Panorama> {
+        match self {
+            Light::Sky { map: Some(map), .. } => map.panorama.as_deref(),
+            _ => None,
+        }
+    }
+
     /// Words for its kind.
     pub fn words(&self) -> &'static str {
         match self {

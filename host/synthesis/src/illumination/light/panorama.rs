@@ -9,6 +9,7 @@ use crate::memory;
 use crate::picture::source::PictureReader;
 use crate::picture::{Picture, PictureError, Pixel, pixel_of};
 use glam::{DVec2, DVec3};
+use serde::Serialize;
 use std::path::Path;
 
 /// Most pixels that are held as they are; those of larger pictures are packed.
@@ -21,7 +22,7 @@ const EXPONENT: (u32, i32) = (26, -24);
 const MOST_EXPONENT: i32 = EXPONENT.0 as i32 + 13;
 
 /// Radiance from all directions, red, green and blue of linear sRGB, 0 and more.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Panorama {
     width: usize,
     height: usize,
@@ -31,13 +32,13 @@ pub struct Panorama {
 }
 
 /// Radiance over the wavelength, W/(m² sr nm): for each pixel how much there is of each part of a spectrum.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 struct Spectra {
     parts: Vec<Spectrum>,
     values: Vec<f32>,
 }
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 enum Texels {
     /// Three numbers of 32 bits: twelve bytes a pixel.
     Whole(Vec<[f32; 3]>),

@@ -11,16 +11,13 @@ use super::photon_tracing::{FluxBalance, Photon};
 use super::{BatchResult, CHUNK, PathBatch};
 use crate::color::{Channels, Color, LANES, Origin};
 use crate::database::{DatabaseError, PhotonBlock, Record, RecordContent, RecordKind, Store, StoredPhotons};
-use crate::encoding::{Integers, encode_into};
 use crate::illumination::Light;
 use crate::illumination::optics::Interreflection;
+use crate::render::content_hash::ContentHash;
 use crate::render::world::World;
 use crate::scene::{ImageSettings, LightSettings, PhotonSettings, Prepared, RadiositySettings, Scene, Settings};
 use glam::DVec3;
-use serde::Serialize;
-use siphasher::sip128::{Hasher128, SipHasher13};
 use std::collections::HashMap;
-use std::hash::Hasher;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -42,36 +39,6 @@ pub struct PhotonStore {
     pub(super) every: Duration,
     /// Whether photons of finished passes are stored, too.
     pub(super) keeps_finished: bool,
-}
-
-/// Hashes what is written to it.
-struct Sum(SipHasher13);
-
-impl std::io::Write for Sum {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        self.0.write(bytes);
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        Ok(())
-    }
-}
-
-impl Sum {
-    fn new() -> Sum {
-        Sum(SipHasher13::new())
-    }
-
-    fn add(&mut self, value: &impl Serialize) {
-        // Neither scenes nor settings have anything that cannot be written, and what is written to does not fail.
-        let written = encode_into(value, Integers::Compact, self);
-        debug_assert!(written.is_ok());
-    }
-
-    fn value(&self) -> u128 {
-        self.0.finish128().as_u128()
-    }
 }
 
 impl PhotonStore {
@@ -117,10 +84,10 @@ impl PhotonStore {
             photons: PhotonSettings { count, radius, ..photons },
             radiosity: RadiositySettings::default(),
         };
-        let mut sum = Sum::new();
+        let mut sum = ContentHash::new();
         sum.add(&(FORM, &dark));
-        sum.0.write(bytemuck::cast_slice(&prepared.triangles));
-        sum.0.write(bytemuck::cast_slice(&prepared.vertices));
+        sum.add_bytes(bytemuck::cast_slice(&prepared.triangles));
+        sum.add_bytes(bytemuck::cast_slice(&prepared.vertices));
         Ok(PhotonStore { path: path.into(), scene: sum.value(), every, keeps_finished: lasts })
     }
 
@@ -137,7 +104,7 @@ impl PhotonStore {
         let appearance = &world.appearance;
         let prepared = appearance.prepared;
         let number = appearance.sources[lamp.source].0;
-        let mut sum = Sum::new();
+        let mut sum = ContentHash::new();
         let kept: Vec<bool> = (0..prepared.objects.len()).map(keeps).collect();
         let ways = (appearance.wavelengths.is_spectral(), appearance.curved, appearance.exact, appearance.has_passable);
         sum.add(&(self.scene, number as u64, pilot, kept, ways));
