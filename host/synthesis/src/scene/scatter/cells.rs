@@ -66,7 +66,7 @@ impl ScatterCells {
         let Scatter { on, count, density, slope: [flattest, steepest], height, .. } = scatter;
         let frame = GroundFrame::of(on).ok_or_else(|| ShapeError::NoCells { object: on.name.clone() })?;
         let GroundFrame { to_instances, size } = frame;
-        let standing = Standing::new(scatter).within(to_instances);
+        let standing = Standing::new(scatter).on_ground(to_instances);
         let surface = ScatterSurface::new(on, density, None, angle)?;
         let vertical = to_instances.matrix3.transpose() * DVec3::Y;
         let slope = vertical.y.clamp(-1.0, 1.0).acos().to_degrees();

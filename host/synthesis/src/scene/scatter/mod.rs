@@ -4,6 +4,7 @@
 //! and a part is known without the others ([`ScatterParts`]). Where distance, slope, height or density rules some out,
 //! places are tried in turn ([`FoundPlaces`]). On a level ground they may be a function of a cell ([`ScatterCells`]).
 
+mod air;
 mod standing;
 mod surface;
 mod places;

@@ -1,6 +1,7 @@
 //! How an instance stands that is somewhere by chance.
 
 use super::super::object::{Scatter, Sway};
+use super::air::AirLattice;
 use crate::numeric::sampling::{RandomStream, disk_across, part_of};
 use crate::octree::{Instance, Prototype};
 use crate::procedural::Wind;
@@ -23,6 +24,8 @@ pub(super) struct Standing {
     upright: f64,
     sink: f64,
     sway: Option<Sway>,
+    /// The wind where places are told in coordinates of a level ground.
+    air: Option<AirLattice>,
     /// From coordinates in which places are told to those of the instances; a rotation and a translation.
     to_instances: DAffine3,
     /// Of the shares of the prototypes, the part up to each.
@@ -37,12 +40,13 @@ impl Standing {
         let below = parts_below(shares.iter().copied());
         let (turn, lean) = (turn.to_radians(), lean.to_radians());
         let (shares, sway, to_instances) = (shares.clone(), sway.clone(), DAffine3::IDENTITY);
-        Standing { scale, turn, lean, upright, sink, sway, to_instances, below, shares, seed }
+        Standing { scale, turn, lean, upright, sink, sway, air: None, to_instances, below, shares, seed }
     }
 
-    /// These, with places that are told in other coordinates.
-    pub(super) fn within(self, to_instances: DAffine3) -> Standing {
-        Standing { to_instances, ..self }
+    /// These, with places that are told in coordinates of a level ground.
+    pub(super) fn on_ground(self, to_instances: DAffine3) -> Standing {
+        let air = self.sway.as_ref().map(|sway| AirLattice::new(sway, to_instances));
+        Standing { air, to_instances, ..self }
     }
 
     /// Whether there is nothing to place.
@@ -76,7 +80,10 @@ impl Standing {
     /// Where an axis points when the wind bends it.
     fn bent(&self, at: DVec3, up: DVec3) -> DVec3 {
         let Some(Sway { wind, time, lean }) = &self.sway else { return up };
-        let velocity = wind.at(self.to_instances.transform_point3(at), *time);
+        let velocity = match &self.air {
+            Some(air) => air.velocity(at),
+            None => wind.at(at, *time),
+        };
         let speed = velocity.length().min(strongest(wind));
         let towards = self.to_instances.matrix3.transpose() * velocity.normalize_or_zero();
         let across = towards - up * towards.dot(up);
