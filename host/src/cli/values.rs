@@ -2,6 +2,7 @@
 
 use crate::memory;
 use std::num::NonZeroUsize;
+use std::ops::Range;
 
 /// Most threads that a command takes.
 const MAX_THREADS: usize = 1024;
@@ -9,6 +10,8 @@ const MAX_THREADS: usize = 1024;
 const MAX_VECTORS: usize = 1_000_000;
 /// The latest time of a scene, seconds: frames beyond it would be no longer apart than numbers are.
 pub(super) const MOST_SECONDS: f64 = 1e9;
+/// The largest number of a frame.
+const MOST_FRAMES: u32 = 10_000_000;
 /// Least memory that a command may be given, bytes: less than its own code and stacks is no use.
 const LEAST_MEMORY: u64 = 64 << 20;
 /// Longest period of what moves on a workstation, seconds.
@@ -50,6 +53,20 @@ pub(super) fn seconds(text: &str) -> Result<f64, String> {
     seconds.ok_or_else(|| format!("give a number of seconds, from -{MOST_SECONDS:e} to {MOST_SECONDS:e}"))
 }
 
+/// Reads the numbers of frames.
+pub(super) fn frames(text: &str) -> Result<Range<u32>, String> {
+    let wrong = || format!("give A..B, from A to before B, or one number, up to {MOST_FRAMES}");
+    let number = |text: &str| -> Result<u32, String> {
+        let is_number = !text.is_empty() && text.bytes().all(|digit| digit.is_ascii_digit());
+        is_number.then(|| text.parse().ok()).flatten().filter(|number| *number <= MOST_FRAMES).ok_or_else(wrong)
+    };
+    let frames = match text.split_once("..") {
+        Some((first, end)) => number(first)?..number(end)?,
+        None => number(text).map(|only| only..only + 1)?,
+    };
+    if frames.is_empty() { Err(format!("there is no frame from {text}: {}", wrong())) } else { Ok(frames) }
+}
+
 /// Reads a length above 0.
 pub(super) fn length(text: &str) -> Result<f64, String> {
     let length = text.parse().ok().filter(|length| *length > 0.0 && *length < f64::INFINITY);
@@ -81,6 +98,16 @@ mod tests {
         }
         for text in ["", "M", "63M", "-1G", "1X", "NaNG", "1e300G", "infT"] {
             assert!(bytes(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn frames_are_a_half_open_range_or_one_number() {
+        assert_eq!(frames("0..240"), Ok(0..240));
+        assert_eq!(frames("200"), Ok(200..201));
+        assert_eq!(frames("007..9"), Ok(7..9));
+        for text in ["", "..", "5..", "..5", "5..5", "6..5", "-1..3", "1..=3", "0..1e3", "0..99999999", "a", "1...3"] {
+            assert!(frames(text).is_err(), "{text}");
         }
     }
 }

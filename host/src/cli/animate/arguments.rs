@@ -2,7 +2,7 @@
 
 use crate::cli::rendering_arguments::RenderingArguments;
 use crate::cli::source::DefinitionArguments;
-use crate::cli::values::MOST_SECONDS;
+use crate::cli::values::{MOST_SECONDS, frames};
 use crate::cli::{CommandFailure, Exit, SCRIPT_HELP};
 use crate::picture::FrameRate;
 use crate::script::Inputs;
@@ -11,8 +11,6 @@ use files::Destination;
 use std::ops::Range;
 use std::path::PathBuf;
 
-/// Number of a frame below which all are.
-const MOST_FRAMES: u32 = 10_000_000;
 /// Letters of the number of a frame in the name of its file, at least.
 const LEAST_DIGITS: usize = 4;
 /// The part of the time from frame to frame in which the shutter is open, if the script does not say it.
@@ -27,7 +25,7 @@ pub(super) struct AnimateArguments {
     /// The frames: 0..240 are 240, the last of which is 239; 200 is one. Frame K shows the scene at the time K / RATE,
     /// the same whatever other frames are rendered. An exposure that is left to the meter is metered once, at the time 0:
     /// one that followed the scene would flicker
-    #[arg(long, value_name = "A..B", value_parser = parse_frames)]
+    #[arg(long, value_name = "A..B", value_parser = frames)]
     pub(super) frames: Range<u32>,
     /// Frames a second, such as 25, 23.976 or 24000/1001
     #[arg(long, value_name = "RATE", value_parser = FrameRate::parse, default_value = "24")]
@@ -129,34 +127,5 @@ impl AnimateArguments {
             return Err(wrong("this is the name of a frame: give the moving picture another one".into()));
         }
         Ok(Some(Destination::of(path)?))
-    }
-}
-
-/// Reads the numbers of frames.
-fn parse_frames(text: &str) -> Result<Range<u32>, String> {
-    let wrong = || format!("give A..B, from A to before B, or one number, up to {MOST_FRAMES}");
-    let number = |text: &str| -> Result<u32, String> {
-        let is_number = !text.is_empty() && text.bytes().all(|digit| digit.is_ascii_digit());
-        is_number.then(|| text.parse().ok()).flatten().filter(|number| *number <= MOST_FRAMES).ok_or_else(wrong)
-    };
-    let frames = match text.split_once("..") {
-        Some((first, end)) => number(first)?..number(end)?,
-        None => number(text).map(|only| only..only + 1)?,
-    };
-    if frames.is_empty() { Err(format!("there is no frame from {text}: {}", wrong())) } else { Ok(frames) }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn frames_are_a_half_open_range_or_one_number() {
-        assert_eq!(parse_frames("0..240"), Ok(0..240));
-        assert_eq!(parse_frames("200"), Ok(200..201));
-        assert_eq!(parse_frames("007..9"), Ok(7..9));
-        for text in ["", "..", "5..", "..5", "5..5", "6..5", "-1..3", "1..=3", "0..1e3", "0..99999999", "a", "1...3"] {
-            assert!(parse_frames(text).is_err(), "{text}");
-        }
     }
 }
