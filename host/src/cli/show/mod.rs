@@ -6,7 +6,7 @@ mod edits;
 mod view_reporter;
 mod serving;
 
-use super::output::warn;
+use super::output::{self, warn};
 use super::{CommandFailure, Exit, SubcommandRow, load, source};
 use crate::{
     production::{Production, Sent},
@@ -46,6 +46,11 @@ fn run(arguments: &ShowArguments) -> Result<(), CommandFailure> {
         Some(time) => load(&arguments.script, &arguments.definitions.at(time))?,
         None => load(&arguments.script, &arguments.definitions)?,
     };
+    if first.is_none() && evaluated.is_timed && evaluated.scene.motions.is_empty() {
+        output::write_error(
+            "the scene is a function of the time: --frames 0..48 shows it as a flip-book of two seconds",
+        );
+    }
     let camera = evaluated.scene.camera;
     let Evaluated { scene, files, .. } = source::lit(evaluated)?;
     let (model, light) = match times {

@@ -5,6 +5,7 @@
 //! goal of each pixel (u32); and a checksum of all before it (CRC-32, u32). Numbers are little-endian.
 
 use super::RenderOrder;
+use super::content_hash::ContentHash;
 use super::features::PixelFeatures;
 use super::film::{AdaptiveSampling, Film};
 use super::tally::Tally;
@@ -41,7 +42,7 @@ const PIECE: usize = 1 << 20;
 
 /// A scene and an order, as far as samples depend on them: where it is the same, samples can be added to others.
 ///
-/// It is the checksum of everything that was tessellated and of the scene's own words; the number of samples, the
+/// It is the checksum of everything that was tessellated, of the scene and the pixels of its skies; the number of samples, the
 /// target and the time are not in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fingerprint {
@@ -109,12 +110,12 @@ pub struct RenderState {
 impl Fingerprint {
     /// The fingerprint of a scene and how it is to be rendered.
     pub fn of(scene: &Scene, prepared: &Prepared, order: &RenderOrder) -> Fingerprint {
-        let checksum = |bytes: &[u8]| crc32fast::hash(bytes);
         let mut scene = scene.clone();
         scene.settings.image.samples = 0;
         // A film holds radiance, however it is shown.
         scene.display = DisplayTransform::default();
-        let words = serde_json::to_vec(&scene).unwrap_or_default();
+        let mut content = ContentHash::new();
+        content.add_scene(&scene);
         let mut geometry = Hasher::new();
         geometry.update(bytemuck::cast_slice(&prepared.triangles));
         geometry.update(bytemuck::cast_slice(&prepared.vertices));
@@ -122,7 +123,11 @@ impl Fingerprint {
         let RenderOrder { width, height, samples, matte, seed, .. } = order;
         // A single sample lies in the middle of its pixel, where none of many need be.
         let order = format!("{width} {height} {matte} {seed} {}", samples.min(&2));
-        Fingerprint { scene: checksum(&words), geometry: geometry.finalize(), order: checksum(order.as_bytes()) }
+        Fingerprint {
+            scene: content.value() as u32,
+            geometry: geometry.finalize(),
+            order: crc32fast::hash(order.as_bytes()),
+        }
     }
 
     /// The fingerprint of this rendering made as a variant, such as one of several views.
@@ -283,9 +288,13 @@ fn decode<T: DeserializeOwned>(file: &mut impl Read) -> Result<T, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::color::Color;
+    use crate::illumination::Light;
+    use crate::illumination::light::{Panorama, SkyMap};
     use crate::render::PixelSample;
     use glam::DVec3;
     use std::fs;
+    use std::sync::Arc;
 
     fn order() -> RenderOrder {
         RenderOrder::of(&crate::scene::Settings::of_size(3, 2, 16))
@@ -318,6 +327,18 @@ mod tests {
             assert!(error.contains(what), "{error}");
         }
         assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 1, "nothing is left beside it");
+    }
+
+    #[test]
+    fn skies_of_other_pixels_are_other_scenes() {
+        let under = |light: f64| {
+            let panorama = Panorama::of(4, 2, |x, y| DVec3::splat(light * f64::from(x + y))).expect("a panorama");
+            let map = SkyMap { file: "sky.exr".into(), panorama: Some(Arc::new(panorama)), disc: None };
+            let sky = Light::Sky { map: Some(map), radiance: Color::grey(1.0), turned: 0.0 };
+            let scene = Scene { lights: vec![sky], ..Scene::default() };
+            Fingerprint::of(&scene, &Prepared::new(&scene).expect("a scene"), &order())
+        };
+        assert_eq!((under(1.0), under(1.0) == under(1.5)), (under(1.0), false));
     }
 
     #[test]

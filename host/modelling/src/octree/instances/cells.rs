@@ -22,13 +22,14 @@ pub trait CellInstances: fmt::Debug + Send + Sync {
     /// How many there are in each cell at the most, up to [`MOST_IN_CELL`].
     fn count(&self) -> u32;
 
-    /// Where one is, x and z; none where the cell has none of this number. It costs little: rays ask for it often.
+    /// Where the one of a number is, if there is one: x and z. It costs little: rays ask for it often.
     ///
     /// - `cell`: its number along x and z.
-    fn place(&self, cell: [u32; 2], number: u32) -> Option<DVec2>;
+    fn place(&self, cell: [u32; 2], number: u32) -> DVec2;
 
-    /// One that is somewhere: a rotation and a scale of its prototype, whose origin is over that place.
-    fn instance(&self, cell: [u32; 2], number: u32) -> Instance;
+    /// The one of a number: a rotation and a scale of its prototype, whose origin is over that place; none where the cell
+    /// has none.
+    fn instance(&self, cell: [u32; 2], number: u32) -> Option<Instance>;
 
     /// How often each prototype is placed on the whole, in any unit.
     fn shares(&self) -> &[f64];
@@ -168,7 +169,7 @@ impl Cells {
     pub(super) fn instance(&self, number: u64) -> Option<Instance> {
         let (cell, own) = cell_of(number);
         let is_within = cell.iter().zip(&self.grid.cells).all(|(at, cells)| at < cells) && own < self.source.count();
-        (is_within && self.source.place(cell, own).is_some()).then(|| self.source.instance(cell, own))
+        is_within.then(|| self.source.instance(cell, own)).flatten()
     }
 }
 

@@ -420,19 +420,18 @@ impl CellInstances for Tufts {
         self.count
     }
 
-    fn place(&self, [x, z]: [u32; 2], number: u32) -> Option<DVec2> {
+    fn place(&self, [x, z]: [u32; 2], number: u32) -> DVec2 {
         let mut random = RandomStream::new(u64::from(x) << 32 | u64::from(z), u64::from(number));
         let at = DVec2::from(random.point()) + DVec2::new(f64::from(x), f64::from(z));
-        (random.uniform() < 0.7).then_some(self.grid.corner + at * self.grid.side)
+        self.grid.corner + at * self.grid.side
     }
 
-    fn instance(&self, cell: [u32; 2], number: u32) -> Instance {
+    fn instance(&self, cell: [u32; 2], number: u32) -> Option<Instance> {
         let seed = u64::from(cell[0]) * 7919 + u64::from(cell[1]);
         let mut instance = scattered(seed, number as usize, 0.0, 0.6);
-        if let Some(at) = self.place(cell, number) {
-            instance.placement.translation = DVec3::new(at.x, 0.1, at.y);
-        }
-        instance
+        let at = self.place(cell, number);
+        instance.placement.translation = DVec3::new(at.x, 0.1, at.y);
+        (RandomStream::new(seed, u64::from(number)).uniform() < 0.7).then_some(instance)
     }
 
     fn shares(&self) -> &[f64] {
@@ -459,9 +458,8 @@ impl Tufts {
         let all = (0..x)
             .flat_map(|x| (0..z).map(move |z| [x, z]))
             .flat_map(|cell| (0..self.count).map(move |own| (cell, own)));
-        let all: Vec<([u32; 2], u32)> = all.filter(|(cell, own)| self.place(*cell, *own).is_some()).collect();
-        let instance = |number: usize| self.instance(all[number].0, all[number].1);
-        InstanceOctree::new(vec![surface()], PlacementForm::Exact, all.len(), instance).expect("sound")
+        let all: Vec<Instance> = all.filter_map(|(cell, own)| self.instance(cell, own)).collect();
+        InstanceOctree::new(vec![surface()], PlacementForm::Exact, all.len(), |number| all[number]).expect("sound")
     }
 }
 

@@ -73,12 +73,14 @@ impl InstanceOctree {
             for cell in row.cells() {
                 for number in 0..cells.source.count() {
                     // Seen from above first: that needs no more than the place.
-                    let Some(at) = cells.source.place(cell, number) else { continue };
+                    let at = cells.source.place(cell, number);
                     let beside = level.perp_dot(at - DVec2::new(near.x, near.z));
                     if beside * beside > most {
                         continue;
                     }
-                    let Instance { prototype, placement, .. } = cells.source.instance(cell, number);
+                    let Some(Instance { prototype, placement, .. }) = cells.source.instance(cell, number) else {
+                        continue;
+                    };
                     let Some(sphere) = self.extents.spheres.get(usize::from(prototype)) else { continue };
                     let scale = placement.matrix3.x_axis.length_squared();
                     let center = placement.transform_point3(sphere.center);

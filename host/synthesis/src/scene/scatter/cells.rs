@@ -107,13 +107,16 @@ impl ScatterCells {
     /// Whether there is an instance of a number among all: density may rule it out, or the ground end before.
     pub(in crate::scene) fn has(&self, number: usize) -> bool {
         let (cell, own) = self.cell_of(number);
-        self.place(cell, own).is_some()
+        let (at, mut random) = self.drawn(cell, own);
+        self.counts(at, random.uniform())
     }
 
     /// An instance by its number among all.
     pub(in crate::scene) fn instance_of_all(&self, number: usize) -> Instance {
         let (cell, own) = self.cell_of(number);
-        let instance = self.instance(cell, own);
+        let (at, mut random) = self.drawn(cell, own);
+        random.uniform();
+        let instance = self.standing_at(at, random);
         Instance { placement: self.frame.to_instances * instance.placement, ..instance }
     }
 
@@ -149,20 +152,18 @@ impl ScatterCells {
     }
 }
 
-impl CellInstances for ScatterCells {
-    fn count(&self) -> u32 {
-        self.count
-    }
-
-    fn place(&self, cell: [u32; 2], number: u32) -> Option<DVec2> {
-        let (at, mut random) = self.drawn(cell, number);
+impl ScatterCells {
+    /// Whether there is something at a place: height and density may rule it out, or the ground end before.
+    ///
+    /// - `chance`: 0..1, below the density where it counts.
+    fn counts(&self, at: DVec2, chance: f64) -> bool {
         if at.cmpgt(0.5 * self.frame.size).any() {
-            return None;
+            return false;
         }
         let on = DVec3::new(at.x, 0.0, at.y);
         let y = self.frame.to_instances.transform_point3(on).y;
         if y < self.height[0] || y > self.height[1] {
-            return None;
+            return false;
         }
         let density = match &self.density {
             NumberTexture::Constant(density) => *density,
@@ -171,14 +172,31 @@ impl CellInstances for ScatterCells {
                 varying.at(&TextureFootprint::point(self.surface.parameters_at(own), own))
             }
         };
-        (density >= 1.0 || random.uniform() < density).then_some(at)
+        density >= 1.0 || chance < density
     }
 
-    fn instance(&self, cell: [u32; 2], number: u32) -> Instance {
-        let (at, mut random) = self.drawn(cell, number);
-        // What density took, whether it varies or not, so that instances stay as they are when it changes.
-        random.uniform();
+    /// What stands at a place.
+    ///
+    /// - `random`: what more is drawn for it.
+    fn standing_at(&self, at: DVec2, random: RandomStream) -> Instance {
         self.standing.instance(DVec3::new(at.x, 0.0, at.y), DVec3::Y, self.vertical, random)
+    }
+}
+
+impl CellInstances for ScatterCells {
+    fn count(&self) -> u32 {
+        self.count
+    }
+
+    fn place(&self, cell: [u32; 2], number: u32) -> DVec2 {
+        self.drawn(cell, number).0
+    }
+
+    fn instance(&self, cell: [u32; 2], number: u32) -> Option<Instance> {
+        let (at, mut random) = self.drawn(cell, number);
+        // It is drawn whether density varies or not, so that instances stay as they are when it changes.
+        let chance = random.uniform();
+        self.counts(at, chance).then(|| self.standing_at(at, random))
     }
 
     fn shares(&self) -> &[f64] {

@@ -293,7 +293,7 @@ fn cells_hold_what_the_wind_bends_in_them_however_the_ground_is_placed() {
             let grid = cells.grid(std::slice::from_ref(&prototype));
             for number in 0..cells.count_of_all() {
                 let cell = [number / 30, number / 3 % 10];
-                let instance = cells.instance(cell.map(|side| side as u32), (number % 3) as u32);
+                let instance = cells.instance(cell.map(|side| side as u32), (number % 3) as u32).expect("all count");
                 let own = Bounds::of(post.corners().map(|corner| instance.placement.transform_point3(corner)));
                 let corner = DVec3::new(cell[0] as f64 - 5.0, 0.0, cell[1] as f64 - 5.0);
                 let (over, [low, high]) = (grid.overhang + 1e-9, grid.heights);
