@@ -46,9 +46,9 @@ pub use error::{MAX_TRIANGLES, OctreeError};
 pub use file::{ENDING, FileError, MAX_BYTES};
 pub use inside::Containment;
 pub use instances::{
-    CellGrid, CellInstances, Instance, InstanceCosts, InstanceError, InstanceHit, InstanceOctree, InstanceParts,
-    InstancePath, MOST_CELLS, MOST_IN_CELL, MOST_INSTANCES, MOST_LEVELS, MOST_OVERHANG, MOST_PARTS, MOST_PROTOTYPES,
-    PlacedSurface, PlacementForm, Prototype,
+    CellGrid, CellInstances, CellPlace, Instance, InstanceCosts, InstanceError, InstanceHit, InstanceOctree,
+    InstanceParts, InstancePath, MOST_CELLS, MOST_IN_CELL, MOST_INSTANCES, MOST_LEVELS, MOST_OVERHANG, MOST_PARTS,
+    MOST_PROTOTYPES, PlacedSurface, PlacementForm, Prototype,
 };
 pub use nearest::{Nearest, hausdorff};
 pub use points::{NearbyPoints, SortedPoints};

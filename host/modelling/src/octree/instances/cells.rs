@@ -22,10 +22,10 @@ pub trait CellInstances: fmt::Debug + Send + Sync {
     /// How many there are in each cell at the most, up to [`MOST_IN_CELL`].
     fn count(&self) -> u32;
 
-    /// Where the one of a number is, if there is one: x and z. It costs little: rays ask for it often.
+    /// Where the one of a number is, if there is one. It costs little: rays ask for it often.
     ///
     /// - `cell`: its number along x and z.
-    fn place(&self, cell: [u32; 2], number: u32) -> DVec2;
+    fn place(&self, cell: [u32; 2], number: u32) -> CellPlace;
 
     /// The one of a number: a rotation and a scale of its prototype, whose origin is over that place; none where the cell
     /// has none.
@@ -36,6 +36,16 @@ pub trait CellInstances: fmt::Debug + Send + Sync {
 
     /// Adds all that tells where instances are to a checksum.
     fn add_to_checksum(&self, sum: &mut crc32fast::Hasher);
+}
+
+/// Where an instance in a cell is, and how large.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CellPlace {
+    /// x and z.
+    pub at: DVec2,
+    /// Its size as a part of the largest, above 0 and up to 1: it reaches so much of the overhang, and of the heights, of
+    /// its grid.
+    pub part: f64,
 }
 
 /// Square cells side by side in the plane y = 0.
@@ -67,8 +77,9 @@ pub(super) struct CellRow {
     /// Those along the other one.
     across: RangeInclusive<u32>,
     is_along_x: bool,
-    /// Nothing that they place is hit at a shorter length of the ray.
+    /// Nothing that they place is hit at a shorter length of the ray, nor at a longer one.
     pub(super) enter: f64,
+    pub(super) exit: f64,
 }
 
 impl Cells {
@@ -126,6 +137,11 @@ impl Cells {
         self.grid.overhang
     }
 
+    /// The least and the greatest y of what is placed.
+    pub(super) fn heights(&self) -> [f64; 2] {
+        self.grid.heights
+    }
+
     /// The rows of cells along a ray, the nearer ones first; each cell is in one of them.
     pub(super) fn rows(&self, ray: &Ray, [t_min, t_max]: [f64; 2]) -> impl Iterator<Item = CellRow> + '_ {
         let CellGrid { cells, corner, side, .. } = self.grid;
@@ -161,7 +177,7 @@ impl Cells {
                 return None;
             }
             let [least, most] = within(1, beside + drift * enter, beside + drift * exit)?;
-            Some(CellRow { along, across: least..=most, is_along_x, enter })
+            Some(CellRow { along, across: least..=most, is_along_x, enter, exit })
         })
     }
 

@@ -22,7 +22,7 @@ mod walk;
 #[cfg(test)]
 mod tests;
 
-pub use cells::{CellGrid, CellInstances};
+pub use cells::{CellGrid, CellInstances, CellPlace};
 pub use error::{
     InstanceError, MOST_CELLS, MOST_IN_CELL, MOST_INSTANCES, MOST_LEVELS, MOST_OVERHANG, MOST_PARTS, MOST_PROTOTYPES,
 };

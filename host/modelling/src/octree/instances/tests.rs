@@ -420,17 +420,18 @@ impl CellInstances for Tufts {
         self.count
     }
 
-    fn place(&self, [x, z]: [u32; 2], number: u32) -> DVec2 {
+    fn place(&self, [x, z]: [u32; 2], number: u32) -> CellPlace {
         let mut random = RandomStream::new(u64::from(x) << 32 | u64::from(z), u64::from(number));
         let at = DVec2::from(random.point()) + DVec2::new(f64::from(x), f64::from(z));
-        self.grid.corner + at * self.grid.side
+        CellPlace { at: self.grid.corner + at * self.grid.side, part: [1.0, 0.4][number as usize % 2] }
     }
 
     fn instance(&self, cell: [u32; 2], number: u32) -> Option<Instance> {
         let seed = u64::from(cell[0]) * 7919 + u64::from(cell[1]);
         let mut instance = scattered(seed, number as usize, 0.0, 0.6);
-        let at = self.place(cell, number);
-        instance.placement.translation = DVec3::new(at.x, 0.1, at.y);
+        let CellPlace { at, part } = self.place(cell, number);
+        instance.placement.matrix3 *= part;
+        instance.placement.translation = DVec3::new(at.x, 0.1 * part, at.y);
         (RandomStream::new(seed, u64::from(number)).uniform() < 0.7).then_some(instance)
     }
 

@@ -7,7 +7,7 @@ use super::super::prepared_ray::PreparedRay;
 use super::super::visit::{LeafVisitor, visit_leaves};
 use super::super::{Hit, Octree, Ray};
 use super::blocks::SphereTest;
-use super::cells::{self, Cells};
+use super::cells::{self, CellPlace, Cells};
 use super::octree::{Content, InstanceOctree, KnownInstances};
 use super::parts::PartsOnDemand;
 use super::path::{Descent, InstanceHit};
@@ -64,18 +64,24 @@ impl InstanceOctree {
     fn ask_cells(&self, cells: &Cells, ray: &Ray, outer: Option<&Descent<'_>>, query: &mut impl Query) -> bool {
         let square = ray.direction.length_squared();
         let (reach, level) = (cells.reach(ray), DVec2::new(ray.direction.x, ray.direction.z));
-        let most = reach * reach * level.length_squared() * (1.0 + ROUNDING);
+        let (overhang, [low, high]) = (cells.overhang(), cells.heights());
+        let (margin, speed) = (reach - overhang, level.length() * (1.0 + ROUNDING));
         for row in cells.rows(ray, query.limits()) {
             if row.enter >= query.limits()[1] {
                 break;
             }
             let near = ray.at(row.enter);
+            let far = ray.at(row.exit);
+            let (lowest, highest) = (near.y.min(far.y) - margin, near.y.max(far.y) + margin);
             for cell in row.cells() {
                 for number in 0..cells.source.count() {
-                    // Seen from above first: that needs no more than the place.
-                    let at = cells.source.place(cell, number);
+                    // Seen from above and from the side first: that needs no more than the place.
+                    let CellPlace { at, part } = cells.source.place(cell, number);
                     let beside = level.perp_dot(at - DVec2::new(near.x, near.z));
-                    if beside * beside > most {
+                    if beside.abs() > (overhang * part + margin) * speed
+                        || lowest > high * part + margin
+                        || highest < low * part - margin
+                    {
                         continue;
                     }
                     let Some(Instance { prototype, placement, .. }) = cells.source.instance(cell, number) else {
@@ -84,8 +90,7 @@ impl InstanceOctree {
                     let Some(sphere) = self.extents.spheres.get(usize::from(prototype)) else { continue };
                     let scale = placement.matrix3.x_axis.length_squared();
                     let center = placement.transform_point3(sphere.center);
-                    let radius =
-                        f64::from(sphere.radius) * scale.sqrt() * (1.0 + ROUNDING) + (reach - cells.overhang());
+                    let radius = f64::from(sphere.radius) * scale.sqrt() * (1.0 + ROUNDING) + margin;
                     let to_center = center - near;
                     let along = to_center.dot(ray.direction) / square;
                     let beside = to_center - ray.direction * along;

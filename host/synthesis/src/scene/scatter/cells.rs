@@ -6,7 +6,7 @@ use super::standing::Standing;
 use super::surface::ScatterSurface;
 use crate::illumination::texture::{NumberTexture, TextureFootprint};
 use crate::numeric::sampling::{RandomStream, mix};
-use crate::octree::{CellGrid, CellInstances, Instance, Prototype};
+use crate::octree::{CellGrid, CellInstances, CellPlace, Instance, Prototype};
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 use std::ops::Range;
 
@@ -188,8 +188,11 @@ impl CellInstances for ScatterCells {
         self.count
     }
 
-    fn place(&self, cell: [u32; 2], number: u32) -> DVec2 {
-        self.drawn(cell, number).0
+    fn place(&self, cell: [u32; 2], number: u32) -> CellPlace {
+        let (at, mut random) = self.drawn(cell, number);
+        // The chance of density.
+        random.uniform();
+        CellPlace { at, part: self.standing.part_of_largest(random) }
     }
 
     fn instance(&self, cell: [u32; 2], number: u32) -> Option<Instance> {

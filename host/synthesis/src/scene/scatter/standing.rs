@@ -77,6 +77,20 @@ impl Standing {
         Instance { prototype: prototype as u16, variation, placement }
     }
 
+    /// The size of an instance as a part of the largest.
+    ///
+    /// - `random`: what more is drawn for it.
+    pub(super) fn part_of_largest(&self, mut random: RandomStream) -> f64 {
+        let [least, most] = self.scale;
+        if least == most {
+            return 1.0;
+        }
+        // How it leans, and how it is turned.
+        random.point();
+        random.uniform();
+        (least + (most - least) * random.uniform()) / most
+    }
+
     /// Where an axis points when the wind bends it.
     fn bent(&self, at: DVec3, up: DVec3) -> DVec3 {
         let Some(Sway { wind, time, lean }) = &self.sway else { return up };

@@ -5,7 +5,7 @@ use super::ScatterParts;
 use crate::illumination::Paint;
 use crate::illumination::texture::{Band, Motif, NumberTexture, Pattern, TextureMapping, Varying};
 use crate::numeric::bounds::Bounds;
-use crate::octree::{CellInstances, Instance, InstanceParts, Octree, OctreeSettings, Prototype};
+use crate::octree::{CellInstances, CellPlace, Instance, InstanceParts, Octree, OctreeSettings, Prototype};
 use crate::procedural::Wind;
 use crate::solid::Primitive;
 use crate::surface::Tolerance;
@@ -288,17 +288,25 @@ fn cells_hold_what_the_wind_bends_in_them_however_the_ground_is_placed() {
     for turned in [DMat4::IDENTITY, DMat4::from_rotation_y(2.0), DMat4::from_rotation_z(0.4)] {
         for speed in [5.0, 20.0, 1e6] {
             let ground = on(Shape::Ground { size: 10.0 }, turned);
-            let scatter = Scatter { on: ground, cell: Some(1.0), sway: sway(speed), upright: 1.0, ..scatter(3) };
+            let scatter = Scatter {
+                on: ground,
+                cell: Some(1.0),
+                sway: sway(speed),
+                upright: 1.0,
+                scale: [0.4, 2.0],
+                ..scatter(3)
+            };
             let cells = super::ScatterCells::new(&scatter, 1.0, 45.0).expect("a ground");
             let grid = cells.grid(std::slice::from_ref(&prototype));
             for number in 0..cells.count_of_all() {
                 let cell = [number / 30, number / 3 % 10];
                 let instance = cells.instance(cell.map(|side| side as u32), (number % 3) as u32).expect("all count");
                 let own = Bounds::of(post.corners().map(|corner| instance.placement.transform_point3(corner)));
-                let corner = DVec3::new(cell[0] as f64 - 5.0, 0.0, cell[1] as f64 - 5.0);
-                let (over, [low, high]) = (grid.overhang + 1e-9, grid.heights);
-                let least = DVec3::new(corner.x - over, low - 1e-9, corner.z - over);
-                let most = DVec3::new(corner.x + 1.0 + over, high + 1e-9, corner.z + 1.0 + over);
+                let CellPlace { at, part } = cells.place(cell.map(|side| side as u32), (number % 3) as u32);
+                assert!((instance.placement.matrix3.y_axis.length() - 2.0 * part).abs() < 1e-12, "{part}");
+                let (over, [low, high]) = (grid.overhang * part + 1e-9, grid.heights.map(|height| height * part));
+                let least = DVec3::new(at.x - over, low - 1e-9, at.y - over);
+                let most = DVec3::new(at.x + over, high + 1e-9, at.y + over);
                 assert!(own.min.cmpge(least).all() && own.max.cmple(most).all(), "{speed}: {own:?} {grid:?}");
             }
             // Where it is bent does not depend on how its cell is turned.
