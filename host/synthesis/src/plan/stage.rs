@@ -300,7 +300,7 @@ fn radiosity(facts: &Facts<'_>) -> Decision {
 
 fn motion(facts: &Facts<'_>) -> Decision {
     match facts.included().filter(|o| o.motion.is_some()).count() {
-        0 => Decision::new(false, "nothing moves while the shutter is open"),
+        0 => Decision::new(false, "no object moves while the shutter is open"),
         n => Decision::new(true, format!("{} in motion", counted(n, "object"))),
     }
 }
