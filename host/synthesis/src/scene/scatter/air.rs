@@ -55,8 +55,8 @@ impl AirLattice {
         let first = place.floor();
         let part = place - first;
         let [x, z] = [first.x as i64, first.y as i64];
-        let along = |x: i64| self.point([x, z]).lerp(self.point([x, z + 1]), part.y);
-        along(x).lerp(along(x + 1), part.x)
+        let along = |x: i64| self.point([x, z]).lerp(self.point([x, z.saturating_add(1)]), part.y);
+        along(x).lerp(along(x.saturating_add(1)), part.x)
     }
 
     fn point(&self, number: [i64; 2]) -> DVec3 {
