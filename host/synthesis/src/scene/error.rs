@@ -112,6 +112,9 @@ pub enum ShapeError {
         /// What keeps the edges from being rounded.
         source: RoundingError,
     },
+    /// A procedural model cannot make it.
+    #[error("{0}")]
+    Model(String),
     /// Cells for instances cannot lie on it.
     #[error("cells for instances lie on a ground that is not skewed, which {object} is not")]
     NoCells {

@@ -181,45 +181,45 @@ impl Instances {
 
     /// The triangles of all instances, as one mesh; without exact surfaces.
     ///
+    /// - `variation`: of the instance of which these are part; 0 without one.
+    ///
     /// # Errors
     /// [`ShapeError`], also if they would take more memory than there is.
-    pub(super) fn tessellate(&self, tolerance: Tolerance) -> Result<ShapeMesh, ShapeError> {
+    pub(super) fn tessellate(&self, tolerance: Tolerance, variation: u16) -> Result<ShapeMesh, ShapeError> {
         let chord = (tolerance.chord < f64::MAX).then(|| tolerance.chord / self.largest_stretch());
         let (mut operands, mut surfaces) = (0, 0);
-        let mut parts: Vec<ShapeMesh> = Vec::with_capacity(self.prototypes.len());
+        let mut parts: Vec<GroupMesh> = Vec::with_capacity(self.prototypes.len());
         for group in &self.prototypes {
-            let mut part = ShapeMesh::default();
-            for object in group {
-                let ShapeMesh { mut mesh, mut operand_of, .. } =
-                    object.in_place(object.shape.tessellate(object.own_tolerance(chord, tolerance.angle))?);
-                let count = mesh.triangles.len();
-                if mesh.corner_normals.is_empty() {
-                    mesh.corner_normals = flat_normals(&mesh);
-                }
-                mesh.surfaces.resize(count, 0);
-                operand_of.resize(count, 0);
-                part.operand_of.extend(operand_of.iter().map(|operand| operand + operands));
-                operands += object.operand_materials().len() as u32;
-                part.mesh.append(&mesh, surfaces);
-                surfaces += mesh.surfaces.iter().max().map_or(0, |last| last + 1);
-            }
+            let made = together(group, chord, tolerance.angle, 0)?;
+            let varies = group.iter().any(Object::has_models);
+            let part = GroupMesh { made, operands, surfaces, varies };
+            operands += group.iter().map(|object| object.operand_materials().len() as u32).sum::<u32>();
+            surfaces += part.made.mesh.surfaces.iter().max().map_or(0, |last| last + 1);
             parts.push(part);
         }
         let places = self.places(chord, tolerance.angle)?;
-        let part = |Instance { prototype, placement, .. }| Some((parts.get(usize::from(prototype))?, placement));
         let count = places.count();
-        let most = parts.iter().map(|part| part.mesh.triangles.len() as u64).max().unwrap_or(0);
+        let triangles = |part: &GroupMesh| part.made.mesh.triangles.len() as u64;
         // Not counted one by one where there are too many for that.
-        let triangles = match count <= COUNTED {
-            true => places.all().filter_map(part).map(|(part, _)| part.mesh.triangles.len() as u64).sum(),
-            false => (count as u64).saturating_mul(most),
+        let total = match count <= COUNTED {
+            true => places.all().map(|instance| triangles(&parts[usize::from(instance.prototype)])).sum(),
+            false => (count as u64).saturating_mul(parts.iter().map(triangles).max().unwrap_or(0)),
         };
-        let bytes = u64::saturating_mul(triangles, BYTES);
-        memory::reserve(bytes, || format!("{count} instances of {triangles} triangles"))?;
+        let bytes = u64::saturating_mul(total, BYTES);
+        memory::reserve(bytes, || format!("{count} instances of {total} triangles"))?;
         let mut whole = ShapeMesh::default();
-        for (part, placement) in places.all().filter_map(part) {
-            whole.mesh.append(&part.mesh.transformed(&placement), 0);
-            whole.operand_of.extend(&part.operand_of);
+        for Instance { prototype, variation: own, placement } in places.all() {
+            let GroupMesh { made, operands, surfaces, varies } = &parts[usize::from(prototype)];
+            let another;
+            let made = if *varies {
+                let group = &self.prototypes[usize::from(prototype)];
+                another = together(group, chord, tolerance.angle, variation.wrapping_add(own))?;
+                &another
+            } else {
+                made
+            };
+            whole.mesh.append(&made.mesh.transformed(&placement), *surfaces);
+            whole.operand_of.extend(made.operand_of.iter().map(|operand| operand + operands));
         }
         Ok(whole)
     }
@@ -258,4 +258,52 @@ impl Instances {
         }
         Ok(())
     }
+}
+
+/// The triangles of a group of objects that is placed.
+struct GroupMesh {
+    /// Those of an instance whose variation is 0.
+    made: ShapeMesh,
+    /// How many operands the groups before have.
+    operands: u32,
+    /// How many surfaces they have.
+    surfaces: u32,
+    /// Whether those of other instances differ.
+    varies: bool,
+}
+
+/// Triangles of objects that stand together, as one mesh without exact surfaces; their operands are counted through.
+///
+/// - `variation`: of the instance that they are.
+pub(super) fn together(
+    objects: &[Object],
+    chord: Option<f64>,
+    angle: f64,
+    variation: u16,
+) -> Result<ShapeMesh, ShapeError> {
+    let (mut operands, mut surfaces) = (0, 0);
+    let mut all = ShapeMesh::default();
+    for object in objects {
+        let tolerance = object.own_tolerance(chord, angle);
+        let made = match &object.shape {
+            Shape::Instances(instances) => instances.tessellate(tolerance, variation)?,
+            Shape::Procedural(model) => {
+                let chord = (tolerance.chord < f64::MAX).then_some(tolerance.chord);
+                model.tessellate(model.seed(variation), model.detail_within(chord))?
+            }
+            shape => shape.tessellate(tolerance)?,
+        };
+        let ShapeMesh { mut mesh, mut operand_of, .. } = object.in_place(made);
+        let count = mesh.triangles.len();
+        if mesh.corner_normals.is_empty() {
+            mesh.corner_normals = flat_normals(&mesh);
+        }
+        mesh.surfaces.resize(count, 0);
+        operand_of.resize(count, 0);
+        all.operand_of.extend(operand_of.iter().map(|operand| operand + operands));
+        operands += object.operand_materials().len() as u32;
+        all.mesh.append(&mesh, surfaces);
+        surfaces += mesh.surfaces.iter().max().map_or(0, |last| last + 1);
+    }
+    Ok(all)
 }

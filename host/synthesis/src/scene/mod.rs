@@ -21,6 +21,7 @@ mod shape;
 mod parameters;
 mod scatter;
 mod instances;
+mod procedural;
 mod exact;
 mod acceleration;
 mod file_meshes;
@@ -43,12 +44,14 @@ pub use error::{AccelerationError, SceneError, ShapeError};
 pub use instances::{Places, ShortScatter};
 pub use motion::{Displacement, Motion};
 pub use object::{
-    Composite, Instances, MAX_NESTING, Object, Operation, PlacementList, Placing, RoundedSolid, Scatter, Shape, Sway,
+    Composite, Instances, MAX_NESTING, Object, Operation, PlacementList, Placing, Procedural, ProceduralModel,
+    RoundedSolid, Scatter, Shape, Sway,
 };
 pub use object_intersection::{ObjectIntersection, object_intersections};
 pub use origins::{ScriptPosition, ShapeOrigins};
 pub use piercing::SurfacePoint;
 pub use prepared::{Contents, Prepared, PreparedObject};
+pub use procedural::MOST_KINDS;
 pub use sculpture::{Sculpture, SculptureError, SurfaceSheet};
 pub use settings::{
     Caustics, GeometrySettings, ImageSettings, LightSettings, MAX_PHOTONS, MAX_REFLECTION_DEPTH, MAX_SAMPLES,

@@ -5,6 +5,7 @@ use super::sculpture::Sculpture;
 use super::solid::PrimitiveSolid;
 use crate::illumination::Material;
 use crate::illumination::texture::NumberTexture;
+use crate::numeric::bounds::Bounds;
 use crate::octree::Instance;
 use crate::procedural::Wind;
 use crate::solid::Primitive;
@@ -13,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::fmt;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// One object: a shape, placed, of a material.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -79,6 +81,8 @@ pub enum Shape {
     Rounded(Box<RoundedSolid>),
     /// Objects that are placed many times.
     Instances(Box<Instances>),
+    /// What is made when it is looked at, where instances place it; where it stands itself, the first of its kinds.
+    Procedural(Procedural),
 }
 
 /// A solid of flat faces, edges of which are rounded.
@@ -185,6 +189,38 @@ impl Scatter {
     }
 }
 
+/// A procedural model: a sparse description from which objects are made.
+///
+/// What it makes is a function of a seed and of a length alone, the same whenever it is asked and on whichever thread.
+pub trait ProceduralModel: fmt::Debug + Send + Sync {
+    /// The box that holds all that it makes, in coordinates of its own.
+    fn bounds(&self) -> Bounds;
+
+    /// How many different ones there are, 1 to [`MOST_KINDS`](super::MOST_KINDS).
+    fn kinds(&self) -> u32;
+
+    /// Makes one of them: surfaces and instances of surfaces, in coordinates of its own.
+    ///
+    /// - `seed`: which one, below [`ProceduralModel::kinds`].
+    /// - `detail`: what a pixel spans where it is seen, units of its own, above 0. What is smaller may be left out, as may
+    ///   all that changes what is seen by less.
+    ///
+    /// # Errors
+    /// What is wrong, in words, with the place in the script if it comes from one.
+    fn make(&self, seed: u32, detail: f64) -> Result<Vec<Object>, String>;
+
+    /// All that decides what it makes, as text.
+    fn definition(&self) -> String;
+}
+
+/// A procedural model as the shape of an object.
+#[derive(Clone)]
+pub struct Procedural {
+    pub(super) model: Arc<dyn ProceduralModel>,
+    /// The first of its kinds, as finely as it is made.
+    pub(super) pattern: Arc<Vec<Object>>,
+}
+
 /// Placements one by one. As text, only their number is shown and a checksum: there may be millions.
 #[derive(Clone, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
@@ -264,6 +300,7 @@ impl Shape {
             Shape::Curve(_) => "curve",
             Shape::Rounded(rounded) => rounded.object.shape.word(),
             Shape::Instances(_) => "instances",
+            Shape::Procedural(_) => "procedural",
         }
     }
 }
@@ -296,9 +333,22 @@ impl Object {
             let objects = instances.prototypes.iter().flatten();
             return objects.flat_map(|object| object.within(&self.material).operand_materials()).collect();
         }
+        if let Shape::Procedural(model) = &self.shape {
+            let objects = model.pattern.iter();
+            return objects.flat_map(|object| object.within(&self.material).operand_materials()).collect();
+        }
         match self.composite() {
             Some((composite, whole)) => composite.materials(whole),
             None => vec![self.own_material().unwrap_or_default()],
+        }
+    }
+
+    /// Whether it is, or places, a procedural model.
+    pub fn has_models(&self) -> bool {
+        match &self.shape {
+            Shape::Procedural(_) => true,
+            Shape::Instances(instances) => instances.prototypes.iter().flatten().any(Object::has_models),
+            _ => false,
         }
     }
 

@@ -49,6 +49,8 @@ impl Shape {
             Shape::Curve(objects) => objects.iter().try_for_each(|o| o.check(false).map_err(|error| error.to_string())),
             Shape::Rounded(rounded) => rounded.object.check(false).map_err(|error| error.to_string()),
             Shape::Instances(instances) => instances.check(),
+            // It was checked when it was made.
+            Shape::Procedural(_) => Ok(()),
         }
     }
 
@@ -56,7 +58,7 @@ impl Shape {
     pub fn is_exact_and_curved(&self) -> bool {
         match self {
             Shape::Composite(composite) => composite.operands.iter().any(|o| o.shape.is_exact_and_curved()),
-            Shape::Curve(_) | Shape::Rounded(_) | Shape::Instances(_) => false,
+            Shape::Curve(_) | Shape::Rounded(_) | Shape::Instances(_) | Shape::Procedural(_) => false,
             _ => self.extent().is_some(),
         }
     }
@@ -94,7 +96,7 @@ impl Shape {
                 };
                 rounded.object.extent().or_else(|| Some(extent()? * largest_stretch(&rounded.object.transform)))
             }
-            Shape::HalfSpace { .. } | Shape::Ground { .. } | Shape::Bunny => None,
+            Shape::HalfSpace { .. } | Shape::Ground { .. } | Shape::Bunny | Shape::Procedural(_) => None,
             Shape::Mesh { .. } | Shape::Stored { .. } | Shape::Instances(_) => None,
         }
     }
@@ -125,7 +127,11 @@ impl Shape {
                 Ok(ShapeMesh { lines, ..ShapeMesh::default() })
             }
             Shape::Rounded(rounded) => rounded.tessellate(tolerance),
-            Shape::Instances(instances) => instances.tessellate(tolerance),
+            Shape::Instances(instances) => instances.tessellate(tolerance, 0),
+            Shape::Procedural(model) => {
+                let chord = (tolerance.chord < f64::MAX).then_some(tolerance.chord);
+                model.tessellate(0, model.detail_within(chord))
+            }
             Shape::Bunny => Ok(ShapeMesh { mesh: mesh::bunny()?, ..ShapeMesh::default() }),
             Shape::Mesh { path } => Ok(ShapeMesh { mesh: mesh_of(path)?, ..ShapeMesh::default() }),
             Shape::Stored { database, name } => {

@@ -38,7 +38,7 @@ impl Object {
     pub(super) fn own_tolerance(&self, scene_tolerance: Option<f64>, angle: f64) -> Tolerance {
         let chord = match self.shape {
             // Each of the objects that are placed may have one of its own.
-            Shape::Instances(_) => {
+            Shape::Instances(_) | Shape::Procedural(_) => {
                 self.tolerance.or(scene_tolerance).map(|given| given / largest_stretch(&self.transform))
             }
             _ => self.own_chord(scene_tolerance),

@@ -9,6 +9,8 @@ pub const MOST_INSTANCES: usize = 1 << 28;
 pub const MOST_PROTOTYPES: usize = u16::MAX as usize;
 /// Instances may be placed by instances so many times over.
 pub const MOST_LEVELS: usize = 8;
+/// A prototype that is made may be made of instances so many times over.
+pub const MOST_MADE_LEVELS: usize = 3;
 /// Most parts of instances that are known part by part.
 pub const MOST_PARTS: usize = MOST_PROTOTYPES;
 /// Most cells of a grid along an axis.

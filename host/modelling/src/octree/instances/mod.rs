@@ -8,6 +8,9 @@
 //!
 //! Instances are known in one of three ways: all are stored; they are in parts, each of which is stored when a ray first
 //! comes to its box; or they are a function of the cell of a grid, and none is stored.
+//!
+//! A prototype may be made on demand: when a ray comes to where it is placed, [`PrototypeMaker`] gives the instances that it
+//! is made of, and the ray goes on through these.
 
 mod error;
 mod placement;
@@ -17,6 +20,8 @@ mod stored;
 mod parts;
 mod cells;
 mod octree;
+mod descent;
+mod made;
 mod walk;
 
 #[cfg(test)]
@@ -24,9 +29,12 @@ mod tests;
 
 pub use cells::{CellGrid, CellInstances, CellPlace};
 pub use error::{
-    InstanceError, MOST_CELLS, MOST_IN_CELL, MOST_INSTANCES, MOST_LEVELS, MOST_OVERHANG, MOST_PARTS, MOST_PROTOTYPES,
+    InstanceError, MOST_CELLS, MOST_IN_CELL, MOST_INSTANCES, MOST_LEVELS, MOST_MADE_LEVELS, MOST_OVERHANG, MOST_PARTS,
+    MOST_PROTOTYPES,
 };
+pub use made::PrototypeMaker;
 pub use octree::{InstanceCosts, InstanceOctree, Prototype};
 pub use parts::InstanceParts;
 pub use path::{InstanceHit, InstancePath, PlacedSurface};
 pub use placement::{Instance, PlacementForm};
+pub use walk::InstanceWalk;

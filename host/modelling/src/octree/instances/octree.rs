@@ -2,13 +2,11 @@
 
 use super::super::Octree;
 use super::cells::{CellGrid, CellInstances, Cells};
-use super::error::{InstanceError, MOST_INSTANCES, MOST_LEVELS, MOST_PROTOTYPES};
+use super::error::{InstanceError, MOST_INSTANCES, MOST_LEVELS, MOST_MADE_LEVELS, MOST_PROTOTYPES};
 use super::parts::{InstanceParts, PartsOnDemand};
-use super::path::{InstancePath, PlacedSurface};
-use super::placement::{Instance, PlacementForm, PrototypeSphere, longest};
+use super::placement::{Instance, PlacementForm, PrototypeSphere};
 use super::stored::{Extents, StoredInstances};
 use crate::numeric::bounds::Bounds;
-use glam::DAffine3;
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -30,6 +28,10 @@ pub(super) enum Content {
         first: u32,
     },
     Instances(Arc<InstanceOctree>),
+    /// It is made when a ray comes to it.
+    Made {
+        model: u32,
+    },
 }
 
 impl Prototype {
@@ -49,23 +51,34 @@ impl Prototype {
         Prototype::new(Content::Instances(instances), bounds, 0.5 * bounds.diagonal(), levels)
     }
 
+    /// What is made when a ray comes to it, of instances that are nested at most [`MOST_MADE_LEVELS`] times.
+    ///
+    /// - `model`: the number by which [`PrototypeMaker`](super::PrototypeMaker) knows it. `bounds`: what holds it, in its
+    ///   coordinates.
+    pub fn made(model: u32, bounds: Bounds) -> Prototype {
+        Prototype::new(Content::Made { model }, bounds, 0.5 * bounds.diagonal(), MOST_MADE_LEVELS)
+    }
+
     fn new(content: Content, bounds: Bounds, radius: f64, levels: usize) -> Prototype {
         let sphere = PrototypeSphere::new(&bounds, radius);
         Prototype { content, bounds, sphere, levels }
     }
 
-    /// Adds its placements to a checksum; a surface has none.
+    /// Adds its placements to a checksum, and the number of what is made; a surface has none.
     pub fn add_to_checksum(&self, sum: &mut crc32fast::Hasher) {
-        if let Content::Instances(instances) = &self.content {
-            instances.add_to_checksum(sum);
+        match &self.content {
+            Content::Surface { .. } => {}
+            Content::Instances(instances) => instances.add_to_checksum(sum),
+            Content::Made { model } => sum.update(&model.to_le_bytes()),
         }
     }
 
-    /// How many triangles it is made of, each as often as it is placed.
+    /// How many triangles are stored for it, each as often as it is placed.
     fn triangles(&self) -> u64 {
         match &self.content {
             Content::Surface { octree, .. } => octree.triangle_count() as u64,
             Content::Instances(instances) => instances.triangles,
+            Content::Made { .. } => 0,
         }
     }
 
@@ -197,7 +210,7 @@ impl InstanceOctree {
         self.count
     }
 
-    /// An instance as it is kept; the number is that of an [`InstancePath`]. None if there is none of this number.
+    /// An instance as it is kept; the number is that of an [`InstancePath`](super::InstancePath). None if there is none of this number.
     pub fn instance(&self, number: u64) -> Option<Instance> {
         match &self.known {
             KnownInstances::Stored(stored) => stored.instance(&self.extents, u32::try_from(number).ok()?),
@@ -213,23 +226,6 @@ impl InstanceOctree {
             KnownInstances::Parts(_) | KnownInstances::Cells(_) => 0,
         };
         (0..u64::from(places)).filter_map(|number| Some((number, self.instance(number)?)))
-    }
-
-    /// How the surface at the end of a path of this octree is placed.
-    pub fn placed(&self, path: &InstancePath) -> PlacedSurface {
-        let mut octree = self;
-        let mut placed = PlacedSurface { placement: DAffine3::IDENTITY, variation: 0, largest: 0.0 };
-        for number in path.numbers() {
-            let Some(Instance { prototype, variation, placement }) = octree.instance(*number) else { break };
-            let outer = placed.placement;
-            placed.largest += longest(&outer.matrix3) * placement.translation.length();
-            placed.placement = outer * placement;
-            if let Content::Instances(inner) = &octree.prototypes[usize::from(prototype)].content {
-                octree = inner;
-            }
-            placed.variation = placed.variation.wrapping_add(variation);
-        }
-        placed
     }
 
     /// Adds all placements to a checksum, those within prototypes too: as they are kept, or how they come to be.

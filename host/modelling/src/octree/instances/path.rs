@@ -1,6 +1,7 @@
 //! What a ray hits of nested instances, and by which of them.
 
 use super::error::MOST_LEVELS;
+use super::placement::{Instance, longest};
 use crate::numeric::ray::Hit;
 use glam::DAffine3;
 
@@ -16,28 +17,13 @@ impl InstancePath {
     pub fn numbers(&self) -> &[u64] {
         &self.numbers[..usize::from(self.levels)]
     }
-}
 
-/// An instance that a ray has been taken into, and those around it: a path that is not written down before it is asked
-/// for.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Descent<'d> {
-    pub(super) number: u64,
-    pub(super) outer: Option<&'d Descent<'d>>,
-}
-
-impl Descent<'_> {
-    /// The path to here; none is longer than [`MOST_LEVELS`].
-    pub(super) fn path(&self) -> InstancePath {
-        let mut path = match self.outer {
-            Some(outer) => outer.path(),
-            None => InstancePath::default(),
-        };
-        if let Some(place) = path.numbers.get_mut(usize::from(path.levels)) {
-            *place = self.number;
-            path.levels += 1;
+    /// Goes on to an instance within; not past [`MOST_LEVELS`].
+    pub(super) fn push(&mut self, number: u64) {
+        if let Some(place) = self.numbers.get_mut(usize::from(self.levels)) {
+            *place = number;
+            self.levels += 1;
         }
-        path
     }
 }
 
@@ -60,4 +46,20 @@ pub struct PlacedSurface {
     /// The largest distance that placing it adds on the way, in coordinates of that octree: of this, times the precision
     /// of numbers, points are rounded.
     pub largest: f64,
+}
+
+impl PlacedSurface {
+    /// What is not placed by any instance.
+    pub(super) const UNPLACED: PlacedSurface =
+        PlacedSurface { placement: DAffine3::IDENTITY, variation: 0, largest: 0.0 };
+
+    /// This, for what an instance within it places.
+    pub(super) fn then(&self, instance: &Instance) -> PlacedSurface {
+        let PlacedSurface { placement: outer, variation, largest } = *self;
+        PlacedSurface {
+            placement: outer * instance.placement,
+            variation: variation.wrapping_add(instance.variation),
+            largest: largest + longest(&outer.matrix3) * instance.placement.translation.length(),
+        }
+    }
 }

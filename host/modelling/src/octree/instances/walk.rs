@@ -8,15 +8,51 @@ use super::super::visit::{LeafVisitor, visit_leaves};
 use super::super::{Hit, Octree, Ray};
 use super::blocks::SphereTest;
 use super::cells::{self, CellPlace, Cells};
+use super::descent::Descent;
+use super::made::{NothingMade, PrototypeMaker};
 use super::octree::{Content, InstanceOctree, KnownInstances};
 use super::parts::PartsOnDemand;
-use super::path::{Descent, InstanceHit};
+use super::path::{InstanceHit, InstancePath, PlacedSurface};
 use super::placement::Instance;
 use super::stored::{Extents, StoredInstances};
 use glam::DVec2;
 use std::ops::Range;
 
+/// An octree of instances, and who makes those of its prototypes that are made on demand.
+#[derive(Clone, Copy)]
+pub struct InstanceWalk<'w> {
+    octree: &'w InstanceOctree,
+    maker: &'w dyn PrototypeMaker,
+}
+
 impl InstanceOctree {
+    /// This, with who makes those of its prototypes that are made on demand.
+    pub fn made_by<'w>(&'w self, maker: &'w dyn PrototypeMaker) -> InstanceWalk<'w> {
+        InstanceWalk { octree: self, maker }
+    }
+
+    /// [`InstanceWalk::closest`], where all prototypes are stored.
+    pub fn closest(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<InstanceHit> {
+        self.made_by(&NothingMade).closest(ray, t_min, t_max)
+    }
+
+    /// [`InstanceWalk::occluded`], where all prototypes are stored.
+    pub fn occluded(&self, ray: &Ray, t_min: f64, t_max: f64) -> bool {
+        self.made_by(&NothingMade).occluded(ray, t_min, t_max)
+    }
+
+    /// [`InstanceWalk::each_hit`], where all prototypes are stored.
+    pub fn each_hit(&self, ray: &Ray, t_min: f64, t_max: f64, enough: impl FnMut(InstanceHit) -> bool) -> bool {
+        self.made_by(&NothingMade).each_hit(ray, t_min, t_max, enough)
+    }
+
+    /// [`InstanceWalk::placed`], where all prototypes are stored.
+    pub fn placed(&self, path: &InstancePath) -> PlacedSurface {
+        self.made_by(&NothingMade).placed(path)
+    }
+}
+
+impl<'w> InstanceWalk<'w> {
     /// Finds the nearest hit with `t_min < t < t_max`, both exclusive, as [`Octree::closest`] does.
     ///
     /// Of several hits with the same `t`, one counts, always the same.
@@ -36,14 +72,35 @@ impl InstanceOctree {
         self.ask(ray, None, &mut Each { limits: [t_min, t_max], enough })
     }
 
+    /// How the surface at the end of a path of this octree is placed.
+    pub fn placed(&self, path: &InstancePath) -> PlacedSurface {
+        self.placed_within(path.numbers(), PlacedSurface::UNPLACED)
+    }
+
+    /// How the surface at the end of a path is placed by what is placed itself.
+    fn placed_within(&self, numbers: &[u64], outer: PlacedSurface) -> PlacedSurface {
+        let Some((number, inner)) = numbers.split_first() else { return outer };
+        let Some(instance) = self.octree.instance(*number) else { return outer };
+        let mut placed = outer.then(&instance);
+        match &self.octree.prototypes[usize::from(instance.prototype)].content {
+            Content::Surface { .. } => {}
+            Content::Instances(octree) => placed = InstanceWalk { octree, ..*self }.placed_within(inner, placed),
+            Content::Made { model } => self.maker.give(*model, &placed.clone(), &mut |octree| {
+                placed = octree.made_by(self.maker).placed_within(inner, placed);
+            }),
+        }
+        placed
+    }
+
     /// Asks all surfaces along a ray, about the nearer ones first, until the answer is known; says whether it is.
     fn ask(&self, ray: &Ray, outer: Option<&Descent<'_>>, query: &mut impl Query) -> bool {
-        match &self.known {
+        let walk = *self;
+        match &self.octree.known {
             KnownInstances::Stored(stored) => {
-                ask_stored(stored, &self.extents, ray, &Placed { octree: self, stored, base: 0, outer }, query)
+                ask_stored(stored, &self.octree.extents, ray, &Placed { walk, stored, base: 0, outer }, query)
             }
             KnownInstances::Parts(parts) => {
-                ask_stored(&parts.above, &parts.extents, ray, &Parts { octree: self, parts, outer }, query)
+                ask_stored(&parts.above, &parts.extents, ray, &Parts { walk, parts, outer }, query)
             }
             KnownInstances::Cells(cells) => self.ask_cells(cells, ray, outer, query),
         }
@@ -54,10 +111,23 @@ impl InstanceOctree {
     /// - `ray`: in its coordinates.
     #[inline(always)]
     fn ask_prototype(&self, prototype: usize, ray: &Ray, descent: &Descent<'_>, query: &mut impl Query) -> bool {
-        match &self.prototypes[prototype].content {
+        match &self.octree.prototypes[prototype].content {
             Content::Surface { octree, first } => query.ask(octree, *first, ray, descent),
-            Content::Instances(inner) => inner.ask(ray, Some(descent), query),
+            Content::Instances(octree) => InstanceWalk { octree, ..*self }.ask(ray, Some(descent), query),
+            Content::Made { model } => self.ask_made(*model, prototype, ray, descent, query),
         }
+    }
+
+    /// Asks a prototype that is made on demand, unless the ray passes by its box.
+    fn ask_made(&self, model: u32, prototype: usize, ray: &Ray, descent: &Descent<'_>, query: &mut impl Query) -> bool {
+        if ray.within(&self.octree.prototypes[prototype].bounds(), query.limits()).is_none() {
+            return false;
+        }
+        let mut is_known = false;
+        self.maker.give(model, &descent.placed(), &mut |octree| {
+            is_known = octree.made_by(self.maker).ask(ray, Some(descent), query);
+        });
+        is_known
     }
 
     /// Asks what is placed in the cells along a ray.
@@ -87,7 +157,7 @@ impl InstanceOctree {
                     let Some(Instance { prototype, placement, .. }) = cells.source.instance(cell, number) else {
                         continue;
                     };
-                    let Some(sphere) = self.extents.spheres.get(usize::from(prototype)) else { continue };
+                    let Some(sphere) = self.octree.extents.spheres.get(usize::from(prototype)) else { continue };
                     let scale = placement.matrix3.x_axis.length_squared();
                     let center = placement.transform_point3(sphere.center);
                     let radius = f64::from(sphere.radius) * scale.sqrt() * (1.0 + ROUNDING) + margin;
@@ -106,7 +176,7 @@ impl InstanceOctree {
                         origin: inverse * (ray.origin - placement.translation),
                         direction: inverse * ray.direction,
                     };
-                    let descent = Descent { number: cells::number_of(cell, number), outer };
+                    let descent = Descent { octree: self.octree, number: cells::number_of(cell, number), outer };
                     if self.ask_prototype(usize::from(prototype), &own, &descent, query) {
                         return true;
                     }
@@ -128,7 +198,7 @@ trait Below {
 
 /// Prototypes that are placed.
 struct Placed<'p> {
-    octree: &'p InstanceOctree,
+    walk: InstanceWalk<'p>,
     stored: &'p StoredInstances,
     /// What the numbers of instances begin with.
     base: u64,
@@ -140,30 +210,31 @@ impl Below for Placed<'_> {
     fn ask(&self, block: usize, lane: usize, ray: &Ray, query: &mut impl Query) -> bool {
         let StoredInstances { placements, positions, .. } = self.stored;
         let Some(prototype) = placements.prototype(block, lane).map(usize::from) else { return false };
-        let ray = placements.own_ray(positions, block, lane, self.octree.extents.spheres[prototype].center, ray);
-        let descent = Descent { number: self.base | (block * LANES + lane) as u64, outer: self.outer };
-        self.octree.ask_prototype(prototype, &ray, &descent, query)
+        let ray = placements.own_ray(positions, block, lane, self.walk.octree.extents.spheres[prototype].center, ray);
+        let number = self.base | (block * LANES + lane) as u64;
+        let descent = Descent { octree: self.walk.octree, number, outer: self.outer };
+        self.walk.ask_prototype(prototype, &ray, &descent, query)
     }
 }
 
 /// Parts of instances.
 struct Parts<'p> {
-    octree: &'p InstanceOctree,
+    walk: InstanceWalk<'p>,
     parts: &'p PartsOnDemand,
     outer: Option<&'p Descent<'p>>,
 }
 
 impl Below for Parts<'_> {
     fn ask(&self, block: usize, lane: usize, ray: &Ray, query: &mut impl Query) -> bool {
-        let Parts { octree, parts, outer } = *self;
+        let Parts { walk, parts, outer } = *self;
         let Some(part) = parts.above.placements.prototype(block, lane) else { return false };
         // The sphere about a part is often far larger than its box.
         if ray.within(&parts.extents.boxes[usize::from(part)], query.limits()).is_none() {
             return false;
         }
-        let stored = parts.part(&octree.extents, usize::from(part));
+        let stored = parts.part(&walk.octree.extents, usize::from(part));
         let base = ((block * LANES + lane) as u64) << 32;
-        ask_stored(stored, &octree.extents, ray, &Placed { octree, stored, base, outer }, query)
+        ask_stored(stored, &walk.octree.extents, ray, &Placed { walk, stored, base, outer }, query)
     }
 }
 

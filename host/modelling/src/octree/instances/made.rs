@@ -1,0 +1,23 @@
+//! Prototypes that are made when rays come to them.
+
+use super::octree::InstanceOctree;
+use super::path::PlacedSurface;
+
+/// Makes those prototypes of instances that are not stored: [`Prototype::made`](super::Prototype::made).
+///
+/// What it gives for a prototype and a placement is the same whenever it is asked, and for all rays.
+pub trait PrototypeMaker: Sync {
+    /// Gives what a prototype is made of, in coordinates of the prototype and within the box that was told; nothing if it
+    /// cannot be made.
+    ///
+    /// - `model`: number of the prototype among those that are made.
+    /// - `placed`: how it is placed; it may be made as finely as it is seen there.
+    fn give(&self, model: u32, placed: &PlacedSurface, to: &mut dyn FnMut(&InstanceOctree));
+}
+
+/// Makes nothing, for instances whose prototypes are all stored.
+pub(super) struct NothingMade;
+
+impl PrototypeMaker for NothingMade {
+    fn give(&self, _: u32, _: &PlacedSurface, _: &mut dyn FnMut(&InstanceOctree)) {}
+}
