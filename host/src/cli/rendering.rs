@@ -49,6 +49,9 @@ impl ReadyScene {
         let meter = Meter::new(&scene.settings, &display, arguments.threads);
         arguments.set(&mut scene.settings);
         let prepared = Prepared::new(&scene)?;
+        if let Some(most) = arguments.detail_memory {
+            prepared.limit_details(most);
+        }
         warn_of_short_scatters(&prepared);
         let order = arguments.order(&prepared.settings, seconds)?;
         Ok(ReadyScene { scene, prepared, order, display, meter })
@@ -181,6 +184,7 @@ impl PictureWriter<'_> {
             "tone": self.display.tone.word(),
             "triangles": self.prepared.triangles.len(),
             "instances": self.prepared.instance_costs(),
+            "details": self.prepared.detail_costs(),
             "render_seconds": rendering.seconds,
             "threads": rendering.threads,
             "rays": rendering.rays,

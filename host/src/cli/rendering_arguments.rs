@@ -32,6 +32,10 @@ pub(super) struct RenderingArguments {
     /// Threads [default: one for each core]
     #[arg(long, value_name = "COUNT", value_parser = super::values::threads)]
     pub(super) threads: Option<NonZeroUsize>,
+    /// Most memory for what procedural models make, such as 64M; half of what the command may take if not given. What does
+    /// not fit is made again; the picture is the same
+    #[arg(long, value_name = "SIZE", value_parser = super::values::any_bytes)]
+    pub(super) detail_memory: Option<u64>,
     /// Seed of the sample positions, instead of that of the scene
     #[arg(long, value_name = "NUMBER")]
     seed: Option<u64>,

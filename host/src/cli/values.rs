@@ -29,8 +29,17 @@ pub(super) fn vectors(text: &str) -> Result<usize, String> {
     count.ok_or_else(|| format!("give 1 to {MAX_VECTORS}"))
 }
 
-/// Reads a number of bytes.
+/// Reads a number of bytes that a command may take.
 pub(super) fn bytes(text: &str) -> Result<u64, String> {
+    let bytes = any_bytes(text)?;
+    match bytes < LEAST_MEMORY {
+        true => Err(format!("give at least {}, such as 512M", memory::readable(LEAST_MEMORY))),
+        false => Ok(bytes),
+    }
+}
+
+/// Reads a number of bytes.
+pub(super) fn any_bytes(text: &str) -> Result<u64, String> {
     let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
     let unit = match text[digits.len()..].to_ascii_uppercase().as_str() {
         "" | "B" => 0,
@@ -41,10 +50,8 @@ pub(super) fn bytes(text: &str) -> Result<u64, String> {
         _ => return Err("give a number of bytes with K, M, G or T behind it, such as 512M".into()),
     };
     let bytes = digits.parse().ok().map(|number: f64| number * 2f64.powi(unit));
-    let bytes = bytes.filter(|bytes| (LEAST_MEMORY as f64..=u64::MAX as f64).contains(bytes));
-    bytes
-        .map(|bytes| bytes as u64)
-        .ok_or_else(|| format!("give at least {}, such as 512M", memory::readable(LEAST_MEMORY)))
+    let bytes = bytes.filter(|bytes| (0.0..=u64::MAX as f64).contains(bytes));
+    bytes.map(|bytes| bytes as u64).ok_or_else(|| "give a number of bytes, such as 512M".into())
 }
 
 /// Reads a time of a scene, seconds.

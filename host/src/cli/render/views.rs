@@ -12,7 +12,7 @@ use crate::picture::Picture;
 use crate::render::radiosity::RadiosityReport;
 use crate::render::ray_tracing::Checkpoints;
 use crate::render::{Film, Rendering};
-use crate::scene::View;
+use crate::scene::{DetailCosts, View};
 use crate::stages::StageTotal;
 use files::Destination;
 use serde_json::Value;
@@ -160,6 +160,10 @@ impl ViewBatch<'_> {
             let (each, memory) = (bytes as f64 / stored.max(1) as f64, memory::readable(bytes as u64));
             let stored = if stored < instances { format!(", {stored} of them stored") } else { String::new() };
             say!("{instances} instances{stored} in {memory}, {each:.1} bytes each; they place {triangles} triangles");
+        }
+        if let Some(DetailCosts { made, kept, bytes, most_bytes }) = self.writer.prepared.detail_costs() {
+            let [bytes, most] = [bytes, most_bytes].map(memory::readable);
+            say!("procedural models made {made} times; {kept} of these are kept, in {bytes} of at most {most}");
         }
         if let Some(balance) = &rendering.flux_balance {
             say!("{balance}");

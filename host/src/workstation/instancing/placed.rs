@@ -119,7 +119,7 @@ impl<'a> PlacedGroup<'a> {
                 _ => {
                     let object = object.within(&whole.material);
                     let points = form_of(&object).map_err(|error| failed(&object, &error))?;
-                    let made_of = object.own_material().unwrap_or_default();
+                    let made_of = object.materials(&[]).0.into_iter().next().unwrap_or_default();
                     objects.push(object);
                     (points, made_of)
                 }

@@ -28,6 +28,9 @@ pub enum RenderError {
         /// The object that has them.
         object: String,
     },
+    /// A procedural model cannot be made.
+    #[error("{0}")]
+    Model(String),
     /// The view flattens space to a line or a point, or is not finite.
     #[error("the view has no directions for the pixels: its matrix is singular or not finite")]
     View,

@@ -7,7 +7,8 @@ use super::shape_mesh::{ShapeMesh, flat_normals};
 use super::stretch::largest_stretch;
 use crate::memory;
 use crate::octree::{
-    Instance, InstanceError, InstanceOctree, MOST_INSTANCES, MOST_LEVELS, MOST_PROTOTYPES, PlacementForm, Prototype,
+    Instance, InstanceError, InstanceOctree, MOST_INSTANCES, MOST_LEVELS, MOST_MADE_LEVELS, MOST_PROTOTYPES,
+    PlacementForm, Prototype,
 };
 use crate::surface::Tolerance;
 use glam::{DAffine3, DMat4, DVec3};
@@ -174,6 +175,7 @@ impl Instances {
     pub fn levels(&self) -> usize {
         let of = |object: &Object| match &object.shape {
             Shape::Instances(inner) => inner.levels(),
+            Shape::Procedural(_) => MOST_MADE_LEVELS,
             _ => 0,
         };
         1 + self.prototypes.iter().flatten().map(of).max().unwrap_or(0)

@@ -35,7 +35,7 @@ impl Contents {
     }
 
     /// The octree over the static objects that are included; none if they have no triangles.
-    fn still(&self, kept: &AccelerationKey) -> Result<Option<SceneOctree>, OctreeError> {
+    pub(super) fn still(&self, kept: &AccelerationKey) -> Result<Option<SceneOctree>, OctreeError> {
         let stands = |object: usize| {
             let PreparedObject { motion, placed_by, .. } = &self.objects[object];
             kept.objects[object] && placed_by.is_none() && !(kept.motions && motion.is_some())

@@ -1,6 +1,6 @@
 //! A scene as meshes that are stored once, and the places of those that are instances.
 
-use super::object::{Instances, Object, Shape};
+use super::object::{Instances, Object, Procedural, Shape};
 use super::placing::Whole;
 use super::triangles::append;
 use super::{GeometrySettings, Scene, SceneError, ShapeMesh};
@@ -8,9 +8,19 @@ use crate::memory;
 use crate::mesh::{Grouped, MeshPlace, PlacedMeshes, RepeatedMesh};
 use glam::{DAffine3, DMat4};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 /// Bytes of a place while places are put together.
 const PLACE_BYTES: u64 = 2 * size_of::<MeshPlace>() as u64;
+
+/// Where a group of objects stands.
+#[derive(Clone, Copy)]
+struct GroupPlace {
+    /// To coordinates of the scene.
+    placement: DAffine3,
+    /// By which it differs from others of its kind.
+    variation: u16,
+}
 
 /// Meshes in the making.
 struct Placer<'s> {
@@ -49,35 +59,39 @@ impl Placer<'_> {
     /// Adds an object at places, or where it stands in the scene.
     ///
     /// - `name`: what it is called.
-    /// - `outer`: from coordinates of the group of objects that it is part of to those of the scene.
+    /// - `outer`: the places of the group of objects that it is part of.
     fn add(
         &mut self,
         name: &str,
         object: &Object,
         whole: &Whole,
-        outer: Option<&[DAffine3]>,
+        outer: Option<&[GroupPlace]>,
     ) -> Result<(), SceneError> {
         let own = DAffine3::from_mat4(object.transform);
-        let standing = [DAffine3::IDENTITY];
+        let standing = [GroupPlace { placement: DAffine3::IDENTITY, variation: 0 }];
         let groups = outer.unwrap_or(&standing);
         if let Shape::Instances(instances) = &object.shape {
             return self.instances(name, instances, &whole.within(object), &own, groups);
         }
+        if let Shape::Procedural(model) = &object.shape {
+            return self.models(name, model, &whole.within(object), &own, groups);
+        }
+        let placements = || groups.iter().map(|group| group.placement);
         let object = Object { name: name.to_owned(), ..object.within(&whole.material).into_owned() };
         let Some(mut file) = object.placed_meshes()? else {
             let (object, made) = whole.made(&object, self.geometry)?;
             let mut grouped = Grouped::default();
             append(&mut grouped, &object, made)?;
-            return self.repeat(&object, RepeatedMesh { name: name.to_owned(), grouped }, groups.iter().copied());
+            return self.repeat(&object, RepeatedMesh { name: name.to_owned(), grouped }, placements());
         };
         let plain = |mesh| ShapeMesh { mesh, ..ShapeMesh::default() };
         let alone = plain(std::mem::take(&mut file.alone.mesh));
         match outer {
             None => append(&mut self.all.alone, &object, alone)?,
-            Some(groups) => {
+            Some(_) => {
                 let mut grouped = Grouped::default();
                 append(&mut grouped, &object, alone)?;
-                self.repeat(&object, RepeatedMesh { name: name.to_owned(), grouped }, groups.iter().copied())?;
+                self.repeat(&object, RepeatedMesh { name: name.to_owned(), grouped }, placements())?;
             }
         }
         let mut places: Vec<Vec<DAffine3>> = vec![Vec::new(); file.repeated.len()];
@@ -90,7 +104,7 @@ impl Placer<'_> {
             let object = Object { name: name.clone(), transform: DMat4::IDENTITY, ..object.clone() };
             let mut own = Grouped::default();
             append(&mut own, &object, plain(grouped.mesh))?;
-            let all = groups.iter().flat_map(|outer| places.iter().map(move |place| *outer * *place));
+            let all = placements().flat_map(|outer| places.iter().map(move |place| outer * *place));
             self.repeat(&object, RepeatedMesh { name, grouped: own }, all)?;
         }
         Ok(())
@@ -103,16 +117,18 @@ impl Placer<'_> {
         instances: &Instances,
         whole: &Whole,
         own: &DAffine3,
-        groups: &[DAffine3],
+        groups: &[GroupPlace],
     ) -> Result<(), SceneError> {
         let places = whole.places(name, instances, self.geometry)?;
         let count = places.count();
         self.reserve(name, count, groups.len())?;
-        let mut all: Vec<Vec<DAffine3>> = vec![Vec::new(); instances.prototypes.len()];
+        let mut all: Vec<Vec<GroupPlace>> = vec![Vec::new(); instances.prototypes.len()];
         for outer in groups {
-            let outer = *outer * *own;
+            let to_scene = outer.placement * *own;
             for instance in places.all() {
-                all[usize::from(instance.prototype)].push(outer * instance.placement);
+                let placement = to_scene * instance.placement;
+                let variation = outer.variation.wrapping_add(instance.variation);
+                all[usize::from(instance.prototype)].push(GroupPlace { placement, variation });
             }
         }
         drop(places);
@@ -120,6 +136,30 @@ impl Placer<'_> {
         for (group, places) in instances.prototypes.iter().zip(&all) {
             for object in group {
                 self.add(&format!("{name}/{}", object.name), object, &placed, Some(places))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds what a model makes: each of its kinds once, at the places that have it.
+    fn models(
+        &mut self,
+        name: &str,
+        model: &Procedural,
+        whole: &Whole,
+        own: &DAffine3,
+        groups: &[GroupPlace],
+    ) -> Result<(), SceneError> {
+        let mut by_seed: BTreeMap<u32, Vec<GroupPlace>> = BTreeMap::new();
+        for group in groups {
+            let placement = group.placement * *own;
+            by_seed.entry(model.seed(group.variation)).or_default().push(GroupPlace { placement, ..*group });
+        }
+        let detail = model.detail_within(whole.tolerance(self.geometry));
+        for (seed, places) in by_seed {
+            let failed = |problem: String| SceneError::Object { object: name.to_owned(), problem };
+            for object in model.objects(seed, detail).map_err(failed)? {
+                self.add(&format!("{name}/{seed}/{}", object.name), &object, whole, Some(&places))?;
             }
         }
         Ok(())

@@ -2,11 +2,13 @@
 
 use super::acceleration::PlacedInstances;
 use super::instances::{Places, ShortScatter};
-use super::object::{Instances, Object, Shape};
+use super::object::{Instances, Object, Procedural, Shape};
+use super::placed_models::PlacedModel;
 use super::prepared::{Contents, PreparedObject};
+use super::procedural::geometry_of;
 use super::shape_mesh::ShapeMesh;
 use super::stretch::largest_stretch;
-use super::{GeometrySettings, Motion, SceneError, Settings};
+use super::{DetailView, GeometrySettings, ImageSettings, Motion, SceneError, Settings};
 use crate::illumination::Material;
 use crate::memory;
 use crate::mesh::{MeshPlace, PlacedMeshes, RepeatedMesh};
@@ -37,6 +39,8 @@ pub(super) struct Whole {
 enum Copied {
     Object(Box<Object>, ShapeMesh),
     Instances(DAffine3, CopiedInstances),
+    /// A procedural model, made for each copy; the object has its place and the material of what has none.
+    Model(Box<Object>, Procedural),
 }
 
 /// Instances as they are copied.
@@ -67,9 +71,14 @@ impl Contents {
         let transform = DAffine3::from_mat4(object.transform);
         if settings.copies_instances() {
             let copied = CopiedInstances::new(&object.name, instances, &whole, geometry)?;
-            self.objects[index as usize].copies = copied.counts()[0];
             self.short_scatters.extend(copied.short_scatters());
-            return copied.add_to(self, &object.name, transform, self.objects[index as usize].motion, geometry);
+            let motion = self.objects[index as usize].motion;
+            let ImageSettings { width, height, .. } = settings.image;
+            let is_framed = self.camera.from.is_finite();
+            let view = is_framed.then(|| DetailView::new(&self.view(), width, height));
+            self.objects[index as usize].copies =
+                copied.add_to(self, &object.name, transform, motion, geometry, view.as_ref())?;
+            return Ok(());
         }
         let octree = self.instance_octree(&object.name, instances, &whole, geometry)?;
         self.stand(index, octree, transform, geometry)
@@ -183,7 +192,8 @@ impl Contents {
     ) -> Result<Prototype, SceneError> {
         let first = self.triangles.len() as u32;
         let mut files = Vec::new();
-        for object in group.iter().filter(|object| !matches!(object.shape, Shape::Instances(_))) {
+        let stands = |object: &&Object| !matches!(object.shape, Shape::Instances(_) | Shape::Procedural(_));
+        for object in group.iter().filter(stands) {
             let (object, made) = match object.within(&whole.material).placed_meshes()? {
                 Some(mut file) => {
                     let object = object.within(&whole.material).into_owned();
@@ -208,9 +218,15 @@ impl Contents {
             parts.push((Prototype::instances(octree), DAffine3::from_mat4(object.transform)));
         }
         for object in group {
-            let Shape::Instances(inner) = &object.shape else { continue };
-            let octree = self.instance_octree(&object.name, inner, &whole.within(object), geometry)?;
-            parts.push((Prototype::instances(octree), DAffine3::from_mat4(object.transform)));
+            let part = match &object.shape {
+                Shape::Instances(inner) => {
+                    let octree = self.instance_octree(&object.name, inner, &whole.within(object), geometry)?;
+                    Prototype::instances(octree)
+                }
+                Shape::Procedural(model) => self.model(object, model, whole, geometry)?,
+                _ => continue,
+            };
+            parts.push((part, DAffine3::from_mat4(object.transform)));
         }
         if let [(alone, placement)] = &parts[..]
             && *placement == DAffine3::IDENTITY
@@ -223,6 +239,29 @@ impl Contents {
             |number: usize| Instance { prototype: number as u16, variation: 0, placement: placements[number] };
         let together = InstanceOctree::new(prototypes, PlacementForm::Exact, placements.len(), instance);
         Ok(Prototype::instances(Arc::new(together.map_err(|error| failed(name, error))?)))
+    }
+}
+
+impl Contents {
+    /// A procedural model as a prototype; an object stands for all that it makes.
+    fn model(
+        &mut self,
+        object: &Object,
+        model: &Procedural,
+        whole: &Whole,
+        geometry: &GeometrySettings,
+    ) -> Result<Prototype, SceneError> {
+        let object = object.within(&whole.material);
+        let made = model.pattern_mesh().map_err(|source| object.failed(source))?;
+        let added = self.add(&object, &made, None, geometry)?;
+        check_emission(added)?;
+        added.placed_by = Some(whole.object);
+        let materials = added.materials.clone();
+        let number = self.models.len() as u32;
+        let last = self.objects.len() as u32 - 1;
+        let whole = object.material.clone();
+        self.models.push(Arc::new(PlacedModel { model: model.clone(), whole, object: last, materials }));
+        Ok(Prototype::made(number, model.bounds()))
     }
 }
 
@@ -240,7 +279,7 @@ impl Whole {
     }
 
     /// The tolerance of the scene, in coordinates of what is placed.
-    fn tolerance(&self, geometry: &GeometrySettings) -> Option<f64> {
+    pub(super) fn tolerance(&self, geometry: &GeometrySettings) -> Option<f64> {
         geometry.tolerance.map(|tolerance| tolerance / self.stretch)
     }
 
@@ -276,6 +315,9 @@ impl CopiedInstances {
                 let inner = CopiedInstances::new(&object.name, inner, &placed.within(object), geometry)?;
                 Ok(Copied::Instances(DAffine3::from_mat4(object.transform), inner))
             }
+            Shape::Procedural(model) => {
+                Ok(Copied::Model(Box::new(object.within(&placed.material).into_owned()), model.clone()))
+            }
             _ => {
                 let (object, made) = placed.made(object, geometry)?;
                 Ok(Copied::Object(Box::new(object), made))
@@ -295,7 +337,7 @@ impl CopiedInstances {
     /// Those that did not all find room, here and in what is copied.
     fn short_scatters(&self) -> Vec<ShortScatter> {
         let of = |copied: &Copied| match copied {
-            Copied::Object(..) => Vec::new(),
+            Copied::Object(..) | Copied::Model(..) => Vec::new(),
             Copied::Instances(_, inner) => inner.short_scatters(),
         };
         self.short.iter().cloned().chain(self.prototypes.iter().flatten().flat_map(of)).collect()
@@ -306,6 +348,8 @@ impl CopiedInstances {
         let of = |copied: &Copied| match copied {
             Copied::Object(_, made) => [1, made.mesh.triangles.len() as u64],
             Copied::Instances(_, inner) => inner.counts(),
+            // It is counted when it is made.
+            Copied::Model(..) => [0, 0],
         };
         let sum = |[a, b]: [u64; 2], [c, d]: [u64; 2]| [a.saturating_add(c), b.saturating_add(d)];
         let groups: Vec<[u64; 2]> =
@@ -314,7 +358,7 @@ impl CopiedInstances {
         self.placements.iter().map(group).fold([0; 2], sum)
     }
 
-    /// Adds the copies as objects of the scene.
+    /// Adds the copies as objects of the scene, and tells how many they are.
     fn add_to(
         mut self,
         contents: &mut Contents,
@@ -322,24 +366,31 @@ impl CopiedInstances {
         transform: DAffine3,
         motion: Option<Motion>,
         geometry: &GeometrySettings,
-    ) -> Result<(), SceneError> {
+        view: Option<&DetailView>,
+    ) -> Result<u64, SceneError> {
         let [objects, triangles] = self.counts();
         let bytes = objects.saturating_mul(COPY_BYTES).saturating_add(triangles.saturating_mul(TRIANGLE_BYTES));
         memory::reserve(bytes, || format!("copying instances as {objects} objects of {triangles} triangles"))
             .map_err(|error| failed(name, error))?;
+        let mut copies = 0;
         let mut add = |object: &Object, made: &ShapeMesh, variation: u16| {
+            copies += 1;
             let added = contents.add_standing(object, made, motion, geometry)?;
             added.variation = variation;
             check_emission(added)
         };
-        self.each(transform, 0, &mut add)
+        self.each(transform, 0, view, &mut add)?;
+        Ok(copies)
     }
 
     /// Gives all copies, placed.
+    ///
+    /// - `view`: for which models are made, if there is one.
     fn each(
         &mut self,
         to_scene: DAffine3,
         variation: u16,
+        view: Option<&DetailView>,
         give: &mut impl FnMut(&Object, &ShapeMesh, u16) -> Result<(), SceneError>,
     ) -> Result<(), SceneError> {
         let CopiedInstances { prototypes, placements, .. } = self;
@@ -355,13 +406,44 @@ impl CopiedInstances {
                         given?;
                     }
                     Copied::Instances(transform, inner) => {
-                        inner.each(placement * *transform, variation, give)?;
+                        inner.each(placement * *transform, variation, view, give)?;
                     }
+                    Copied::Model(object, model) => each_of_model(object, model, placement, variation, view, give)?,
                 }
             }
         }
         Ok(())
     }
+}
+
+/// Gives what a model makes for an instance, placed.
+fn each_of_model(
+    object: &Object,
+    model: &Procedural,
+    placement: DAffine3,
+    variation: u16,
+    view: Option<&DetailView>,
+    give: &mut impl FnMut(&Object, &ShapeMesh, u16) -> Result<(), SceneError>,
+) -> Result<(), SceneError> {
+    let placement = placement * DAffine3::from_mat4(object.transform);
+    let footprint = view.map_or(model.detail_within(None), |view| view.footprint(&placement, &model.bounds()));
+    let detail = model.detail_of(model.level(footprint));
+    let geometry = geometry_of(detail);
+    let seed = model.seed(variation);
+    let whole = Whole { object: 0, material: object.material.clone(), stretch: 1.0 };
+    for part in model.objects(seed, detail).map_err(|problem| failed(&object.name, problem))? {
+        let to_scene = placement * DAffine3::from_mat4(part.transform);
+        if let Shape::Instances(inner) = &part.shape {
+            let mut copied = CopiedInstances::new(&part.name, inner, &whole.within(&part), &geometry)?;
+            copied.each(to_scene, variation, view, give)?;
+            continue;
+        }
+        let (part, made) = whole.made(&part, &geometry)?;
+        let bytes = COPY_BYTES + made.mesh.triangles.len() as u64 * TRIANGLE_BYTES;
+        memory::reserve(bytes, || format!("a copy of {}", object.name)).map_err(|error| failed(&object.name, error))?;
+        give(&Object { transform: DMat4::from(to_scene), ..part }, &made, variation)?;
+    }
+    Ok(())
 }
 
 /// Refuses light sources: a scene has each of them once.

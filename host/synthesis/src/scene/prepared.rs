@@ -6,6 +6,7 @@ use super::instances::ShortScatter;
 use super::lamp_body::lamp_body;
 use super::object::{GROUND, Object, Shape};
 use super::parameters::parameters;
+use super::placed_models::{LastDetails, PlacedModel};
 use super::shape_mesh::ShapeMesh;
 use super::shared::SharedMeshes;
 use super::stretch::cofactors;
@@ -71,8 +72,12 @@ pub struct Contents {
     pub(super) instanced: Vec<Arc<InstanceOctree>>,
     /// Triangles that they place, each as often as it is.
     pub(super) placed_triangles: u64,
+    /// The procedural models that its instances place, by their numbers.
+    pub(super) models: Vec<Arc<PlacedModel>>,
     /// Its octrees, as far as they were asked for.
     pub(super) octrees: AccelerationCache,
+    /// What was made of its models, as far as it was asked for and is kept.
+    pub(super) details: LastDetails,
 }
 
 /// One object of a prepared scene.
@@ -154,7 +159,7 @@ impl Deref for Prepared {
 }
 
 impl Contents {
-    fn new(scene: &Scene) -> Result<Contents, SceneError> {
+    pub(super) fn new(scene: &Scene) -> Result<Contents, SceneError> {
         scene.check()?;
         let mut contents = Contents {
             vertices: Arc::default(),
@@ -175,7 +180,9 @@ impl Contents {
             placed: Vec::new(),
             instanced: Vec::new(),
             placed_triangles: 0,
+            models: Vec::new(),
             octrees: AccelerationCache::default(),
+            details: LastDetails::default(),
         };
         let mut shared = SharedMeshes::of(scene);
         let motions: FxHashMap<u32, Motion> = match scene.settings.geometry.shutter > 0.0 {
@@ -194,6 +201,8 @@ impl Contents {
                 (body.shape, body.light) = ("light", Some(number));
             }
         }
+        // Copies of models are made for it.
+        contents.camera = scene.camera.unwrap_or_else(|| Camera::framing(&contents.subject()));
         for (object, index) in scene.objects.iter().zip(0u32..) {
             if let Shape::Instances(instances) = &object.shape {
                 contents.add_instances(index, object, instances, &scene.settings)?;
@@ -384,8 +393,9 @@ impl Contents {
         (all.instances > 0).then_some(all)
     }
 
-    /// Adds the placements of all instances to a checksum.
+    /// Adds the placements of all instances to a checksum, and what defines models.
     pub fn add_placements_to_checksum(&self, sum: &mut crc32fast::Hasher) {
+        self.models.iter().for_each(|placed| sum.update(placed.model.definition().as_bytes()));
         self.placed.iter().for_each(|placed| placed.prototype.add_to_checksum(sum));
     }
 
@@ -393,6 +403,17 @@ impl Contents {
     /// them.
     pub fn placed(&self) -> Option<&PreparedObject> {
         self.objects.iter().find(|object| object.instances > 0)
+    }
+
+    /// Memory of its triangles and what belongs to them, bytes; without octrees.
+    pub(super) fn bytes(&self) -> u64 {
+        let triangles = size_of_val(&self.vertices[..])
+            + size_of_val(&self.triangles[..])
+            + size_of_val(&self.object_of[..])
+            + size_of_val(&self.normals[..])
+            + size_of_val(&self.parameters[..])
+            + size_of_val(&self.material_of[..]);
+        (triangles + size_of_val(&self.objects[..]) + size_of::<Contents>()) as u64
     }
 
     /// The view of the scene's own camera.

@@ -7,6 +7,7 @@ use super::{GeometrySettings, ShapeError};
 use crate::illumination::Material;
 use crate::numeric::bounds::Bounds;
 use crate::surface::Tolerance;
+use glam::DMat4;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 use std::fmt;
 use std::sync::Arc;
@@ -62,8 +63,20 @@ impl Procedural {
         self.model.definition()
     }
 
+    /// The level of detail for what a pixel spans, two to an octave; the detail of a level is no more than that.
+    pub(super) fn level(&self, footprint: f64) -> i32 {
+        // Written so that what is not a number is as fine as can be.
+        let span = footprint.max(self.finest()).min(self.bounds().diagonal());
+        (2.0 * span.log2()).floor() as i32
+    }
+
+    /// What a pixel spans at a level of detail.
+    pub(super) fn detail_of(&self, level: i32) -> f64 {
+        (0.5 * f64::from(level)).exp2()
+    }
+
     /// The smallest detail that it is asked for.
-    pub(super) fn finest(&self) -> f64 {
+    fn finest(&self) -> f64 {
         self.bounds().diagonal() * FINEST
     }
 
@@ -135,6 +148,14 @@ impl Procedural {
         let mut all = Vec::new();
         self.pattern.iter().for_each(|object| each(object, &mut all));
         together(&all, Some(self.bounds().diagonal() * PATTERN_CHORD), COARSE_ANGLE, 0)
+    }
+}
+
+impl Object {
+    /// A procedural model, where it is made.
+    pub fn procedural(name: String, model: Procedural) -> Object {
+        let shape = Shape::Procedural(model);
+        Object { name, shape, transform: DMat4::IDENTITY, material: None, tolerance: None }
     }
 }
 

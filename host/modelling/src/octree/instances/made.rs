@@ -6,7 +6,7 @@ use super::path::PlacedSurface;
 /// Makes those prototypes of instances that are not stored: [`Prototype::made`](super::Prototype::made).
 ///
 /// What it gives for a prototype and a placement is the same whenever it is asked, and for all rays.
-pub trait PrototypeMaker: Sync {
+pub trait PrototypeMaker {
     /// Gives what a prototype is made of, in coordinates of the prototype and within the box that was told; nothing if it
     /// cannot be made.
     ///

@@ -25,6 +25,8 @@ mod made;
 mod walk;
 
 #[cfg(test)]
+mod made_tests;
+#[cfg(test)]
 mod tests;
 
 pub use cells::{CellGrid, CellInstances, CellPlace};

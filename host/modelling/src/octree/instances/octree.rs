@@ -210,6 +210,21 @@ impl InstanceOctree {
         self.count
     }
 
+    /// How many times over instances are placed by instances, itself one of them.
+    pub fn levels(&self) -> usize {
+        self.levels
+    }
+
+    /// Memory of it and of all that it places, bytes, what is placed twice counted twice.
+    pub fn all_bytes(&self) -> usize {
+        let of = |prototype: &Prototype| match &prototype.content {
+            Content::Surface { octree, .. } => octree.bytes(),
+            Content::Instances(instances) => instances.all_bytes(),
+            Content::Made { .. } => 0,
+        };
+        self.costs().bytes + self.prototypes.iter().map(of).sum::<usize>()
+    }
+
     /// An instance as it is kept; the number is that of an [`InstancePath`](super::InstancePath). None if there is none of this number.
     pub fn instance(&self, number: u64) -> Option<Instance> {
         match &self.known {

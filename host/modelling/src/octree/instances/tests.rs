@@ -2,8 +2,8 @@
 
 use super::super::lanes::LANES;
 use super::super::{Octree, OctreeSettings, Ray, Walk};
+use super::descent::Descent;
 use super::octree::{Content, KnownInstances};
-use super::path::Descent;
 use super::stored::StoredInstances;
 use super::*;
 use crate::numeric::bounds::Bounds;
@@ -73,7 +73,7 @@ fn asked(octree: &InstanceOctree, ray: &Ray, outer: Option<&Descent<'_>>) -> (Op
         let inner = placements.own_ray(positions, block, lane, center, ray);
         let far = placement.transform_point3(inner.at(0.7)).distance(ray.at(0.7));
         assert!(far < 1e-9 * (ray.at(0.7).length() + placement.translation.length()), "{far}");
-        let descent = Descent { number, outer };
+        let descent = Descent { octree, number, outer };
         let path = descent.path();
         let (found, hits) = match &octree.prototypes[usize::from(prototype)].content {
             Content::Surface { octree: surface, .. } => {
@@ -85,6 +85,7 @@ fn asked(octree: &InstanceOctree, ray: &Ray, outer: Option<&Descent<'_>>) -> (Op
                 (surface.closest(&inner, 0.0, f64::INFINITY).map(|hit| InstanceHit { hit, path }), hits)
             }
             Content::Instances(below) => asked(below, &inner, Some(&descent)),
+            Content::Made { .. } => unreachable!("all are stored"),
         };
         count += hits;
         best = match (best, found) {

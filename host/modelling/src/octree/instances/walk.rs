@@ -26,29 +26,29 @@ pub struct InstanceWalk<'w> {
 }
 
 impl InstanceOctree {
-    /// This, with who makes those of its prototypes that are made on demand.
-    pub fn made_by<'w>(&'w self, maker: &'w dyn PrototypeMaker) -> InstanceWalk<'w> {
-        InstanceWalk { octree: self, maker }
+    /// This, with who makes those of its prototypes that are made on demand, if there are any.
+    pub fn made_by<'w>(&'w self, maker: Option<&'w dyn PrototypeMaker>) -> InstanceWalk<'w> {
+        InstanceWalk { octree: self, maker: maker.unwrap_or(&NothingMade) }
     }
 
     /// [`InstanceWalk::closest`], where all prototypes are stored.
     pub fn closest(&self, ray: &Ray, t_min: f64, t_max: f64) -> Option<InstanceHit> {
-        self.made_by(&NothingMade).closest(ray, t_min, t_max)
+        self.made_by(None).closest(ray, t_min, t_max)
     }
 
     /// [`InstanceWalk::occluded`], where all prototypes are stored.
     pub fn occluded(&self, ray: &Ray, t_min: f64, t_max: f64) -> bool {
-        self.made_by(&NothingMade).occluded(ray, t_min, t_max)
+        self.made_by(None).occluded(ray, t_min, t_max)
     }
 
     /// [`InstanceWalk::each_hit`], where all prototypes are stored.
     pub fn each_hit(&self, ray: &Ray, t_min: f64, t_max: f64, enough: impl FnMut(InstanceHit) -> bool) -> bool {
-        self.made_by(&NothingMade).each_hit(ray, t_min, t_max, enough)
+        self.made_by(None).each_hit(ray, t_min, t_max, enough)
     }
 
     /// [`InstanceWalk::placed`], where all prototypes are stored.
     pub fn placed(&self, path: &InstancePath) -> PlacedSurface {
-        self.made_by(&NothingMade).placed(path)
+        self.made_by(None).placed(path)
     }
 }
 
@@ -86,7 +86,7 @@ impl<'w> InstanceWalk<'w> {
             Content::Surface { .. } => {}
             Content::Instances(octree) => placed = InstanceWalk { octree, ..*self }.placed_within(inner, placed),
             Content::Made { model } => self.maker.give(*model, &placed.clone(), &mut |octree| {
-                placed = octree.made_by(self.maker).placed_within(inner, placed);
+                placed = InstanceWalk { octree, maker: self.maker }.placed_within(inner, placed);
             }),
         }
         placed
@@ -125,7 +125,7 @@ impl<'w> InstanceWalk<'w> {
         }
         let mut is_known = false;
         self.maker.give(model, &descent.placed(), &mut |octree| {
-            is_known = octree.made_by(self.maker).ask(ray, Some(descent), query);
+            is_known = InstanceWalk { octree, maker: self.maker }.ask(ray, Some(descent), query);
         });
         is_known
     }

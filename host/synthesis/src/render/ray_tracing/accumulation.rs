@@ -113,6 +113,7 @@ impl RayTracer<'_> {
                 break;
             }
         }
+        self.world.check_details()?;
         let Accumulation { film, workers, stage, adaptive, .. } = work;
         film.set_adaptive(adaptive);
         Ok(Accumulated {
@@ -226,7 +227,7 @@ impl Accumulation<'_, '_> {
         loop {
             let (counts, is_whole) = self.add_until_pause(sampler, samples);
             rays = rays + counts;
-            if is_whole || self.is_stopped() {
+            if is_whole || self.is_stopped() || sampler.world.lacks_detail() {
                 return (rays, is_whole);
             }
             self.keep();
@@ -239,7 +240,9 @@ impl Accumulation<'_, '_> {
         let Accumulation { film, order, watch, workers, stage, due, adaptive, .. } = self;
         let goal = PassGoal::new(samples, order, adaptive.as_ref());
         let is_late = || order.seconds.is_some_and(|seconds| stage.seconds() >= seconds);
-        let pauses = || watch.is_cancelled() || due.is_some_and(|due| Instant::now() >= due) || is_late();
+        let lacks_detail = || sampler.world.lacks_detail();
+        let pauses =
+            || watch.is_cancelled() || lacks_detail() || due.is_some_and(|due| Instant::now() >= due) || is_late();
         let (stage, rows_done) = (&*stage, AtomicU64::new(0));
         let row = |(y, mut row): (usize, FilmRow<'_>)| {
             let _row = part!(stage, "row", y);

@@ -59,7 +59,7 @@ impl PathNote {
     pub(super) fn element(depth: u32, prepared: &Prepared, interaction: &SurfaceInteraction<'_>) -> PathNote {
         let object = &prepared.objects[interaction.object as usize];
         let side = if interaction.element.outside { "" } else { " from inside" };
-        let material = prepared.material(interaction.triangle).word();
+        let material = object.materials[interaction.material as usize].word();
         let normal = interaction.element.normal;
         let what = format!(
             "hits {}{side}, {material} material, after {:.6}; normal {:.4} {:.4} {:.4}",

@@ -2,7 +2,7 @@
 
 use super::carrier::Carrier;
 use crate::numeric::ray::{Hit, Ray};
-use crate::scene::{Prepared, SurfacePoint};
+use crate::scene::{Contents, SurfacePoint};
 use glam::DVec3;
 
 /// Rounding errors in units of the last place of the triangle's largest coordinate that a leaving ray keeps clear of.
@@ -38,13 +38,13 @@ pub(in crate::render) struct SurfaceElement {
 impl SurfaceElement {
     /// The element at `hit`; `curved` asks for interpolated normals. None for a triangle without area.
     pub(in crate::render) fn new(
-        prepared: &Prepared,
+        contents: &Contents,
         triangle: u32,
         ray: &Ray,
         hit: &Hit,
         curved: bool,
     ) -> Option<SurfaceElement> {
-        let corners = prepared.corners(triangle);
+        let corners = contents.corners(triangle);
         let [a, b, c] = corners;
         let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
         let position = a * weights[0] + b * weights[1] + c * weights[2];
@@ -66,7 +66,7 @@ impl SurfaceElement {
             leave_curved: leave,
             clearance: distance,
         };
-        let corner_normals = if curved { prepared.corner_normals(triangle) } else { None };
+        let corner_normals = if curved { contents.corner_normals(triangle) } else { None };
         let Some(corner_normals) = corner_normals else { return Some(flat) };
         let normals = corner_normals.map(|n| {
             let n = n.as_dvec3() * side;

@@ -4,6 +4,7 @@ use super::appearance::Appearance;
 use super::camera_rays::BoundedRay;
 use super::carrier::Carrier;
 use super::element::{SurfaceElement, clearance};
+use super::found::{FoundTriangle, walk};
 use super::interaction::{RayHit, SurfaceInteraction};
 use super::light_buffer::{LightBuffer, Occluders};
 use crate::color::Channels;
@@ -12,10 +13,12 @@ use crate::illumination::optics::{Bsdf, TextureValues};
 use crate::illumination::texture::TextureFootprint;
 use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::{Hit, Ray};
-use crate::octree::{InstanceHit, Octree, SurfacePoints};
+use crate::octree::{Octree, SurfacePoints};
 use crate::plan::{Plan, Stage};
 use crate::render::RenderError;
-use crate::scene::{Acceleration, AccelerationKey, Footprint, Prepared, SceneOctree, footprint};
+use crate::scene::{
+    Acceleration, AccelerationKey, Details, Footprint, ImageSettings, Prepared, SceneOctree, footprint,
+};
 use crate::stages::stage;
 use glam::DVec3;
 use std::sync::Arc;
@@ -32,6 +35,8 @@ pub struct World<'a> {
     light_buffer: Option<LightBuffer>,
     /// Points that stand for what stands still, if rays are to hit these.
     points: Option<SurfacePoints>,
+    /// What is made of procedural models, if there are any.
+    pub(super) details: Option<Arc<Details>>,
 }
 
 impl<'a> World<'a> {
@@ -83,7 +88,7 @@ impl<'a> World<'a> {
 
     /// Materials and lights alone, for whom traces no rays.
     pub(in crate::render) fn without_rays(appearance: Appearance<'a>) -> World<'a> {
-        World { appearance, acceleration: Arc::default(), light_buffer: None, points: None }
+        World { appearance, acceleration: Arc::default(), light_buffer: None, points: None, details: None }
     }
 
     fn over(acceleration: Arc<Acceleration>, appearance: Appearance<'a>, plan: &Plan) -> World<'a> {
@@ -98,7 +103,9 @@ impl<'a> World<'a> {
             let opaque = has_open.then(|| still.triangles().map(is_opaque).collect());
             LightBuffer::new(&prepared.bounds, &appearance.sources, opaque)
         });
-        World { appearance, acceleration, light_buffer, points: None }
+        let ImageSettings { width, height, .. } = prepared.settings.image;
+        let details = prepared.details(plan.views(), width, height);
+        World { appearance, acceleration, light_buffer, points: None, details }
     }
 
     /// The scene.
@@ -114,6 +121,19 @@ impl<'a> World<'a> {
     /// The octree of what stands still, if anything does.
     pub(super) fn still(&self) -> Option<&SceneOctree> {
         self.acceleration.still.as_ref()
+    }
+
+    /// Whether a procedural model could not be made: the picture is not what was asked for.
+    pub(in crate::render) fn lacks_detail(&self) -> bool {
+        self.details.as_ref().is_some_and(|details| details.has_failed())
+    }
+
+    /// Tells what procedural model could not be made.
+    ///
+    /// # Errors
+    /// [`RenderError::Model`].
+    pub(in crate::render) fn check_details(&self) -> Result<(), RenderError> {
+        self.details.as_ref().map_or(Ok(()), |details| details.check().map_err(RenderError::Model))
     }
 
     /// How long it took to build its octrees, whether for it or for an earlier one.
@@ -139,32 +159,32 @@ impl<'a> World<'a> {
         !(self.acceleration.moving.is_empty() && self.acceleration.placed_moving.is_empty())
     }
 
-    /// The first triangle in sight at a time, and how what it belongs to was brought there.
-    fn first(&self, ray: &Ray, [t_min, t_max]: [f64; 2], time: f64) -> Option<(Hit, u32, Option<Carrier>)> {
+    /// The first triangle in sight at a time.
+    fn first(&self, ray: &Ray, [t_min, t_max]: [f64; 2], time: f64) -> Option<FoundTriangle> {
         let hit = match &self.points {
             Some(points) => points.closest(ray, t_min, t_max),
             None => self.octree().and_then(|octree| octree.closest(ray, t_min, t_max)),
         };
         let still = |own: u32| self.still().map_or(own, |still| still.triangle(own));
-        let mut first = hit.map(|hit| (hit, still(hit.triangle), None));
+        let mut first = hit.map(|hit| FoundTriangle::of_scene(hit, still(hit.triangle), None));
+        let limit = |first: &Option<FoundTriangle>| first.as_ref().map_or(t_max, |first| first.hit.t);
         for (motion, carried) in &self.acceleration.moving {
             let moved = motion.at(time);
-            let t_max = first.map_or(t_max, |(hit, ..)| hit.t);
-            if let Some(hit) = carried.octree.closest(&moved.still(ray), t_min, t_max) {
-                first = Some((hit, carried.triangle(hit.triangle), Some(Carrier::moved(&moved))));
+            if let Some(hit) = carried.octree.closest(&moved.still(ray), t_min, limit(&first)) {
+                let carrier = Some(Carrier::moved(&moved));
+                first = Some(FoundTriangle::of_scene(hit, carried.triangle(hit.triangle), carrier));
             }
         }
-        if let Some(placed) = &self.acceleration.placed {
-            let t_max = first.map_or(t_max, |(hit, ..)| hit.t);
-            if let Some(InstanceHit { hit, path }) = placed.closest(ray, t_min, t_max) {
-                first = Some((hit, hit.triangle, Some(Carrier::placed(&placed.placed(&path), None))));
-            }
+        let details = self.details.as_deref();
+        if let Some(placed) = &self.acceleration.placed
+            && let Some(hit) = walk(placed, details).closest(ray, t_min, limit(&first))
+        {
+            first = Some(FoundTriangle::placed(hit, placed, details, None));
         }
         for (motion, placed) in &self.acceleration.placed_moving {
             let moved = motion.at(time);
-            let t_max = first.map_or(t_max, |(hit, ..)| hit.t);
-            if let Some(InstanceHit { hit, path }) = placed.closest(&moved.still(ray), t_min, t_max) {
-                first = Some((hit, hit.triangle, Some(Carrier::placed(&placed.placed(&path), Some(&moved)))));
+            if let Some(hit) = walk(placed, details).closest(&moved.still(ray), t_min, limit(&first)) {
+                first = Some(FoundTriangle::placed(hit, placed, details, Some(&moved)));
             }
         }
         first
@@ -172,53 +192,57 @@ impl<'a> World<'a> {
 
     /// The first triangle that a ray hits in the middle of the time in which the shutter is open.
     pub(in crate::render) fn first_triangle(&self, ray: &Ray, t_min: f64) -> Option<(Hit, u32)> {
-        self.first(ray, [t_min, f64::INFINITY], 0.0).map(|(hit, triangle, _)| (hit, triangle))
+        self.first(ray, [t_min, f64::INFINITY], 0.0).map(|first| (first.hit, first.triangle))
     }
 
     /// The first hit of a ray at a time.
     pub(in crate::render) fn intersect(&self, bounded: &BoundedRay, wavelength_set: usize, time: f64) -> RayHit<'_> {
         let first = self.first(&bounded.ray, [bounded.t_min, bounded.t_max], time);
-        let t_max = first.map_or(bounded.t_max, |(hit, ..)| hit.t);
+        let t_max = first.as_ref().map_or(bounded.t_max, |first| first.hit.t);
         if let Some((index, light_hit)) =
             self.appearance.intersect_lights(&bounded.ray, bounded.t_min, t_max, wavelength_set)
         {
             return RayHit::Light(index, light_hit);
         }
-        let Some((hit, triangle, carrier)) = first else { return RayHit::Nothing };
-        let prepared = self.appearance.prepared;
-        let contact =
-            if carrier.is_none() && self.points.is_none() { self.contact(&bounded.ray, triangle, &hit) } else { None };
-        let (hit, triangle) = contact.unwrap_or((hit, triangle));
+        let Some(mut first) = first else { return RayHit::Nothing };
+        let scene = self.appearance.prepared;
+        if first.carrier.is_none()
+            && self.points.is_none()
+            && let Some((hit, triangle)) = self.contact(&bounded.ray, first.triangle, &first.hit)
+        {
+            first = FoundTriangle::of_scene(hit, triangle, None);
+        }
+        let (hit, triangle, carrier) = (first.hit, first.triangle, first.carrier.as_ref());
+        let contents = first.contents(scene);
         // What moves or is placed is intersected where it is kept, up to the element.
-        let ray = match (&carrier, &self.points) {
+        let ray = match (carrier, &self.points) {
             (Some(carrier), _) => carrier.own_ray(&bounded.ray),
-            (None, Some(_)) => through(&bounded.ray, &hit, prepared.corners(triangle)),
+            (None, Some(_)) => through(&bounded.ray, &hit, contents.corners(triangle)),
             (None, None) => bounded.ray,
         };
-        let Some(mut element) = SurfaceElement::new(prepared, triangle, &ray, &hit, self.appearance.curved) else {
+        let Some(mut element) = SurfaceElement::new(contents, triangle, &ray, &hit, self.appearance.curved) else {
             return RayHit::Nothing;
         };
-        let object = prepared.object_of[triangle as usize];
-        let material = prepared.material_number(triangle);
+        let [object, material] = first.object_and_material(scene);
         let bsdf = self.appearance.bsdf(object, material);
         let length = bounded.ray.direction.length();
         let distance = hit.t * length;
         let exact = if self.appearance.exact {
-            let on = prepared.on_surface(triangle, &ray, weights(&hit), element.position, element.outside);
+            let on = contents.on_surface(triangle, &ray, weights(&hit), element.position, element.outside);
             on.filter(|on| element.settle(ray.direction, hit.t - bounded.t_min, on))
         } else {
             None
         };
         let depth = distance + exact.map_or(0.0, |on| on.beyond * length);
         let mut along = bsdf.brushed_along;
-        if let Some(carrier) = &carrier {
+        if let Some(carrier) = carrier {
             element.carry(carrier);
             along = along.map(|along| carrier.vector(along));
         }
         let texture_values = if bsdf.is_textured() {
             let towards = bounded.ray.direction / length;
             let sides = footprint(element.face, towards, bounded.cone.at(distance));
-            let mut place = self.texture_place(triangle, &hit, sides, carrier.as_ref());
+            let mut place = self.texture_place(&first, sides);
             if let Some(on) = exact {
                 (place.uv, place.own) = (on.uv, on.own);
             }
@@ -243,17 +267,12 @@ impl<'a> World<'a> {
 
     /// Where a hit is, and what of the surface is looked at: as [`Contents::texture_place`](crate::scene::Contents::texture_place)
     /// tells, also of what is carried from where it is kept.
-    pub(super) fn texture_place(
-        &self,
-        triangle: u32,
-        hit: &Hit,
-        sides: Footprint,
-        carrier: Option<&Carrier>,
-    ) -> TextureFootprint {
-        let prepared = self.appearance.prepared;
-        let Some(carrier) = carrier else { return prepared.texture_place(triangle, weights(hit), sides) };
+    pub(super) fn texture_place(&self, found: &FoundTriangle, sides: Footprint) -> TextureFootprint {
+        let contents = found.contents(self.appearance.prepared);
+        let weights = weights(&found.hit);
+        let Some(carrier) = &found.carrier else { return contents.texture_place(found.triangle, weights, sides) };
         let own = sides.map(|side| carrier.own_vector(side));
-        let mut place = prepared.texture_place(triangle, weights(hit), own);
+        let mut place = contents.texture_place(found.triangle, weights, own);
         place.sides.iter_mut().zip(sides).for_each(|(side, scene)| side.scene = scene);
         place.along = place.along.map(|along| carrier.vector(along));
         place.variation = place.variation.wrapping_add(carrier.variation);

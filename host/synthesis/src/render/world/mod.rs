@@ -3,6 +3,7 @@
 
 mod appearance;
 mod carrier;
+mod found;
 mod element;
 mod camera_rays;
 mod interaction;

@@ -1,22 +1,14 @@
 //! Transmittance of shadow rays: what stops light, and what it passes straight.
 
-use super::carrier::Carrier;
+use super::found::{FoundTriangle, walk};
 use super::geometry::{World, outer_normal};
 use super::light_buffer::Occluders;
 use crate::color::Channels;
 use crate::illumination::light::LightSource;
-use crate::illumination::optics::InteriorMedium;
+use crate::illumination::optics::{Bsdf, InteriorMedium};
 use crate::numeric::ray::{Hit, Ray};
-use crate::octree::{InstanceHit, InstanceOctree, Shaft};
+use crate::octree::{InstanceOctree, Shaft};
 use crate::scene::SceneOctree;
-
-/// A hit of a surface that light passes straight.
-#[derive(Clone)]
-struct PassedHit {
-    hit: Hit,
-    /// How its instances bring it to where it is, if it is placed by any.
-    carrier: Option<Carrier>,
-}
 
 impl World<'_> {
     /// Transmittance of a shadow ray: 0 if something opaque is in between; and whether it went through polished bodies
@@ -76,24 +68,36 @@ impl World<'_> {
         t_max: f64,
         wavelength_set: usize,
     ) -> (Channels, bool) {
+        let details = self.details.as_deref();
         if !(self.appearance.has_passable || self.appearance.has_clear_shadows) {
-            let occluded = over.occluded(ray, 0.0, t_max);
+            let occluded = walk(over, details).occluded(ray, 0.0, t_max);
             return (if occluded { Channels::ZERO } else { Channels::ONE }, false);
         }
         let mut hits = Vec::new();
-        let stopped = over.each_hit(ray, 0.0, t_max, |InstanceHit { hit, path }| {
-            let is_passed = self.is_passed(hit.triangle);
+        let stopped = walk(over, details).each_hit(ray, 0.0, t_max, |hit| {
+            // What stores all that it places tells a material without the place.
+            let is_known = details.is_none();
+            if is_known && !self.is_passed(self.bsdf_of(hit.hit.triangle)) {
+                return true;
+            }
+            let found = FoundTriangle::placed(hit, over, details, None);
+            let is_passed = is_known || self.is_passed(self.bsdf_of_found(&found));
             if is_passed {
-                hits.push(PassedHit { hit, carrier: Some(Carrier::placed(&over.placed(&path), None)) });
+                hits.push(found);
             }
             !is_passed
         });
         if stopped { (Channels::ZERO, false) } else { self.transmittance_of(hits, ray, t_max, wavelength_set) }
     }
 
-    /// Whether shadow rays pass a triangle.
-    fn is_passed(&self, triangle: u32) -> bool {
-        let bsdf = self.bsdf_of(triangle);
+    /// The BSDF of a triangle that was found.
+    fn bsdf_of_found(&self, found: &FoundTriangle) -> &Bsdf {
+        let [object, material] = found.object_and_material(self.appearance.prepared);
+        self.appearance.bsdf(object, material)
+    }
+
+    /// Whether shadow rays pass a surface.
+    fn is_passed(&self, bsdf: &Bsdf) -> bool {
         bsdf.is_passable() || self.appearance.has_clear_shadows && bsdf.is_clear()
     }
 
@@ -139,13 +143,13 @@ impl World<'_> {
         ray: &Ray,
         t_max: f64,
         is_stopped: bool,
-    ) -> Option<Vec<PassedHit>> {
+    ) -> Option<Vec<FoundTriangle>> {
         let mut hits = Vec::new();
         let enough = |hit: Hit| {
             let hit = Hit { triangle: over.triangle(hit.triangle), ..hit };
-            let is_passed = self.is_passed(hit.triangle);
+            let is_passed = self.is_passed(self.bsdf_of(hit.triangle));
             if is_passed {
-                hits.push(PassedHit { hit, carrier: None });
+                hits.push(FoundTriangle::of_scene(hit, hit.triangle, None));
             }
             is_stopped && !is_passed
         };
@@ -161,36 +165,34 @@ impl World<'_> {
     /// - `hits`: of the ray, in any order.
     fn transmittance_of(
         &self,
-        mut hits: Vec<PassedHit>,
+        mut hits: Vec<FoundTriangle>,
         ray: &Ray,
         t_max: f64,
         wavelength_set: usize,
     ) -> (Channels, bool) {
         let prepared = self.appearance.prepared;
         // Where triangles of an object share a side, what they stand for is passed once.
-        hits.sort_by(|PassedHit { hit: a, .. }, PassedHit { hit: b, .. }| {
-            a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle))
-        });
-        hits.dedup_by_key(|passed| (passed.hit.t, prepared.object_of[passed.hit.triangle as usize]));
+        hits.sort_by(|a, b| a.hit.t.total_cmp(&b.hit.t).then(a.triangle.cmp(&b.triangle)));
+        hits.dedup_by_key(|passed| (passed.hit.t, passed.body(prepared)));
         // Where the ray is in which body, since when.
-        let mut inside: Vec<(u32, f64, &InteriorMedium)> = Vec::new();
+        let mut inside: Vec<([u32; 2], f64, &InteriorMedium)> = Vec::new();
         let left = |interior: &InteriorMedium, way: f64| {
             interior.absorption.of(wavelength_set).map(|absorption| (-absorption * way).exp())
         };
         let length = ray.direction.length();
         let mut is_cleared = false;
-        let part = hits.iter().fold(Channels::ONE, |part, PassedHit { hit, carrier }| {
-            let triangle = hit.triangle;
-            let bsdf = self.bsdf_of(triangle);
-            let normal = outer_normal(prepared.corners(triangle));
+        let part = hits.iter().fold(Channels::ONE, |part, found| {
+            let FoundTriangle { hit, triangle, carrier, .. } = found;
+            let bsdf = self.bsdf_of_found(found);
+            let normal = outer_normal(found.contents(prepared).corners(*triangle));
             let normal = carrier.as_ref().map_or(normal, |carrier| carrier.normal(normal));
             let slope = normal.dot(ray.direction) / length;
-            let place = || self.texture_place(triangle, hit, Default::default(), carrier.as_ref());
+            let place = || self.texture_place(found, Default::default());
             let Some(interior) = bsdf.interior.as_ref().filter(|_| !bsdf.is_passable()) else {
                 return part * bsdf.straight_transmittance(wavelength_set, slope.abs(), place);
             };
             is_cleared = true;
-            let object = prepared.object_of[triangle as usize];
+            let object = found.body(prepared);
             let mut part = part * bsdf.clear_transmittance(wavelength_set, slope.abs(), place);
             match (slope > 0.0, inside.iter().rposition(|(other, ..)| *other == object)) {
                 // It began within the body, if it did not come into it.

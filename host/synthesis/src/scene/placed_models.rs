@@ -1,0 +1,44 @@
+//! The procedural models that instances of a prepared scene place.
+
+use super::object::Procedural;
+use crate::illumination::Material;
+use std::any::Any;
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+
+/// A procedural model that instances of a prepared scene place.
+#[derive(Clone, Debug)]
+pub(super) struct PlacedModel {
+    pub(super) model: Procedural,
+    /// The material of objects that have none.
+    pub(super) whole: Option<Material>,
+    /// The object of the scene that has its materials.
+    pub(super) object: u32,
+    /// These materials.
+    pub(super) materials: Vec<Material>,
+}
+
+/// What is made of models, kept by the scene that has them: it does not know what that is, since it is made of scenes.
+pub(super) type KeptDetails = Arc<dyn Any + Send + Sync>;
+
+/// The details that were asked for last, and what details may take.
+#[derive(Debug, Default)]
+pub(super) struct LastDetails {
+    last: Mutex<Option<KeptDetails>>,
+    most_bytes: OnceLock<u64>,
+}
+
+impl LastDetails {
+    pub(super) fn last(&self) -> MutexGuard<'_, Option<KeptDetails>> {
+        self.last.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// How many bytes they may take, if that was told.
+    pub(super) fn most_bytes(&self) -> Option<u64> {
+        self.most_bytes.get().copied()
+    }
+
+    /// Tells how many bytes they may take, once.
+    pub(super) fn limit(&self, most_bytes: u64) {
+        _ = self.most_bytes.set(most_bytes);
+    }
+}
