@@ -47,14 +47,14 @@ pub(super) type State = Rc<RefCell<Builder>>;
 
 /// How far what runs has come.
 #[derive(Default)]
-pub(super) struct Progress {
+pub(super) struct RunProgress {
     /// The steps that it took.
     pub(super) steps: Cell<u64>,
     /// Where the stack was when it began, if it may take no more than [`MOST_STACK`] of it.
     stack: Cell<Option<usize>>,
 }
 
-impl Progress {
+impl RunProgress {
     /// Begins anew, on a thread whose stack may be no larger than those of most threads.
     pub(super) fn begin(&self) {
         self.steps.set(0);
@@ -74,7 +74,7 @@ fn stack_address() -> usize {
 }
 
 /// An interpreter whose functions build what is in `state`.
-pub(super) fn engine(state: &State, progress: &Rc<Progress>) -> Engine {
+pub(super) fn engine(state: &State, progress: &Rc<RunProgress>) -> Engine {
     let mut engine = limited(progress);
     engine.on_debug(|_, _, _| {});
     engine.register_type_with_name::<Handle>("object");
@@ -95,7 +95,7 @@ pub(super) fn engine(state: &State, progress: &Rc<Progress>) -> Engine {
     engine
 }
 
-fn limited(progress: &Rc<Progress>) -> Engine {
+fn limited(progress: &Rc<RunProgress>) -> Engine {
     // The names of functions without one are the same in every program: they are a part of what models are known by.
     let _ = rhai::config::hashing::set_hashing_seed(Some(HASHING_SEED));
     let progress = Rc::clone(progress);

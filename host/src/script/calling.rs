@@ -1,6 +1,6 @@
 //! Calls of functions of a script on any thread, each with what it makes.
 
-use super::bindings::{self, Progress, State};
+use super::bindings::{self, RunProgress, State};
 use super::builder::Builder;
 use super::error;
 use super::fault::ScriptFault;
@@ -27,7 +27,7 @@ struct Caller {
     engine: Engine,
     state: State,
     /// How far what runs has come.
-    progress: Rc<Progress>,
+    progress: Rc<RunProgress>,
     /// The functions of scripts, the last one that was asked for at the end.
     compiled: Vec<(Arc<ScriptSource>, Rc<AST>)>,
 }

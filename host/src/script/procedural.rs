@@ -87,8 +87,8 @@ fn captured(function: &FnPtr) -> Result<Vec<PlainValue>, String> {
     let plain = |value: &Dynamic| {
         PlainValue::of(value).map_err(|other| {
             format!(
-                "the function captures {other}; it can capture numbers, strings, true and false, and arrays and maps of \
-                 these"
+                "the function captures {other}; it can capture numbers, strings, true and false, and arrays and maps \
+                 of these"
             )
         })
     };
