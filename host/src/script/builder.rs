@@ -1,15 +1,15 @@
 //! The scene while a script builds it.
 
 use super::definition::ScriptParameters;
-use super::evaluated::Inputs;
 use super::folders::Folders;
 use super::handle::{CallResult, Handle};
-use crate::database::Library;
+use super::source::{CallOutcome, FunctionCall, OpenDatabases, ScriptSource};
 use crate::procedural::Wind;
 use crate::scene::{Composite, MAX_NESTING, MAX_OBJECTS, Motion, Object, Operation, Scene, ScriptPosition, Shape};
 use glam::{DMat4, DVec3};
 use rhai::Dynamic;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Longest name of an object.
 const MOST_LETTERS: usize = 200;
@@ -30,7 +30,7 @@ pub(super) struct Builder {
     /// The time of the picture, seconds.
     time: f64,
     /// The time that the script gets, seconds.
-    now: f64,
+    pub(super) now: f64,
     /// Whether the script asked for the time.
     pub(super) asked_time: bool,
     /// The wind that blows.
@@ -40,14 +40,32 @@ pub(super) struct Builder {
     /// Values of parameters.
     pub(super) definitions: ScriptParameters,
     /// Where names of reflectances, spectra, materials, lights and geometry are looked up.
-    pub(super) library: Library,
+    pub(super) databases: OpenDatabases,
+    /// The script.
+    pub(super) source: Arc<ScriptSource>,
+    /// Steps that models took when the script made them.
+    pub(super) model_operations: u64,
+    /// Where the call stands that runs.
+    pub(super) called_at: Option<ScriptPosition>,
+    /// Where a call failed, if that is elsewhere than where it stands.
+    pub(super) failed_at: Option<ScriptPosition>,
+    /// What a function may ask for that makes a model; none where a script builds a scene.
+    model: Option<ModelLimits>,
+}
+
+/// What the function of a model may ask for.
+struct ModelLimits {
+    may_ask_time: bool,
+    /// How many databases there are.
+    databases: usize,
 }
 
 impl Builder {
     /// An empty scene.
     ///
     /// - `now`: the time that the script gets, seconds.
-    pub(super) fn new(folders: Folders, inputs: &Inputs, now: f64) -> Builder {
+    pub(super) fn new(source: Arc<ScriptSource>, now: f64) -> Builder {
+        let inputs = &source.inputs;
         Builder {
             scene: Scene::default(),
             objects: Vec::new(),
@@ -59,10 +77,58 @@ impl Builder {
             now,
             asked_time: false,
             wind: None,
-            folders,
+            folders: Folders::new(&source.folder, &inputs.allowed),
             definitions: ScriptParameters::new(&inputs.definitions),
-            library: Library::default(),
+            databases: OpenDatabases::default(),
+            model_operations: 0,
+            called_at: None,
+            failed_at: None,
+            model: None,
+            source,
         }
+    }
+
+    /// Nothing yet of what a function makes that is called.
+    pub(super) fn of_call(call: &FunctionCall<'_>) -> Builder {
+        let FunctionCall { source, now, databases, may_ask_time, .. } = *call;
+        let model = Some(ModelLimits { may_ask_time, databases: databases.files.len() });
+        Builder { databases: databases.clone(), shutter: None, model, ..Builder::new(Arc::clone(source), now) }
+    }
+
+    /// Whether it holds what the function of a model makes, rather than a scene.
+    pub(super) fn makes_model(&self) -> bool {
+        self.model.is_some()
+    }
+
+    /// Refuses what a model cannot have, after a call.
+    pub(super) fn check_model(&self) -> Result<(), String> {
+        let Some(ModelLimits { may_ask_time, databases }) = self.model else { return Ok(()) };
+        if self.asked_time && !may_ask_time {
+            return Err("a model asks for the time in all of its kinds or in none; that of seed 0 did not".into());
+        }
+        let is_more = self.shutter.is_some() || self.wind.is_some() || self.databases.files.len() > databases;
+        if is_more || self.scene != Scene::default() {
+            return Err("a model makes objects only; the rest is said outside".into());
+        }
+        Ok(())
+    }
+
+    /// Takes the objects, each with the call that gave it its shape.
+    pub(super) fn take_objects(&mut self) -> Vec<(Object, Option<ScriptPosition>)> {
+        let positions = std::mem::take(&mut self.positions).into_iter().chain(std::iter::repeat(None));
+        let objects = std::mem::take(&mut self.objects).into_iter().zip(positions);
+        objects.filter_map(|(object, position)| Some((object?, position))).collect()
+    }
+
+    /// Notes what the function of a model asked for when it was first called: the script did.
+    pub(super) fn note_call(&mut self, call: &CallOutcome) -> Result<(), String> {
+        self.model_operations = self.model_operations.saturating_add(call.operations);
+        self.asked_time |= call.asked_time;
+        self.folders.note(&call.files);
+        for asked in &call.parameters {
+            let _value = self.definitions.value(&asked.name, asked.default.to_value(), &asked.meaning)?;
+        }
+        Ok(())
     }
 
     /// The time, for the script.
@@ -113,6 +179,9 @@ impl Builder {
     /// Lets an object move.
     pub(super) fn let_move(&mut self, handle: Handle, motion: Motion) -> CallResult {
         self.object(handle)?;
+        if self.makes_model() {
+            return Err("what a model makes stands still; let the model move".into());
+        }
         if let Some(slot) = self.motions.get_mut(handle.0) {
             *slot = Some(motion);
         }
@@ -128,15 +197,25 @@ impl Builder {
 
     /// Adds an object of default material, named after its kind and number.
     pub(super) fn add(&mut self, shape: Shape, tolerance: Option<f64>) -> Result<Handle, String> {
+        self.add_called(shape.word(), shape, tolerance)
+    }
+
+    /// Adds an object of default material, named after a word and the number of such objects.
+    pub(super) fn add_called(
+        &mut self,
+        word: &'static str,
+        shape: Shape,
+        tolerance: Option<f64>,
+    ) -> Result<Handle, String> {
         let index = self.objects.len();
         if index >= MAX_OBJECTS {
             return Err(format!("more than {MAX_OBJECTS} objects"));
         }
-        let number = self.of_kind.entry(shape.word()).or_default();
+        let number = self.of_kind.entry(word).or_default();
         *number += 1;
         let name = match number {
-            1 => shape.word().to_owned(),
-            number => format!("{} {number}", shape.word()),
+            1 => word.to_owned(),
+            number => format!("{word} {number}"),
         };
         self.objects.push(Some(Object { name, shape, transform: DMat4::IDENTITY, material: None, tolerance }));
         self.motions.push(None);

@@ -1,5 +1,6 @@
 //! Parameters of scripts: what the command line gives, and what a script asks for.
 
+use super::plain::PlainValue;
 use rhai::{Dynamic, ImmutableString};
 use std::fmt::Write;
 use std::str::FromStr;
@@ -39,6 +40,14 @@ struct DeclaredParameter {
     name: String,
     default: Dynamic,
     meaning: String,
+}
+
+/// A parameter that a function of a script asked for on another thread.
+#[derive(Debug)]
+pub(super) struct AskedParameter {
+    pub(super) name: String,
+    pub(super) default: PlainValue,
+    pub(super) meaning: String,
 }
 
 /// What was given, and what was asked for so far.
@@ -86,6 +95,15 @@ impl ScriptParameters {
             Some(Dynamic::from(value.clone()))
         };
         read.ok_or_else(|| format!("{name} must be {}, not {value}; {}", kind(&default), self.list()))
+    }
+
+    /// All that was asked for, as data.
+    pub(super) fn asked(&self) -> Vec<AskedParameter> {
+        let asked = self.declared.iter().filter_map(|DeclaredParameter { name, default, meaning }| {
+            let default = PlainValue::of(default).ok()?;
+            Some(AskedParameter { name: name.clone(), default, meaning: meaning.clone() })
+        });
+        asked.collect()
     }
 
     /// The first definition that the script did not ask for.

@@ -1,50 +1,21 @@
-//! The interpreter: limits, bindings from the table, and one run.
+//! One run of a script.
 
+use super::bindings::{self, State};
 use super::builder::Builder;
+use super::calling;
 use super::definition::ParameterAssignment;
-use super::error::{self, MAX_OPERATIONS, OutOfMemory, ScriptError};
+use super::error::{self, ScriptError};
 use super::evaluated::{Evaluated, Inputs};
-use super::folders::Folders;
-use super::function::Function;
-use super::functions::{functions, makes_shapes};
-use super::given::BoundArguments;
-use super::handle::Handle;
 use super::printed::Printed;
-use super::spline::ControlMeaning;
-use crate::curve::SplineCurve;
-use crate::illumination::Paint;
-use crate::illumination::distribution::{FacetError, FacetTable};
-use crate::illumination::texture::NumberTexture;
+use super::source::ScriptSource;
 use crate::memory;
-use crate::scene::ScriptPosition;
-use rhai::module_resolvers::DummyModuleResolver;
-use rhai::{Dynamic, Engine, EvalAltResult, FnPtr, Map, NativeCallContext};
 use std::cell::RefCell;
 use std::path::Path;
 use std::rc::Rc;
+use std::sync::Arc;
 
 /// Longest script, bytes.
 const MAX_SCRIPT_BYTES: u64 = 4 << 20;
-/// Longest string in a script, bytes.
-const MAX_STRING: usize = 1 << 20;
-/// Most elements of an array or a map.
-const MAX_ELEMENTS: usize = 1 << 14;
-/// Deepest nesting of calls.
-const MAX_CALLS: usize = 64;
-/// Deepest nesting of expressions, outside and inside functions.
-const MAX_NESTING: (usize, usize) = (64, 48);
-/// How many of the operations look at the memory: one of so many.
-const MEMORY_CHECK_INTERVAL: u64 = 64;
-/// Part of the memory that is kept for what is made of the scene, when a script is refused: one of so many.
-const RESERVED_FRACTION: u64 = 16;
-/// Words that scripts may not use: they run text and load other files.
-const FORBIDDEN: [&str; 2] = ["eval", "import"];
-
-/// Operators between objects, and the functions that they stand for.
-const OPERATORS: [(&str, &str); 4] =
-    [("+", "union"), ("*", "intersection"), ("-", "difference"), ("^", "symmetric_difference")];
-
-type State = Rc<RefCell<Builder>>;
 
 /// Reads a script.
 pub(super) fn read(path: &Path) -> Result<String, ScriptError> {
@@ -73,27 +44,18 @@ pub(super) struct ScriptRun {
 /// # Errors
 /// [`ScriptError`], with line and column where there are any.
 pub(super) fn run(text: &str, name: &str, folder: &Path, inputs: &Inputs, now: f64) -> Result<ScriptRun, ScriptError> {
-    let state: State = Rc::new(RefCell::new(Builder::new(Folders::new(folder, &inputs.allowed), inputs, now)));
+    let source = ScriptSource {
+        text: text.to_owned(),
+        name: name.to_owned(),
+        folder: folder.into(),
+        inputs: inputs.clone(),
+        call: calling::call,
+    };
+    let state: State = Rc::new(RefCell::new(Builder::new(Arc::new(source), now)));
     let printed = Rc::new(RefCell::new(Printed::default()));
-    let mut engine = limited();
+    let mut engine = bindings::engine(&state, &Rc::default());
     let lines = Rc::clone(&printed);
     engine.on_print(move |text| lines.borrow_mut().add(text));
-    engine.on_debug(|_, _, _| {});
-    engine.register_type_with_name::<Handle>("object");
-    engine.register_type_with_name::<ControlMeaning>("spline");
-    engine.register_type_with_name::<SplineCurve>("curve");
-    engine.register_type_with_name::<Paint>("pattern");
-    engine.register_type_with_name::<NumberTexture>("pattern of numbers");
-    engine.register_type_with_name::<FacetTable>("distribution");
-    for function in functions() {
-        bind(&mut engine, function, &state);
-        if let Some((symbol, _)) = OPERATORS.iter().find(|(_, name)| *name == function.name) {
-            let state = Rc::clone(&state);
-            engine.register_fn(*symbol, move |context: NativeCallContext<'_>, a: Handle, b: Handle| -> Answer {
-                call(function, &state, &context, &[Dynamic::from(a), Dynamic::from(b)])
-            });
-        }
-    }
     let outcome = engine.run(text);
     drop(engine);
     outcome.map_err(|e| error::locate(&e, text, name))?;
@@ -110,115 +72,4 @@ pub(super) fn run(text: &str, name: &str, folder: &Path, inputs: &Inputs, now: f
     let is_timed = asked_time || !scene.motions.is_empty();
     let made = Evaluated { scene, name: name.to_owned(), printed, is_timed, files };
     Ok(ScriptRun { made, shutter, asked_time })
-}
-
-fn limited() -> Engine {
-    let mut engine = Engine::new();
-    engine
-        .set_max_operations(MAX_OPERATIONS)
-        .set_max_string_size(MAX_STRING)
-        .set_max_array_size(MAX_ELEMENTS)
-        .set_max_map_size(MAX_ELEMENTS)
-        .set_max_call_levels(MAX_CALLS)
-        .set_max_expr_depths(MAX_NESTING.0, MAX_NESTING.1)
-        .set_max_modules(0)
-        .set_module_resolver(DummyModuleResolver::new());
-    engine.on_progress(|operations| {
-        let is_short = || memory::limit().is_some_and(|limit| memory::left() < limit / RESERVED_FRACTION);
-        let ends = operations.is_multiple_of(MEMORY_CHECK_INTERVAL) && is_short();
-        ends.then(|| Dynamic::from(OutOfMemory))
-    });
-    for symbol in FORBIDDEN {
-        engine.disable_symbol(symbol);
-    }
-    // A scene is a function of the time that it is given, whenever its script runs, and the script does not wait.
-    let refuse = || -> Answer {
-        Err("a scene script can neither wait nor read the clock; time() is the time of the picture".into())
-    };
-    engine.register_fn("sleep", move |_: rhai::INT| refuse());
-    engine.register_fn("sleep", move |_: rhai::FLOAT| refuse());
-    engine.register_fn("timestamp", refuse);
-    engine
-}
-
-type Answer = Result<Dynamic, Box<EvalAltResult>>;
-
-/// Registers a row for every number of arguments that it can be called with.
-fn bind(engine: &mut Engine, function: &'static Function, state: &State) {
-    let (least, most) = function.arity();
-    for arity in least..=most {
-        let state = Rc::clone(state);
-        let call = move |context: NativeCallContext<'_>, values: &[Dynamic]| call(function, &state, &context, values);
-        let name = function.name;
-        match arity {
-            0 => engine.register_fn(name, move |c: NativeCallContext<'_>| -> Answer { call(c, &[]) }),
-            1 => engine.register_fn(name, move |c: NativeCallContext<'_>, a: Dynamic| -> Answer { call(c, &[a]) }),
-            2 => engine.register_fn(name, move |c: NativeCallContext<'_>, a: Dynamic, b: Dynamic| -> Answer {
-                call(c, &[a, b])
-            }),
-            3 => engine
-                .register_fn(name, move |x: NativeCallContext<'_>, a: Dynamic, b: Dynamic, c: Dynamic| -> Answer {
-                    call(x, &[a, b, c])
-                }),
-            4 => engine.register_fn(
-                name,
-                move |x: NativeCallContext<'_>, a: Dynamic, b: Dynamic, c: Dynamic, d: Dynamic| -> Answer {
-                    call(x, &[a, b, c, d])
-                },
-            ),
-            // Longer lists of values are unreadable: a map takes their place.
-            _ => break,
-        };
-    }
-}
-
-fn call(function: &Function, state: &State, context: &NativeCallContext<'_>, values: &[Dynamic]) -> Answer {
-    let failed = |problem: String| {
-        let message = format!("{}: {problem}", function.name);
-        Box::new(EvalAltResult::ErrorRuntime(message.into(), context.call_position()))
-    };
-    // Functions of the script run before the scene is taken hold of: they may build, too.
-    let takes_functions = function.parameters.iter().any(|parameter| parameter.takes.is_function());
-    let sampled: Vec<Dynamic>;
-    let values = if takes_functions {
-        sampled = values.iter().map(|value| sample(function, context, value)).collect::<Result<_, _>>()?;
-        &sampled
-    } else {
-        values
-    };
-    let mut given = BoundArguments::new(function.parameters, || function.usage(), values).map_err(failed)?;
-    let made = (function.action)(&mut state.borrow_mut(), &mut given).map_err(failed)?;
-    let at = context.call_position();
-    if let (Some(handle), Some(line)) = (made.clone().try_cast::<Handle>(), at.line()) {
-        let mut builder = state.borrow_mut();
-        if makes_shapes(function) || !builder.is_noted(handle) {
-            builder.note(handle, ScriptPosition { line, column: at.position().unwrap_or(1) });
-        }
-    }
-    Ok(made)
-}
-
-/// A function of a script as a table, also in a map of values; other values as they are.
-fn sample(function: &Function, context: &NativeCallContext<'_>, value: &Dynamic) -> Answer {
-    if let Some(map) = value.read_lock::<Map>() {
-        let sampled = map.iter().map(|(name, value)| Ok((name.clone(), sample(function, context, value)?)));
-        return Ok(Dynamic::from_map(sampled.collect::<Result<Map, Box<EvalAltResult>>>()?));
-    }
-    let Some(of_angle) = value.read_lock::<FnPtr>() else { return Ok(value.clone()) };
-    let at = |angle: f64| -> Result<f64, Box<EvalAltResult>> {
-        let found: Dynamic = of_angle.call_within_context(context, (angle,))?;
-        let number = found.as_float().or_else(|_| found.as_int().map(|whole| whole as f64));
-        number.map_err(|kind| format!("it is no number but a value of type {kind}").into())
-    };
-    FacetTable::new("user's", at).map(Dynamic::from).map_err(|problem| {
-        let (message, inside) = match &problem {
-            FacetError::Function { angle, source } => {
-                let (message, position) = error::describe(source);
-                (format!("at an angle of {angle}: {message}"), position)
-            }
-            other => (other.to_string(), rhai::Position::NONE),
-        };
-        let position = if inside.is_none() { context.call_position() } else { inside };
-        Box::new(EvalAltResult::ErrorRuntime(format!("{}: {message}", function.name).into(), position))
-    })
 }

@@ -1,15 +1,12 @@
 //! What can be wrong with a script, and where.
 
+use super::fault::{MAX_OPERATIONS, ScriptFault};
 use super::functions::functions;
 use crate::memory;
-use crate::scene::SceneError;
+use crate::scene::{SceneError, ScriptPosition};
 use crate::spelling;
 use rhai::{EvalAltResult, ParseErrorType, Position};
-use std::fmt;
 use std::path::PathBuf;
-
-/// Steps that a script may take.
-pub const MAX_OPERATIONS: u64 = 20_000_000;
 
 /// A fault that keeps a script from giving a scene.
 #[derive(Debug, thiserror::Error)]
@@ -61,48 +58,26 @@ pub enum ScriptError {
     },
 }
 
-/// A fault at a position of a script.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ScriptFault {
-    /// The script.
-    pub file: String,
-    /// Line, from 1; 0 if it is not known.
-    pub line: usize,
-    /// Column, from 1; 0 if it is not known.
-    pub column: usize,
-    /// What is wrong.
-    pub message: String,
-    /// The text of the line.
-    pub text: String,
-}
-
-impl fmt::Display for ScriptFault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let ScriptFault { file, line, column, message, text } = self;
-        match line {
-            0 => write!(f, "{file}: {message}"),
-            _ => {
-                let number = line.to_string();
-                let gutter = " ".repeat(number.len());
-                let lead: String =
-                    text.chars().take(column.saturating_sub(1)).map(|c| if c == '\t' { '\t' } else { ' ' }).collect();
-                write!(f, "{file}:{line}:{column}: {message}\n{number} | {text}\n{gutter} | {lead}^")
-            }
-        }
-    }
-}
+/// What is said of calls without end.
+const RECURSION: &str = "too many calls within calls; does the recursion end?";
 
 /// The error of a script that has taken nearly all memory.
 #[derive(Clone)]
 pub(super) struct OutOfMemory;
 
+/// The error of a script whose calls have taken the stack that they may.
+#[derive(Clone)]
+pub(super) struct OutOfStack;
+
 /// Turns an error of the interpreter into ours, with its position in the script.
 pub(super) fn locate(error: &EvalAltResult, script: &str, file: &str) -> ScriptError {
     let (message, position) = describe(error);
-    let line = position.line().unwrap_or(0);
-    let column = if line == 0 { 0 } else { position.position().unwrap_or(1) };
-    let text = line.checked_sub(1).and_then(|l| script.lines().nth(l)).unwrap_or_default().to_owned();
-    ScriptError::Fault(Box::new(ScriptFault { file: file.to_owned(), line, column, message, text }))
+    ScriptError::Fault(Box::new(ScriptFault::new(file, script, position_of(position), message)))
+}
+
+/// A position that the interpreter tells, if it does.
+pub(super) fn position_of(position: Position) -> Option<ScriptPosition> {
+    position.line().map(|line| ScriptPosition { line, column: position.position().unwrap_or(1) })
 }
 
 pub(super) fn describe(error: &EvalAltResult) -> (String, Position) {
@@ -126,7 +101,8 @@ pub(super) fn describe(error: &EvalAltResult) -> (String, Position) {
         E::ErrorTooManyOperations(_) => {
             format!("the script takes more than {} steps; does it end?", MAX_OPERATIONS)
         }
-        E::ErrorStackOverflow(_) => "too many calls within calls; does the recursion end?".into(),
+        E::ErrorStackOverflow(_) => RECURSION.into(),
+        E::ErrorTerminated(reason, _) if reason.is::<OutOfStack>() => RECURSION.into(),
         E::ErrorDataTooLarge(what, _) => format!("too large: {what}"),
         other => {
             let mut plain = other.to_string();

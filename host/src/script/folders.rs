@@ -20,6 +20,11 @@ impl Folders {
         Folders { own: own.into(), readable: all.filter_map(without_links).collect(), named: RefCell::default() }
     }
 
+    /// Notes files that the script has named elsewhere.
+    pub(super) fn note(&self, files: &[PathBuf]) {
+        self.named.borrow_mut().extend_from_slice(files);
+    }
+
     /// The files that the script has named, in the order in which it did.
     pub(super) fn named(&self) -> Vec<PathBuf> {
         self.named.borrow().clone()

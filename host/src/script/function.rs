@@ -34,7 +34,7 @@ macro_rules! function {
             parameters: &[$($crate::script::parameter::Parameter { name: stringify!($parameter), takes: &$takes }),*],
             example: $example,
             action: |builder, _given| {
-                $(let $parameter = _given.next(stringify!($parameter), &$takes, &builder.library)?;)*
+                $(let $parameter = _given.next(stringify!($parameter), &$takes, &builder.databases.library)?;)*
                 let $builder = builder;
                 $action
             },

@@ -2,8 +2,8 @@
 
 use super::function::Function;
 use super::{
-    daylight, instancing, lighting, materials, shaping, showing, solids, stored, subdividing, surfaces, table,
-    texturing, wind,
+    daylight, instancing, lighting, materials, procedural, shaping, showing, solids, stored, subdividing, surfaces,
+    table, texturing, wind,
 };
 
 /// Every function that a script may call: those that make and combine objects, then the others.
@@ -14,6 +14,7 @@ pub fn functions() -> impl Iterator<Item = &'static Function> {
         surfaces::FUNCTIONS,
         subdividing::FUNCTIONS,
         instancing::FUNCTIONS,
+        procedural::FUNCTIONS,
         wind::FUNCTIONS,
         materials::FUNCTIONS,
         texturing::FUNCTIONS,
@@ -29,8 +30,14 @@ pub fn functions() -> impl Iterator<Item = &'static Function> {
 
 /// Whether a function gives an object its shape, rather than a place, a material or a name.
 pub(super) fn makes_shapes(function: &Function) -> bool {
-    let families =
-        [solids::FUNCTIONS, shaping::FUNCTIONS, surfaces::FUNCTIONS, subdividing::FUNCTIONS, instancing::FUNCTIONS];
+    let families = [
+        solids::FUNCTIONS,
+        shaping::FUNCTIONS,
+        surfaces::FUNCTIONS,
+        subdividing::FUNCTIONS,
+        instancing::FUNCTIONS,
+        procedural::FUNCTIONS,
+    ];
     families.into_iter().flatten().any(|row| row.name == function.name)
 }
 

@@ -285,7 +285,7 @@ pub(super) fn color_of_light(builder: &Builder, spectrum: Option<&str>, bands: D
 pub(super) fn spectrum_named(builder: &Builder, name: &str) -> Result<Spectrum, String> {
     match light_of_temperature(name) {
         Some(spectrum) => spectrum.map_err(|error| error.to_string()),
-        None => builder.library.light(name).map_err(|error| error.to_string()),
+        None => builder.databases.library.light(name).map_err(|error| error.to_string()),
     }
 }
 

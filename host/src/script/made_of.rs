@@ -21,10 +21,11 @@ pub(super) const TRANSPARENCY: Defaulted<Reflectance, f64> =
 /// The material that a script tells of something that is no object, checked.
 pub(super) fn material_from(builder: &mut Builder, origin: MaterialOrigin) -> Result<Material, String> {
     let material = match origin {
-        MaterialOrigin::Map(map) => MaterialKind::Classic(classic(&map, &builder.library)?).into(),
+        MaterialOrigin::Map(map) => MaterialKind::Classic(classic(&map, &builder.databases.library)?).into(),
         MaterialOrigin::Object(handle) => builder.object(handle)?.own_material().unwrap_or_default(),
         MaterialOrigin::Record(name) => {
-            let found = builder.library.record(RecordKind::Material, &name).map_err(|error| error.to_string())?;
+            let found =
+                builder.databases.library.record(RecordKind::Material, &name).map_err(|error| error.to_string())?;
             match found {
                 (Record { content: RecordContent::Material(material), .. }, _) => *material,
                 _ => Material::default(),

@@ -92,7 +92,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         "Makes an object of a metal, with the refractive indices that were measured of it."
         "pot.metal(\"copper\", 0.2);"
         |builder| {
-            let shipped::ComplexIndex { n, k } = builder.library.metal(&name).map_err(|error| error.to_string())?;
+            let shipped::ComplexIndex { n, k } = builder.databases.library.metal(&name).map_err(|error| error.to_string())?;
             let finish = match (along, across) {
                 (Some(along), _) if along.try_normalize().is_none() => {
                     return Err("along must not have the length 0".into());

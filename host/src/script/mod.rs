@@ -9,7 +9,11 @@ mod parameter;
 mod kinds;
 mod shared;
 mod given;
+mod plain;
 mod definition;
+mod evaluated;
+mod fault;
+mod source;
 mod folders;
 mod printed;
 mod builder;
@@ -22,6 +26,8 @@ mod surfaces;
 mod subdividing;
 mod wind;
 mod instancing;
+mod model;
+mod procedural;
 mod made_of;
 mod materials;
 mod texturing;
@@ -32,7 +38,8 @@ mod stored;
 mod table;
 mod functions;
 mod error;
-mod evaluated;
+mod bindings;
+mod calling;
 mod engine;
 mod timed;
 mod shipped;
@@ -41,14 +48,17 @@ mod loading;
 #[cfg(test)]
 mod instancing_tests;
 #[cfg(test)]
+mod procedural_tests;
+#[cfg(test)]
 mod surface_tests;
 #[cfg(test)]
 mod tests;
 
 pub use camera_call::camera_call;
 pub use definition::ParameterAssignment;
-pub use error::{MAX_OPERATIONS, ScriptError};
+pub use error::ScriptError;
 pub use evaluated::{Evaluated, Inputs};
+pub use fault::MAX_OPERATIONS;
 pub use function::Function;
 pub use functions::{functions, reference};
 pub use loading::{load, load_file};

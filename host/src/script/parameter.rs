@@ -7,7 +7,7 @@ use crate::database::Library;
 use crate::illumination::Paint;
 use crate::illumination::distribution::FacetTable;
 use crate::illumination::texture::NumberTexture;
-use rhai::{Dynamic, ImmutableString};
+use rhai::{Dynamic, FnPtr, ImmutableString};
 
 /// What a function takes: a row of its help.
 #[derive(Clone, Copy)]
@@ -233,7 +233,12 @@ impl<K: HasDefault> Takes for ChangedSetting<K, K::Default> {
 }
 
 /// A value of this kind.
-fn checked<K: ParameterKind>(kind: &K, name: &str, value: &Dynamic, library: &Library) -> Result<K::Value, String> {
+pub(super) fn checked<K: ParameterKind>(
+    kind: &K,
+    name: &str,
+    value: &Dynamic,
+    library: &Library,
+) -> Result<K::Value, String> {
     let text = value.read_lock::<ImmutableString>();
     if let Some(found) = text.and_then(|text| kind.look_up(&text, library)) {
         return found.map_err(|error| format!("{name}: {error}"));
@@ -242,7 +247,7 @@ fn checked<K: ParameterKind>(kind: &K, name: &str, value: &Dynamic, library: &Li
 }
 
 /// The value as messages show it: short.
-fn in_short(value: &Dynamic) -> String {
+pub(super) fn in_short(value: &Dynamic) -> String {
     const LONGEST: usize = 60;
     for (is_one, words) in [
         (value.is::<Handle>(), "an object"),
@@ -251,6 +256,7 @@ fn in_short(value: &Dynamic) -> String {
         (value.is::<Paint>(), "a pattern"),
         (value.is::<NumberTexture>(), "a pattern of numbers"),
         (value.is::<FacetTable>(), "a distribution"),
+        (value.is::<FnPtr>(), "a function"),
     ] {
         if is_one {
             return words.into();

@@ -21,7 +21,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         "use_database(\"studio.redb\");"
         |builder| {
             let path = builder.folders.file(&file)?;
-            builder.library.open(&path).map_err(|error| error.to_string())?;
+            builder.databases.open(&path)?;
             Ok(Dynamic::UNIT)
         }
     },
@@ -59,5 +59,5 @@ pub(super) const FUNCTIONS: &[Function] = &[
 
 /// A record and the file that holds it.
 fn find(builder: &Builder, name: &str, kind: database::RecordKind) -> Result<(Record, Option<PathBuf>), String> {
-    builder.library.record(kind, name).map_err(|error| error.to_string())
+    builder.databases.library.record(kind, name).map_err(|error| error.to_string())
 }

@@ -168,7 +168,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
 /// An image from a file or, if there is none of that name, from the databases.
 fn read(builder: &Builder, name: &str, content: ImageContent) -> Result<Image, String> {
     let path = builder.folders.file(name)?;
-    match builder.library.record(database::RecordKind::Texture, name) {
+    match builder.databases.library.record(database::RecordKind::Texture, name) {
         Ok((Record { content: database::RecordContent::Texture(picture), .. }, _)) if !path.exists() => {
             Ok(Image::of_picture(name.to_owned(), &picture, content))
         }

@@ -63,5 +63,8 @@ pub(super) fn sway(builder: &mut Builder, lean: f64) -> Result<Sway, String> {
 
 /// The wind that was set.
 fn blowing(builder: &Builder) -> Result<Wind, String> {
+    if builder.makes_model() {
+        return Err("within a model there is no wind; let what is scattered sway, or moves".into());
+    }
     builder.wind.clone().ok_or_else(|| "there is no wind; call wind() before".into())
 }

@@ -1,5 +1,7 @@
 //! Procedural models: few numbers and a seed, from which a scene is made at any time, again and again alike.
 
+mod varied;
 mod wind;
 
+pub use varied::{Varied, VariedError, channel};
 pub use wind::{Wind, WindError};

@@ -7,12 +7,14 @@ mod lists;
 mod curves;
 mod places;
 mod materials;
+mod models;
 
 pub(super) use curves::{CurveKind, Loops, SidesKind, Spline};
 pub(super) use lists::{Contours, Indices, Numbers, Objects, PointsKind, RowsOfNumbers};
 pub(super) use materials::{
     AmountKind, DistributionKind, DistributionValue, FunctionOfAngle, MaterialOrigin, MaterialOriginKind, Reflectance,
 };
+pub(super) use models::{BoundsKind, ModelFunction, VariedKind, VariedMap};
 pub(super) use numbers::{ANY_NUMBER, Integer, Length, NumberKind, RangeKind, number};
 pub(super) use places::{ObjectGroups, PlaceValue, PlacesKind};
 pub(super) use vectors::{AxisKind, Factors, Lengths, NamedAxis, Powers, Vector};
