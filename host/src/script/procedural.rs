@@ -11,7 +11,7 @@ use super::plain::PlainValue;
 use crate::database::Library;
 use crate::octree::Instance;
 use crate::scene::{Instances, MOST_KINDS, Object, PlacementList, Placing, Procedural, ProceduralModel, Shape};
-use glam::{DAffine3, DMat4};
+use glam::DAffine3;
 use rhai::{Dynamic, FnPtr};
 use std::sync::{Arc, OnceLock};
 
@@ -69,13 +69,7 @@ fn add(builder: &mut Builder, model: Arc<ScriptModel>) -> CallResult {
         }
         None => {}
     }
-    let object = Object {
-        name: "procedural".into(),
-        shape: Shape::Procedural(made?),
-        transform: DMat4::IDENTITY,
-        material: None,
-        tolerance: None,
-    };
+    let object = Object::procedural("procedural".into(), made?);
     let here = Instance { prototype: 0, variation: 0, placement: DAffine3::IDENTITY };
     let placing = Placing::Listed(PlacementList(vec![here]));
     let shape = Shape::Instances(Box::new(Instances { prototypes: vec![vec![object]], placing }));

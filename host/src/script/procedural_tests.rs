@@ -155,7 +155,7 @@ fn errors_have_their_place_and_tell_the_kind() {
     // The first of its kinds is made where the model is.
     let (line, column, message) = problem(&format!("fn f(p) {{\n  cone(0, 1);\n}}\n{}", procedural("Fn(\"f\")", "")));
     assert_eq!((line, column), (2, 3));
-    assert!(message.starts_with("procedural: in the model of seed 0 at detail 0.000846: cone: "), "{message}");
+    assert!(message.starts_with("procedural: in the model of seed 0 at detail 0.00677: cone: "), "{message}");
     for (body, expected) in [
         ("half_space(\"y\");", (2, 1, "half_space has no end")),
         ("let a = sphere(1); let b = cube(1);\na.meeting(b);", (3, 3, "curve is a curve")),

@@ -11,8 +11,8 @@ use crate::illumination::optics::Interreflection;
 use crate::octree::MAX_POINT_DEPTH;
 use crate::picture::{Filter, MAX_PIXELS};
 use crate::scene::{
-    Camera, Caustics, GeometrySettings, Lens, MAX_PHOTONS, MAX_REFLECTION_DEPTH, MAX_SAMPLES, Motion, Parallel,
-    PhotonSettings, RadiositySettings, Shape,
+    Camera, Caustics, GeometrySettings, Lens, MAX_PHOTONS, MAX_REFLECTION_DEPTH, MAX_SAMPLES, MOST_DETAIL, Motion,
+    Parallel, PhotonSettings, RadiositySettings, Shape,
 };
 use glam::{DMat3, DMat4, DVec2, DVec3};
 use rhai::Dynamic;
@@ -375,6 +375,20 @@ pub(super) const FUNCTIONS: &[Function] = &[
         "exact_surfaces(false);"
         |builder| {
             builder.scene.settings.geometry.exact_surfaces = on;
+            Ok(Dynamic::UNIT)
+        }
+    },
+    function! {
+        detail(
+            pixels: required(
+                NumberKind(1.0 / MOST_DETAIL, MOST_DETAIL),
+                "how small the detail is that they may leave out, pixels; 1 if nothing is said",
+            ),
+        )
+        "Sets how finely procedural models are made: to what a pixel spans where they are seen, or to more or less of it."
+        "detail(0.5);"
+        |builder| {
+            builder.scene.settings.geometry.detail = pixels;
             Ok(Dynamic::UNIT)
         }
     },

@@ -17,6 +17,8 @@ const LARGEST_ERROR: f64 = 0.5;
 const WIDEST_FILTER: f64 = 2.0;
 /// The largest turn of normals, degrees.
 const LARGEST_ANGLE: f64 = 90.0;
+/// The coarsest detail that is tried, pixels.
+const COARSEST_DETAIL: f64 = 16.0;
 /// Depths that are tried; the reference has twice the last one.
 const DEPTHS: [f64; 10] = [0.0, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 32.0];
 /// Points of lights that the reference of scan line has for each of the finest setting.
@@ -193,6 +195,18 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         best: |_, _| 1.0,
         get: |setup| f64::from(u8::from(setup.settings.geometry.exact_surfaces)),
         set: |setup, value| setup.settings.geometry.exact_surfaces = value > 0.0,
+    },
+    RenderKnob {
+        name: "detail",
+        sets: "how small the detail is that procedural models may leave out, pixels",
+        renderers: ALL,
+        is_model: false,
+        remodels: true,
+        idle: |base| base.has_no_models().then_some("the scene has no procedural models"),
+        values: |base| halved(base, COARSEST_DETAIL).collect(),
+        best: |base, _| halved(base, COARSEST_DETAIL).last().unwrap_or(1.0).min(1.0) / 2.0,
+        get: |setup| setup.settings.geometry.detail,
+        set: |setup, value| setup.settings.geometry.detail = value,
     },
     RenderKnob {
         name: "spectral",

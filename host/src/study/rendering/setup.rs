@@ -4,7 +4,7 @@ use crate::picture::Picture;
 use crate::plan::{Plan, Stage};
 use crate::render::two_way::greatest_gather_radius;
 use crate::render::{Memo, PreparedRenderer, RENDERERS, RenderOrder, Task, Technique, Watch};
-use crate::scene::{Caustics, GeometrySettings, Prepared, Scene, Settings};
+use crate::scene::{Caustics, GeometrySettings, Object, Prepared, Scene, Settings};
 use crate::study::options::resized;
 use crate::study::{Options, StudyError};
 use serde::{Deserialize, Serialize};
@@ -88,6 +88,11 @@ impl StudiedScene {
     /// The words, if the scene has no need of a stage.
     pub(super) fn lacks(&self, stage: Stage, why: &'static str) -> Option<&'static str> {
         (!self.plan.needs(stage)).then_some(why)
+    }
+
+    /// Whether no procedural model is in the scene.
+    pub(super) fn has_no_models(&self) -> bool {
+        !self.scene.objects.iter().any(Object::has_models)
     }
 
     /// All knobs as the scene has them.

@@ -6,12 +6,17 @@ use crate::illumination::light::LightShape;
 use crate::illumination::material::{Classic, Material};
 use crate::illumination::texture::{Motif, Pattern, TextureMapping};
 use crate::illumination::{Light, Paint};
+use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::Ray;
+use crate::octree::Instance;
 use crate::render::RENDERERS;
-use crate::scene::{Camera, Interreflection, Lens, Object, Settings, Shape};
+use crate::scene::{
+    Camera, Instances, Interreflection, Lens, Object, PlacementList, Placing, Procedural, ProceduralModel, Settings,
+    Shape,
+};
 use crate::solid::Primitive;
 use crate::stages::{StageEvent, observed};
-use glam::{DMat4, DVec3};
+use glam::{DAffine3, DMat4, DVec3};
 use std::f64::consts::PI;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -59,7 +64,41 @@ fn eight_settings_of_samples_need_one_octree() {
     assert_eq!(base.prepared.accelerations(), 1);
 }
 
-/// Every knob has something to do: a ball that mirrors, on tiles beside a colored wall, under a lamp with a spectrum.
+/// A diffuse ball that is made on demand, and a narrow box where it is hardly seen.
+#[derive(Debug)]
+struct ModelledBall;
+
+impl ProceduralModel for ModelledBall {
+    fn bounds(&self) -> Bounds {
+        Bounds { min: DVec3::splat(-0.4), max: DVec3::splat(0.4) }
+    }
+
+    fn kinds(&self) -> u32 {
+        1
+    }
+
+    fn make(&self, _: u32, detail: f64) -> Result<Vec<Object>, String> {
+        let ball = Shape::from(Primitive::Sphere { radius: 0.4 });
+        let coarse = Shape::from(Primitive::Box { size: DVec3::new(0.2, 0.7, 0.2) });
+        Ok(vec![object(if detail < 1.0 { ball } else { coarse }, DMat4::IDENTITY, diffuse(0.7))])
+    }
+
+    fn definition(&self) -> String {
+        "a ball".into()
+    }
+}
+
+/// An instance of it.
+fn modelled(at: DVec3) -> Object {
+    let ball = Object::procedural("ball".into(), Procedural::new(Arc::new(ModelledBall)).expect("a ball"));
+    let here = Instance { prototype: 0, variation: 0, placement: DAffine3::from_translation(at) };
+    let placing = Placing::Listed(PlacementList(vec![here]));
+    let shape = Shape::Instances(Box::new(Instances { prototypes: vec![vec![ball]], placing }));
+    Object { name: "balls".into(), shape, transform: DMat4::IDENTITY, material: None, tolerance: None }
+}
+
+/// Every knob has something to do: a ball that mirrors and one that is made on demand, on tiles beside a colored wall,
+/// under a lamp with a spectrum.
 fn all_knobs() -> Scene {
     let (paints, laying) = (
         vec![Paint::grey(0.2), Paint::grey(0.8)],
@@ -76,11 +115,7 @@ fn all_knobs() -> Scene {
             Classic { diffuse: red, ..Classic::default() },
         ),
         object(Shape::from(Primitive::Sphere { radius: 0.6 }), DMat4::from_translation(DVec3::Y * 0.6), mirror(0.8)),
-        object(
-            Shape::from(Primitive::Sphere { radius: 0.4 }),
-            DMat4::from_translation(DVec3::new(1.0, 0.4, 0.3)),
-            diffuse(0.7),
-        ),
+        modelled(DVec3::new(1.0, 0.4, 0.3)),
     ];
     let patch = LightShape::Rectangle { corner: DVec3::new(-0.5, 2.5, 0.0), across: DVec3::X, up: DVec3::Z };
     let steep = Spectrum::regular(400.0, 100.0, vec![0.0, 0.2, 1.0, 0.1], Extrapolation::Held).expect("a spectrum");

@@ -8,7 +8,7 @@ use crate::illumination::texture::{Motif, Pattern, TextureMapping};
 use crate::numeric::bounds::Bounds;
 use crate::octree::Instance;
 use crate::plan::Plan;
-use crate::scene::{Object, Prepared, Procedural, ProceduralModel, Scene};
+use crate::scene::{Object, Prepared, Procedural, ProceduralModel, Scene, Settings};
 use crate::solid::Primitive;
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use std::sync::Arc;
@@ -170,12 +170,12 @@ fn the_detail_that_is_made_is_that_of_a_quarter_pixel_near_and_far() {
         Ok(vec![ball])
     }
     let prepared = prepared(&field(model(1.0, 1, balls)), row);
-    let details = prepared.details(&[prepared.view()], 1920, 960).expect("a model");
+    let details = prepared.details(&[prepared.view()], &Settings::of_size(1920, 960, 1)).expect("a model");
     let triangles = |z: f64| {
         let placement = DAffine3::from_translation(DVec3::new(0.0, 0.0, z));
         let placed = crate::octree::PlacedSurface { placement, variation: 0, largest: 0.0 };
         let made = details.made(0, &placed).expect("a model");
-        made.as_ref().as_ref().expect("made").contents().triangles.len() as f64
+        made.contents().triangles.len() as f64
     };
     let counts = [-5.0, -39.0, -158.0, -638.0].map(triangles);
     // The chord error of a sphere is as the area of its triangles, and what a pixel spans as the distance.

@@ -1,6 +1,6 @@
 //! What a pixel spans where a model stands.
 
-use super::View;
+use super::{ImageSettings, Settings, View};
 use crate::numeric::bounds::Bounds;
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 
@@ -12,17 +12,18 @@ const SIMILAR: f64 = 0.999;
 pub struct DetailView {
     /// The eye; none of parallel lines of sight.
     eye: Option<DVec3>,
-    /// What a pixel spans: at a distance of 1 from the eye, in the middle of the picture; anywhere where there is no eye.
+    /// What a pixel spans, or as many as the detail has: at a distance of 1 from the eye, in the middle of the picture; anywhere where there is no eye.
     pixel: f64,
 }
 
 impl DetailView {
-    /// That of a view in a picture of some size.
-    pub fn new(view: &View, width: u32, height: u32) -> DetailView {
+    /// That of a view in the pictures that settings ask for.
+    pub fn new(view: &View, settings: &Settings) -> DetailView {
+        let ImageSettings { width, height, .. } = settings.image;
         let to_clip = view.projection().map_or(DMat4::IDENTITY, |projection| projection.to_clip);
         let rows = to_clip.transpose();
         let (x, y, w) = (rows.x_axis, rows.y_axis, rows.w_axis);
-        let across = x.truncate().length() * 0.5 * f64::from(width.min(height).max(1));
+        let across = x.truncate().length() * 0.5 * f64::from(width.min(height).max(1)) / settings.geometry.detail;
         // The eye is where all lines of sight meet.
         let eye = DMat3::from_cols(x.truncate(), y.truncate(), w.truncate()).transpose().inverse()
             * -DVec3::new(x.w, y.w, w.w);
@@ -67,7 +68,7 @@ mod tests {
 
     #[test]
     fn a_pixel_spans_as_much_as_the_model_is_far_whatever_its_own_units_are() {
-        let view = DetailView::new(&View::Camera(camera()), 640, 480);
+        let view = DetailView::new(&View::Camera(camera()), &Settings::of_size(640, 480, 1));
         let bounds = Bounds { min: DVec3::splat(-0.5), max: DVec3::splat(0.5) };
         for scale in [1e-6, 1.0, -2.0, 1e6] {
             let size = f64::abs(scale);
@@ -84,7 +85,7 @@ mod tests {
 
     #[test]
     fn a_stretched_model_is_made_for_its_most_stretched_direction() {
-        let view = DetailView::new(&View::Camera(camera()), 640, 480);
+        let view = DetailView::new(&View::Camera(camera()), &Settings::of_size(640, 480, 1));
         let bounds = Bounds { min: DVec3::splat(-1e-6), max: DVec3::splat(1e-6) };
         let placement = DAffine3 {
             matrix3: DMat3::from_diagonal(DVec3::new(1.0, 1.0, 8.0)),
@@ -98,7 +99,7 @@ mod tests {
     #[test]
     fn a_parallel_view_spans_the_same_everywhere() {
         let parallel = Some(Parallel { height: 12.0, oblique: glam::DVec2::ZERO });
-        let view = DetailView::new(&View::Camera(Camera { parallel, ..camera() }), 640, 480);
+        let view = DetailView::new(&View::Camera(Camera { parallel, ..camera() }), &Settings::of_size(640, 480, 1));
         let bounds = Bounds { min: DVec3::splat(-0.5), max: DVec3::splat(0.5) };
         for at in [DVec3::ZERO, DVec3::new(1.0, 2.0, -300.0)] {
             let placement = DAffine3 { matrix3: DMat3::IDENTITY * 2.0, translation: at };

@@ -60,7 +60,7 @@ pub use procedural::MOST_KINDS;
 pub use sculpture::{Sculpture, SculptureError, SurfaceSheet};
 pub use settings::{
     Caustics, GeometrySettings, ImageSettings, LightSettings, MAX_PHOTONS, MAX_REFLECTION_DEPTH, MAX_SAMPLES,
-    PhotonSettings, RadiositySettings, Settings,
+    MOST_DETAIL, PhotonSettings, RadiositySettings, Settings,
 };
 pub use shape_mesh::ShapeMesh;
 pub use solid::PrimitiveSolid;

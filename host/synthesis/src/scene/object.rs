@@ -217,7 +217,7 @@ pub trait ProceduralModel: fmt::Debug + Send + Sync {
 #[derive(Clone)]
 pub struct Procedural {
     pub(super) model: Arc<dyn ProceduralModel>,
-    /// The first of its kinds, as finely as it is made.
+    /// The first of its kinds, as it is made without a view.
     pub(super) pattern: Arc<Vec<Object>>,
 }
 

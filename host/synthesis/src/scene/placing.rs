@@ -8,7 +8,7 @@ use super::prepared::{Contents, PreparedObject};
 use super::procedural::geometry_of;
 use super::shape_mesh::ShapeMesh;
 use super::stretch::largest_stretch;
-use super::{DetailView, GeometrySettings, ImageSettings, Motion, SceneError, Settings};
+use super::{DetailView, GeometrySettings, Motion, SceneError, Settings};
 use crate::illumination::Material;
 use crate::memory;
 use crate::mesh::{MeshPlace, PlacedMeshes, RepeatedMesh};
@@ -73,9 +73,8 @@ impl Contents {
             let copied = CopiedInstances::new(&object.name, instances, &whole, geometry)?;
             self.short_scatters.extend(copied.short_scatters());
             let motion = self.objects[index as usize].motion;
-            let ImageSettings { width, height, .. } = settings.image;
             let is_framed = self.camera.from.is_finite();
-            let view = is_framed.then(|| DetailView::new(&self.view(), width, height));
+            let view = is_framed.then(|| DetailView::new(&self.view(), settings));
             self.objects[index as usize].copies =
                 copied.add_to(self, &object.name, transform, motion, geometry, view.as_ref())?;
             return Ok(());

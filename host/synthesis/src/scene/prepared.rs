@@ -159,9 +159,9 @@ impl Deref for Prepared {
 }
 
 impl Contents {
-    pub(super) fn new(scene: &Scene) -> Result<Contents, SceneError> {
-        scene.check()?;
-        let mut contents = Contents {
+    /// Nothing of a scene but its lights.
+    pub(super) fn empty(scene: &Scene) -> Contents {
+        Contents {
             vertices: Arc::default(),
             triangles: Arc::default(),
             object_of: Vec::new(),
@@ -183,7 +183,12 @@ impl Contents {
             models: Vec::new(),
             octrees: AccelerationCache::default(),
             details: LastDetails::default(),
-        };
+        }
+    }
+
+    pub(super) fn new(scene: &Scene) -> Result<Contents, SceneError> {
+        scene.check()?;
+        let mut contents = Contents::empty(scene);
         let mut shared = SharedMeshes::of(scene);
         let motions: FxHashMap<u32, Motion> = match scene.settings.geometry.shutter > 0.0 {
             true => scene.motions.iter().copied().collect(),

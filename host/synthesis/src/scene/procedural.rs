@@ -27,7 +27,7 @@ const COARSE_ANGLE: f64 = 60.0;
 const PATTERN_CHORD: f64 = 1.0 / 64.0;
 
 impl Procedural {
-    /// Checks a model, and makes the first of its kinds: its materials are those of all.
+    /// Checks a model, and makes the first of its kinds as finely as where no view tells how: its materials are those of all.
     ///
     /// # Errors
     /// What is wrong, in words.
@@ -41,7 +41,7 @@ impl Procedural {
             return Err(format!("{kinds} kinds are not between 1 and {MOST_KINDS}"));
         }
         let made = Procedural { model, pattern: Arc::default() };
-        let pattern = made.objects(0, made.finest())?;
+        let pattern = made.objects(0, made.detail_within(None))?;
         if pattern.is_empty() {
             return Err("it makes nothing".into());
         }
@@ -168,7 +168,8 @@ pub(super) fn tolerance_of(detail: f64) -> Tolerance {
 pub(super) fn geometry_of(detail: f64) -> GeometrySettings {
     let Tolerance { chord, angle } = tolerance_of(detail);
     // No more than a pixel is seen of what exact surfaces would add.
-    GeometrySettings { tolerance: Some(chord), angle, exact_surfaces: false, shutter: 0.0, copies_instances: false }
+    let own = GeometrySettings { tolerance: Some(chord), angle, ..GeometrySettings::DEFAULT };
+    GeometrySettings { exact_surfaces: false, shutter: 0.0, ..own }
 }
 
 /// Refuses what a model may not be made of.

@@ -10,6 +10,8 @@ use serde::{Deserialize, Serialize};
 pub const MAX_SAMPLES: u32 = 65_536;
 /// Most photons that are traced at a time: stored, they take up to 1.2 GB.
 pub const MAX_PHOTONS: u32 = 16_000_000;
+/// Most pixels that the detail has which models leave out.
+pub const MOST_DETAIL: f64 = 256.0;
 /// Deepest chain of reflections.
 pub const MAX_REFLECTION_DEPTH: u32 = 1_000;
 
@@ -60,6 +62,8 @@ pub struct GeometrySettings {
     pub exact_surfaces: bool,
     /// How long the shutter is open, in the unit of time of motions.
     pub shutter: f64,
+    /// How many pixels small the detail is that procedural models may leave out, 1/256 to 256: 1 is what a pixel spans.
+    pub detail: f64,
     /// Whether instances become objects of their own, for renderers that go through triangles one by one.
     pub copies_instances: bool,
 }
@@ -209,8 +213,14 @@ impl ImageSettings {
 
 impl GeometrySettings {
     /// What holds without a word.
-    pub const DEFAULT: GeometrySettings =
-        GeometrySettings { tolerance: None, angle: 45.0, exact_surfaces: true, shutter: 1.0, copies_instances: false };
+    pub const DEFAULT: GeometrySettings = GeometrySettings {
+        tolerance: None,
+        angle: 45.0,
+        exact_surfaces: true,
+        shutter: 1.0,
+        detail: 1.0,
+        copies_instances: false,
+    };
 
     fn check(&self) -> Result<(), String> {
         if !(self.angle > 0.0 && self.angle <= 180.0) {
@@ -218,6 +228,9 @@ impl GeometrySettings {
         }
         if !(self.shutter >= 0.0 && self.shutter.is_finite()) {
             return Err(format!("a shutter that is open for {} is no shutter", self.shutter));
+        }
+        if !(1.0 / MOST_DETAIL..=MOST_DETAIL).contains(&self.detail) {
+            return Err(format!("detail of {} pixels is not within 1/{MOST_DETAIL} to {MOST_DETAIL}", self.detail));
         }
         self.tolerance.map_or(Ok(()), check_tolerance)
     }

@@ -16,7 +16,7 @@ pub(in crate::render) struct FoundTriangle {
     /// How it was brought to where it is, if it is not kept there.
     pub(super) carrier: Option<Carrier>,
     /// What was made on demand and has it, if the scene does not.
-    made: Option<Arc<Option<MadeDetail>>>,
+    made: Option<Arc<MadeDetail>>,
 }
 
 impl FoundTriangle {
@@ -36,18 +36,14 @@ impl FoundTriangle {
         FoundTriangle { hit, triangle: hit.triangle, carrier: Some(Carrier::placed(&placed, moved)), made }
     }
 
-    fn detail(&self) -> Option<&MadeDetail> {
-        self.made.as_deref().and_then(Option::as_ref)
-    }
-
     /// The triangles among which it has its number.
     pub(super) fn contents<'c>(&'c self, scene: &'c Prepared) -> &'c Contents {
-        self.detail().map_or(scene, MadeDetail::contents)
+        self.made.as_deref().map_or(scene, MadeDetail::contents)
     }
 
     /// Its object of the scene, and which material of that it has.
     pub(super) fn object_and_material(&self, scene: &Prepared) -> [u32; 2] {
-        match self.detail() {
+        match &self.made {
             Some(made) => made.object_and_material(self.triangle),
             None => [scene.object_of[self.triangle as usize], scene.material_number(self.triangle)],
         }
@@ -70,7 +66,7 @@ fn placed(
     octree: &InstanceOctree,
     path: &InstancePath,
     details: Option<&Details>,
-) -> (PlacedSurface, Option<Arc<Option<MadeDetail>>>) {
+) -> (PlacedSurface, Option<Arc<MadeDetail>>) {
     let Some(details) = details else { return (octree.placed(path), None) };
     let noting = Noting { details, last: RefCell::new(None) };
     let placed = octree.made_by(Some(&noting)).placed(path);
@@ -80,15 +76,13 @@ fn placed(
 /// Gives what is made, and notes it.
 struct Noting<'d> {
     details: &'d Details,
-    last: RefCell<Option<Arc<Option<MadeDetail>>>>,
+    last: RefCell<Option<Arc<MadeDetail>>>,
 }
 
 impl PrototypeMaker for Noting<'_> {
     fn give(&self, model: u32, placed: &PlacedSurface, to: &mut dyn FnMut(&InstanceOctree)) {
         let made = self.details.made(model, placed);
-        if let Some(detail) = made.as_deref().and_then(Option::as_ref) {
-            to(detail.octree());
-        }
+        made.iter().flat_map(|made| made.octree()).for_each(to);
         *self.last.borrow_mut() = made;
     }
 }

@@ -16,9 +16,7 @@ use crate::numeric::ray::{Hit, Ray};
 use crate::octree::{Octree, SurfacePoints};
 use crate::plan::{Plan, Stage};
 use crate::render::RenderError;
-use crate::scene::{
-    Acceleration, AccelerationKey, Details, Footprint, ImageSettings, Prepared, SceneOctree, footprint,
-};
+use crate::scene::{Acceleration, AccelerationKey, Details, Footprint, Prepared, SceneOctree, footprint};
 use crate::stages::stage;
 use glam::DVec3;
 use std::sync::Arc;
@@ -103,8 +101,7 @@ impl<'a> World<'a> {
             let opaque = has_open.then(|| still.triangles().map(is_opaque).collect());
             LightBuffer::new(&prepared.bounds, &appearance.sources, opaque)
         });
-        let ImageSettings { width, height, .. } = prepared.settings.image;
-        let details = prepared.details(plan.views(), width, height);
+        let details = prepared.details(plan.views(), &prepared.settings);
         World { appearance, acceleration, light_buffer, points: None, details }
     }
 

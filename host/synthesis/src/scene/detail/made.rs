@@ -8,6 +8,7 @@ use super::super::{PreparedObject, Scene, SceneError, Settings};
 use crate::illumination::Material;
 use crate::numeric::bounds::Bounds;
 use crate::octree::{Instance, InstanceOctree, MOST_MADE_LEVELS, PlacementForm, Prototype};
+use crate::stages::stage;
 use glam::DAffine3;
 use std::sync::Arc;
 
@@ -20,7 +21,8 @@ const LOOSE: f64 = 1.0 / 16.0;
 #[derive(Debug)]
 pub struct MadeDetail {
     contents: Contents,
-    octree: InstanceOctree,
+    /// None without any triangles.
+    octree: Option<InstanceOctree>,
     /// The object of the scene that has its materials.
     object: u32,
     /// For each of its objects, which of these materials are its own.
@@ -28,11 +30,18 @@ pub struct MadeDetail {
 }
 
 impl MadeDetail {
+    /// Nothing at all.
+    pub(super) fn nothing() -> MadeDetail {
+        let contents = Contents::empty(&Scene::default());
+        MadeDetail { contents, octree: None, object: 0, material_of: Vec::new() }
+    }
+
     /// Makes it.
     ///
     /// # Errors
     /// [`SceneError`], for what cannot be made, has another material, or is out of the box of the model.
     pub(super) fn new(of: &PlacedModel, seed: u32, level: i32) -> Result<MadeDetail, SceneError> {
+        let _stage = stage!("making detail");
         let detail = of.model.detail_of(level);
         let name = || format!("model of seed {seed} at detail {detail:.3}");
         let failed = |problem: String| SceneError::Object { object: name(), problem };
@@ -70,12 +79,13 @@ impl MadeDetail {
             let most = MOST_MADE_LEVELS - 1;
             return Err(failed(format!("its instances are nested more than {most} times")));
         }
+        let octree = (octree.count() > 0).then_some(octree);
         Ok(MadeDetail { contents, octree, object: of.object, material_of })
     }
 
-    /// The octree over it; hits name its own triangles.
-    pub fn octree(&self) -> &InstanceOctree {
-        &self.octree
+    /// The octree over it, whose hits name its own triangles; none without any.
+    pub fn octree(&self) -> Option<&InstanceOctree> {
+        self.octree.as_ref()
     }
 
     /// Its triangles.
@@ -91,7 +101,7 @@ impl MadeDetail {
 
     /// How much memory it takes.
     pub(super) fn bytes(&self) -> u64 {
-        self.contents.bytes() + self.octree.all_bytes() as u64
+        self.contents.bytes() + self.octree.as_ref().map_or(0, InstanceOctree::all_bytes) as u64
     }
 }
 

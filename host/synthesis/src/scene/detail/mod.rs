@@ -13,7 +13,7 @@ pub use made::MadeDetail;
 
 use super::placed_models::{KeptDetails, PlacedModel};
 use super::prepared::Contents;
-use super::{DetailView, SceneError, View};
+use super::{DetailView, SceneError, Settings, View};
 use crate::memory;
 use crate::octree::{InstanceOctree, PlacedSurface, PrototypeMaker};
 use cache::DetailCache;
@@ -32,7 +32,7 @@ const STACK: usize = 16 << 20;
 pub struct Details {
     models: Vec<Arc<PlacedModel>>,
     views: Vec<DetailView>,
-    cache: DetailCache<DetailKey, Option<MadeDetail>>,
+    cache: DetailCache<DetailKey, MadeDetail>,
     failed: OnceLock<String>,
 }
 
@@ -45,13 +45,13 @@ struct DetailKey {
 }
 
 impl Contents {
-    /// What is made of its models for some views in a picture of some size; none without models. Those that were asked for
+    /// What is made of its models for some views in the pictures that settings ask for; none without models. Those that were asked for
     /// last are given again for the same views.
-    pub fn details(&self, views: &[View], width: u32, height: u32) -> Option<Arc<Details>> {
+    pub fn details(&self, views: &[View], settings: &Settings) -> Option<Arc<Details>> {
         if self.models.is_empty() {
             return None;
         }
-        let views: Vec<DetailView> = views.iter().map(|view| DetailView::new(view, width, height)).collect();
+        let views: Vec<DetailView> = views.iter().map(|view| DetailView::new(view, settings)).collect();
         let mut last = self.details.last();
         if let Some(details) = known(&last).filter(|details| details.views == views) {
             return Some(details);
@@ -78,22 +78,21 @@ fn known(last: &Option<KeptDetails>) -> Option<Arc<Details>> {
 }
 
 impl Details {
-    /// What a model makes for an instance; none if it cannot, which [`Details::check`] tells.
-    pub fn made(&self, model: u32, placed: &PlacedSurface) -> Option<Arc<Option<MadeDetail>>> {
+    /// What a model makes for an instance; nothing if it cannot, which [`Details::check`] tells. None if there is no such
+    /// model.
+    pub fn made(&self, model: u32, placed: &PlacedSurface) -> Option<Arc<MadeDetail>> {
         let of = self.models.get(model as usize)?;
         let bounds = of.model.bounds();
         let footprints = self.views.iter().map(|view| view.footprint(&placed.placement, &bounds));
         let level = of.model.level(footprints.fold(f64::INFINITY, f64::min));
         let key = DetailKey { model, seed: of.model.seed(placed.variation), level };
-        Some(self.cache.get(key, || match make(of, key) {
-            Ok(made) => {
-                let bytes = made.bytes();
-                (Some(made), bytes)
-            }
-            Err(error) => {
+        Some(self.cache.get(key, || {
+            let made = make(of, key).unwrap_or_else(|error| {
                 _ = self.failed.set(error.to_string());
-                (None, 0)
-            }
+                MadeDetail::nothing()
+            });
+            let bytes = made.bytes();
+            (made, bytes)
         }))
     }
 
@@ -113,10 +112,8 @@ impl Details {
 
 impl PrototypeMaker for Details {
     fn give(&self, model: u32, placed: &PlacedSurface, to: &mut dyn FnMut(&InstanceOctree)) {
-        if let Some(made) = self.made(model, placed)
-            && let Some(made) = made.as_ref()
-        {
-            to(made.octree());
+        if let Some(made) = self.made(model, placed) {
+            made.octree().into_iter().for_each(to);
         }
     }
 }
