@@ -13,11 +13,14 @@ use crate::solid::Primitive;
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use std::sync::Arc;
 
+/// What makes a model.
+type Maker = fn(u32, f64) -> Result<Vec<Object>, String>;
+
 /// A model that a function makes.
 struct Made {
     bounds: Bounds,
     kinds: u32,
-    make: fn(u32, f64) -> Result<Vec<Object>, String>,
+    make: Maker,
 }
 
 impl std::fmt::Debug for Made {
@@ -44,7 +47,7 @@ impl ProceduralModel for Made {
     }
 }
 
-fn model(half: f64, kinds: u32, make: fn(u32, f64) -> Result<Vec<Object>, String>) -> Object {
+fn model(half: f64, kinds: u32, make: Maker) -> Object {
     let bounds = Bounds { min: DVec3::splat(-half), max: DVec3::splat(half) };
     let model = Procedural::new(Arc::new(Made { bounds, kinds, make })).unwrap_or_else(|problem| panic!("{problem}"));
     Object::procedural("model".into(), model)
@@ -213,7 +216,7 @@ fn glass_that_is_made_on_demand_lets_light_through_as_other_glass_does() {
 #[test]
 fn what_cannot_be_made_is_told_before_or_with_the_picture() {
     let row = Technique::RayTracing.row();
-    let cases: [(fn(u32, f64) -> Result<Vec<Object>, String>, &str); 3] = [
+    let cases: [(Maker, &str); 3] = [
         (|seed, _| if seed < 30 { cubes(0, 1.0) } else { Err("too old".into()) }, "too old"),
         (|seed, _| cubes(if seed == 7 { 40 } else { 1 }, 1.0), "out of the box of its model"),
         (
@@ -227,12 +230,12 @@ fn what_cannot_be_made_is_told_before_or_with_the_picture() {
     ];
     for (make, words) in cases {
         let scene = field(model(1.2, 40, make));
-        let error = render(&prepared(&scene, row), row, 2).err().expect("no picture");
+        let Err(error) = render(&prepared(&scene, row), row, 2) else { panic!("a picture without {words}") };
         assert!(matches!(&error, RenderError::Model(problem) if problem.contains(words)), "{error}");
     }
     let unsound = |half: f64, kinds: u32, make| {
         let bounds = Bounds { min: DVec3::splat(-half), max: DVec3::splat(half) };
-        Procedural::new(Arc::new(Made { bounds, kinds, make })).err().expect("refused")
+        Procedural::new(Arc::new(Made { bounds, kinds, make })).expect_err("refused")
     };
     assert!(unsound(-1.0, 1, cubes).contains("has no size"));
     assert!(unsound(f64::NAN, 1, cubes).contains("has no size"));
