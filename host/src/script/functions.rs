@@ -6,15 +6,19 @@ use super::{
     table, texturing, wind,
 };
 
+/// The tables of functions that give objects their shapes.
+const SHAPES: [&[Function]; 6] = [
+    solids::FUNCTIONS,
+    shaping::FUNCTIONS,
+    surfaces::FUNCTIONS,
+    subdividing::FUNCTIONS,
+    instancing::FUNCTIONS,
+    procedural::FUNCTIONS,
+];
+
 /// Every function that a script may call: those that make and combine objects, then the others.
 pub fn functions() -> impl Iterator<Item = &'static Function> {
-    [
-        solids::FUNCTIONS,
-        shaping::FUNCTIONS,
-        surfaces::FUNCTIONS,
-        subdividing::FUNCTIONS,
-        instancing::FUNCTIONS,
-        procedural::FUNCTIONS,
+    let others = [
         wind::FUNCTIONS,
         materials::FUNCTIONS,
         texturing::FUNCTIONS,
@@ -23,22 +27,13 @@ pub fn functions() -> impl Iterator<Item = &'static Function> {
         showing::FUNCTIONS,
         stored::FUNCTIONS,
         table::FUNCTIONS,
-    ]
-    .into_iter()
-    .flatten()
+    ];
+    SHAPES.into_iter().chain(others).flatten()
 }
 
 /// Whether a function gives an object its shape, rather than a place, a material or a name.
 pub(super) fn makes_shapes(function: &Function) -> bool {
-    let families = [
-        solids::FUNCTIONS,
-        shaping::FUNCTIONS,
-        surfaces::FUNCTIONS,
-        subdividing::FUNCTIONS,
-        instancing::FUNCTIONS,
-        procedural::FUNCTIONS,
-    ];
-    families.into_iter().flatten().any(|row| row.name == function.name)
+    SHAPES.into_iter().flatten().any(|row| row.name == function.name)
 }
 
 /// The reference of all functions, as Markdown.

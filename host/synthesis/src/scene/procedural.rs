@@ -106,18 +106,6 @@ impl Procedural {
         self.pattern.iter().flat_map(Object::operand_materials).collect()
     }
 
-    /// For each material of objects that it made, the place among its materials of the one that is equal.
-    ///
-    /// # Errors
-    /// What is wrong, in words, for a material that it does not have.
-    pub(super) fn places_of(&self, made: &[Material]) -> Result<Vec<u32>, String> {
-        let known = self.materials();
-        let place = |material: &Material| known.iter().position(|other| other == material).map(|place| place as u32);
-        made.iter().map(place).collect::<Option<Vec<u32>>>().ok_or_else(|| {
-            "its materials differ by seed or detail; take varied() for colours that do, and the same materials".into()
-        })
-    }
-
     /// The triangles of one of its kinds, as one mesh; its operands are its materials.
     ///
     /// # Errors
@@ -127,7 +115,7 @@ impl Procedural {
         let Tolerance { chord, angle } = tolerance_of(detail);
         let mut made = together(&objects, Some(chord), angle, 0)?;
         let materials: Vec<Material> = objects.iter().flat_map(Object::operand_materials).collect();
-        let places = self.places_of(&materials).map_err(ShapeError::Model)?;
+        let places = places_among(&self.materials(), &materials).map_err(ShapeError::Model)?;
         made.operand_of.iter_mut().for_each(|operand| *operand = places[*operand as usize]);
         made.mesh.surfaces.clone_from(&made.operand_of);
         Ok(made)
@@ -157,6 +145,18 @@ impl Object {
         let shape = Shape::Procedural(model);
         Object { name, shape, transform: DMat4::IDENTITY, material: None, tolerance: None }
     }
+}
+
+/// For each material of what a model made, the place of the one that is equal among those of its first kind.
+///
+/// # Errors
+/// What is wrong, in words, for a material that is not there.
+pub(super) fn places_among(known: &[Material], made: &[Material]) -> Result<Vec<u32>, String> {
+    let place = |material: &Material| known.iter().position(|other| other == material).map(|place| place as u32);
+    made.iter()
+        .map(place)
+        .collect::<Option<Vec<u32>>>()
+        .ok_or_else(|| "it has a material that the model of seed 0 has not; varied() tells colours that differ".into())
 }
 
 /// How closely triangles follow surfaces of what is made with a detail.

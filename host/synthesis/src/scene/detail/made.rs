@@ -3,9 +3,8 @@
 use super::super::acceleration::AccelerationKey;
 use super::super::placed_models::PlacedModel;
 use super::super::prepared::Contents;
-use super::super::procedural::geometry_of;
+use super::super::procedural::{geometry_of, places_among};
 use super::super::{PreparedObject, Scene, SceneError, Settings};
-use crate::illumination::Material;
 use crate::numeric::bounds::Bounds;
 use crate::octree::{Instance, InstanceOctree, MOST_MADE_LEVELS, PlacementForm, Prototype};
 use crate::stages::stage;
@@ -49,13 +48,8 @@ impl MadeDetail {
         let objects = objects.iter().map(|object| object.within(&of.whole).into_owned()).collect();
         let settings = Settings { geometry: geometry_of(detail), ..Settings::default() };
         let contents = Contents::new(&Scene { objects, settings, ..Scene::default() })?;
-        let place =
-            |material: &Material| of.materials.iter().position(|known| known == material).map(|place| place as u32);
-        let placed_of = |object: &PreparedObject| object.materials.iter().map(place).collect();
-        let material_of =
-            contents.objects.iter().map(placed_of).collect::<Option<Vec<Vec<u32>>>>().ok_or_else(|| {
-                failed("it has a material that the model of seed 0 has not; varied() tells colours that differ".into())
-            })?;
+        let places = |object: &PreparedObject| places_among(&of.materials, &object.materials);
+        let material_of = contents.objects.iter().map(places).collect::<Result<_, String>>().map_err(failed)?;
         let kept = AccelerationKey { objects: vec![true; contents.objects.len()], motions: false };
         let still = contents.still(&kept).map_err(|error| failed(error.to_string()))?;
         let standing = contents.objects.iter().filter(|object| object.placed_by.is_none() && object.instances == 0);

@@ -45,8 +45,8 @@ struct DetailKey {
 }
 
 impl Contents {
-    /// What is made of its models for some views in the pictures that settings ask for; none without models. Those that were asked for
-    /// last are given again for the same views.
+    /// What is made of its models for some views in the pictures that settings ask for; none without models. Those that
+    /// were asked for last are given again for the same views.
     pub fn details(&self, views: &[View], settings: &Settings) -> Option<Arc<Details>> {
         if self.models.is_empty() {
             return None;
