@@ -47,7 +47,7 @@ fn a_pixel_is_explained_as_it_is_rendered() {
 }
 
 #[test]
-fn stages_are_timed_and_rows_lie_within_the_time_of_their_rendering() {
+fn stages_are_timed_and_blocks_lie_within_the_time_of_their_rendering() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     fs::write(folder.join("a.rhai"), SCENE).unwrap();
@@ -65,12 +65,12 @@ fn stages_are_timed_and_rows_lie_within_the_time_of_their_rendering() {
         events.map(|event| [&event["ts"], &event["dur"]].map(|number| number.as_f64().unwrap())).collect()
     };
     // One pass of a sample, one up to 8, one up to 16; and those of the meter.
-    let (renderings, rows) = (spans("rendering"), spans("row"));
-    assert!(renderings.len() == 2 && rows.len() >= 3 * 32, "{profile}");
+    let (renderings, blocks) = (spans("rendering"), spans("block"));
+    assert!(renderings.len() == 2 && blocks.len() >= 3 * 2 * 3, "{profile}");
     let is_within = |[begin, length]: &[f64; 2]| {
         renderings.iter().any(|[first, whole]| first <= begin && begin + length <= first + whole)
     };
-    assert!(rows.iter().all(is_within), "{profile}");
+    assert!(blocks.iter().all(is_within), "{profile}");
     let table = peris(&["plan", "a.rhai", "--seconds"], folder).out;
     let octree = table.lines().find(|line| line.contains(" octree ")).unwrap();
     assert!(octree.split_whitespace().any(|word| word.contains('.') && word.parse::<f64>().is_ok()), "{table}");

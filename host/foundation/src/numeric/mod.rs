@@ -3,6 +3,7 @@
 pub mod bounds;
 pub mod cubature;
 pub mod exact;
+pub mod hilbert;
 pub mod implicit;
 pub mod plane;
 pub mod predicates;

@@ -38,7 +38,7 @@ macro_rules! stage {
     };
 }
 
-/// Opens a part of a stage, for profiles: `part!(stage, "row", y)` is the part with the number `y` of a stage, on any
+/// Opens a part of a stage, for profiles: `part!(stage, "block", n)` is the part with the number `n` of a stage, on any
 /// thread. It ends when what is given back is dropped.
 #[macro_export]
 macro_rules! part {

@@ -79,7 +79,18 @@ impl Curve for BezierCurve {
 
     fn derivatives(&self, t: f64) -> [DVec3; 2] {
         let origin = casteljau(self.control.len(), t, |k| self.control[k]);
-        let basis = bernstein(self.degree(), t);
+        // Most degrees are low: short lists cost less to fill.
+        match self.degree() {
+            degree @ ..=7 => self.derivatives_by(&origin, &bernstein_in::<8>(degree, t)),
+            degree => self.derivatives_by(&origin, &bernstein(degree, t)),
+        }
+    }
+}
+
+impl BezierCurve {
+    /// - `origin`: the point.
+    /// - `basis`: Bernstein's polynomials and their derivatives.
+    fn derivatives_by<const MOST: usize>(&self, origin: &ControlPoint, basis: &[[f64; MOST]; 3]) -> [DVec3; 2] {
         let sum = |order: usize| {
             let terms = self.control.iter().zip(&basis[order]);
             let (mut point, mut weight) = (DVec3::ZERO, 0.0);
@@ -128,8 +139,13 @@ fn mixed<const MOST: usize>(count: usize, t: f64, at: impl Fn(usize) -> ControlP
 
 /// Bernstein's polynomials of `degree` at `t`, their first and their second derivatives.
 pub(crate) fn bernstein(degree: usize, t: f64) -> [Values; 3] {
-    let mut values = [[0.0; MAX_DEGREE + 1]; 3];
-    let mut current: Values = [0.0; MAX_DEGREE + 1];
+    bernstein_in::<{ MAX_DEGREE + 1 }>(degree, t)
+}
+
+/// Bernstein's polynomials of a `degree` below `MOST` at `t`, their first and their second derivatives.
+fn bernstein_in<const MOST: usize>(degree: usize, t: f64) -> [[f64; MOST]; 3] {
+    let mut values = [[0.0; MOST]; 3];
+    let mut current = [0.0; MOST];
     current[0] = 1.0;
     for n in 0..=degree {
         // `current` holds the polynomials of degree n. Derivatives are differences of those of a lower degree.
@@ -144,7 +160,7 @@ pub(crate) fn bernstein(degree: usize, t: f64) -> [Values; 3] {
                 values[0][k] = current[k];
             }
         }
-        for k in (0..=(n + 1).min(MAX_DEGREE)).rev() {
+        for k in (0..=(n + 1).min(MOST - 1)).rev() {
             current[k] = current[k] * (1.0 - t) + if k > 0 { current[k - 1] * t } else { 0.0 };
         }
     }

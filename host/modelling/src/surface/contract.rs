@@ -104,6 +104,22 @@ fn samples(surface: &dyn Surface, count: usize) -> Vec<DVec2> {
 }
 
 #[test]
+fn parameter_lines_give_points_and_normals_to_the_bit() {
+    for (name, surface) in members() {
+        let [low, high] = surface.domain();
+        for j in 0..=12 {
+            let v = between(low.y, high.y, f64::from(j) / 12.0);
+            let line = surface.line(v);
+            for i in 0..=12 {
+                let u = between(low.x, high.x, f64::from(i) / 12.0);
+                let uv = DVec2::new(u, v);
+                assert_eq!(line(u), [surface.point(uv), surface.normal(uv)], "{name} at {uv}");
+            }
+        }
+    }
+}
+
+#[test]
 fn derivatives_agree_with_differences_of_points() {
     for (name, surface) in members() {
         for uv in samples(&surface, 7) {

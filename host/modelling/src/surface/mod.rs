@@ -59,6 +59,9 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
+/// Gives the point and the outward unit normal of a surface at a parameter u, along a line where v stays.
+pub type ParameterLine<'s> = Box<dyn Fn(f64) -> [DVec3; 2] + 's>;
+
 /// A piece of a surface over a rectangle of parameters (u, v), with du x dv pointing outwards.
 ///
 /// Pieces that meet must agree bit by bit on the points of the common side at 0, 1/4, 1/2, 3/4 and 1 of its length in
@@ -81,6 +84,15 @@ pub trait Surface: Send + Sync {
 
     /// The outward unit normal; where the derivatives do not determine it, its limit from the inside of the domain.
     fn normal(&self, uv: DVec2) -> DVec3;
+
+    /// The line of a parameter v, which is in the domain. It gives what [`Surface::point`] and [`Surface::normal`] give, to
+    /// the bit.
+    fn line(&self, v: f64) -> ParameterLine<'_> {
+        Box::new(move |u| {
+            let uv = DVec2::new(u, v);
+            [self.point(uv), self.normal(uv)]
+        })
+    }
 
     /// The parameters of a point of the surface that is nearest to `point`, near `guess` if there are several.
     fn nearest(&self, point: DVec3, guess: DVec2) -> DVec2;
@@ -108,6 +120,10 @@ macro_rules! pointers {
 
             fn normal(&self, uv: DVec2) -> DVec3 {
                 (**self).normal(uv)
+            }
+
+            fn line(&self, v: f64) -> ParameterLine<'_> {
+                (**self).line(v)
             }
 
             fn nearest(&self, point: DVec3, guess: DVec2) -> DVec2 {

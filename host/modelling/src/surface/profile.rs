@@ -91,7 +91,14 @@ impl Profile {
 
     /// The point at `v`, 0..=1; model units. The same bits from either end.
     pub fn point(&self, v: f64) -> DVec2 {
-        self.jet(v)[0]
+        match self {
+            // Of a spline, the point alone costs far less.
+            Profile::Spline(curve) => {
+                let [low, high] = curve.domain();
+                curve.point(between(low, high, v)).truncate()
+            }
+            _ => self.jet(v)[0],
+        }
     }
 
     /// The first and the second derivative of the point by v.
@@ -102,7 +109,16 @@ impl Profile {
 
     /// The unit tangent; where the derivative vanishes, its limit from the middle of the curve.
     pub fn direction(&self, v: f64) -> DVec2 {
+        self.point_and_direction(v)[1]
+    }
+
+    /// The point, and the direction as [`Profile::direction`] tells it.
+    pub(super) fn point_and_direction(&self, v: f64) -> [DVec2; 2] {
         let [point, first, second] = self.jet(v);
+        [point, Profile::direction_of([point, first, second], v)]
+    }
+
+    fn direction_of([point, first, second]: [DVec2; 3], v: f64) -> DVec2 {
         let size = second.length() + point.length();
         if first.length() > VANISHING * size {
             return first.normalize();

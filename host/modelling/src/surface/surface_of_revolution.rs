@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 use super::curvature::Curved;
 use super::sphere::sine_and_cosine;
-use super::{Profile, Surface, between};
+use super::{ParameterLine, Profile, Surface, between};
 
 /// The surface that a [`Profile`] makes when it revolves about the y axis.
 ///
@@ -67,6 +67,16 @@ impl Surface for SurfaceOfRevolution {
     fn normal(&self, uv: DVec2) -> DVec3 {
         let along = self.profile.direction(uv.y);
         SurfaceOfRevolution::revolve(DVec2::new(along.y, -along.x), uv.x)
+    }
+
+    /// The circle of a parameter v, for which the profile is asked once.
+    fn line(&self, v: f64) -> ParameterLine<'_> {
+        let [point, along] = self.profile.point_and_direction(v);
+        let normal = DVec2::new(along.y, -along.x);
+        Box::new(move |u| {
+            let [sine, cosine] = sine_and_cosine(u);
+            [point, normal].map(|own| DVec3::new(own.x * sine, own.y, own.x * cosine))
+        })
     }
 
     fn nearest(&self, point: DVec3, guess: DVec2) -> DVec2 {

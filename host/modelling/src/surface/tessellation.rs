@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::shared_curves::{SharedCurves, along_side};
-use super::{Surface, between};
+use super::{ParameterLine, Surface, between};
 use crate::mesh::{Mesh, bits};
 
 /// The most segments along a side.
@@ -238,21 +238,21 @@ fn grid_uv([low, high]: [DVec2; 2], counts: [usize; 2], i: usize, j: usize) -> D
 fn estimate<S: Surface>(surface: &S) -> Option<[SegmentEstimate; 2]> {
     let domain = surface.domain();
     let mut estimates = [SegmentEstimate { sagitta: 0.0, turn: 0.0 }; 2];
+    // Points at the ends and middles of the segments of a few parameter lines.
+    let (along, across) = (2 * ESTIMATE_SEGMENTS, ESTIMATE_LINES - 1);
     for (axis, look) in estimates.iter_mut().enumerate() {
+        let counts = if axis == 0 { [along, across] } else { [across, along] };
+        let rows: Vec<Vec<[DVec3; 2]>> = (0..=counts[1])
+            .map(|j| {
+                let line = surface.line(grid_uv(domain, counts, 0, j).y);
+                (0..=counts[0]).map(|i| line(grid_uv(domain, counts, i, j).x)).collect()
+            })
+            .collect();
         for line in 0..ESTIMATE_LINES {
-            // Points at the ends and middles of the segments of one parameter line.
-            let sample = |k: usize| {
-                let (along, across) = (2 * ESTIMATE_SEGMENTS, ESTIMATE_LINES - 1);
-                let uv = match axis {
-                    0 => grid_uv(domain, [along, across], k, line),
-                    _ => grid_uv(domain, [across, along], line, k),
-                };
-                (surface.point(uv), surface.normal(uv))
-            };
-            let samples: Vec<(DVec3, DVec3)> = (0..=2 * ESTIMATE_SEGMENTS).map(sample).collect();
+            let sample = |k: usize| if axis == 0 { rows[line][k] } else { rows[k][line] };
             let is_side = line == 0 || line == ESTIMATE_LINES - 1;
-            for segment in samples.windows(3).step_by(2) {
-                let [(a, from), (middle, normal), (b, to)] = [segment[0], segment[1], segment[2]];
+            for k in (0..along).step_by(2) {
+                let [[a, from], [middle, normal], [b, to]] = [k, k + 1, k + 2].map(sample);
                 let offset = middle - (a + b) * 0.5;
                 if !offset.is_finite() {
                     return None;
@@ -272,8 +272,9 @@ fn estimate<S: Surface>(surface: &S) -> Option<[SegmentEstimate; 2]> {
 
 /// Whether a quad with the corners 00, 10, 11, 01 is cut from 10 to 01: if that is clearly nearer to the surface than
 /// the cut from 00 to 11.
-fn is_cut_backward<S: Surface>(surface: &S, middle: DVec2, corners: [DVec3; 4]) -> bool {
-    let (center, normal) = (surface.point(middle), surface.normal(middle));
+///
+/// - `middle`: the point of the surface in its middle, and the normal there.
+fn is_cut_backward([center, normal]: [DVec3; 2], corners: [DVec3; 4]) -> bool {
     let height = |a: DVec3, b: DVec3| ((a - center) * 0.5 + (b - center) * 0.5).dot(normal).abs();
     height(corners[1], corners[3]) < 0.9 * height(corners[0], corners[2])
 }
@@ -291,26 +292,47 @@ fn measured_error<S: Surface>(surface: &S, counts: [usize; 2]) -> f64 {
     let domain = surface.domain();
     let row = |j: usize| -> Vec<(DVec2, DVec3)> {
         let at = |i| grid_uv(domain, counts, i, j);
-        (0..=counts[0]).map(|i| (at(i), surface.point(at(i)))).collect()
+        let line = surface.line(at(0).y);
+        (0..=counts[0]).map(|i| (at(i), line(at(i).x)[0])).collect()
     };
     let mut error = 0.0f64;
     let mut below = row(0);
     for j in 1..=counts[1] {
         let above = row(j);
+        let mut lines = ParameterLines { surface, known: Vec::new() };
         for (low, high) in below.windows(2).zip(above.windows(2)) {
             let quad = [low[0], low[1], high[1], high[0]];
             let points = quad.map(|(_, point)| point);
-            for corners in cut(is_cut_backward(surface, (quad[0].0 + quad[2].0) * 0.5, points)) {
+            for corners in cut(is_cut_backward(lines.at((quad[0].0 + quad[2].0) * 0.5), points)) {
                 for weights in MEASURED_AT {
                     let blend = |k: usize| (quad[corners[k]].0 * weights[k], quad[corners[k]].1 * weights[k]);
                     let (uv, point) = (0..3).map(blend).fold((DVec2::ZERO, DVec3::ZERO), |a, b| (a.0 + b.0, a.1 + b.1));
-                    error = error.max((point - surface.point(uv)).dot(surface.normal(uv)).abs());
+                    let [on, normal] = lines.at(uv);
+                    error = error.max((point - on).dot(normal).abs());
                 }
             }
         }
         below = above;
     }
     error
+}
+
+/// A few lines of parameters v, for points that come to the same ones again and again.
+struct ParameterLines<'s, S> {
+    surface: &'s S,
+    known: Vec<(f64, ParameterLine<'s>)>,
+}
+
+impl<S: Surface> ParameterLines<'_, S> {
+    /// The point and the normal at `uv`.
+    fn at(&mut self, uv: DVec2) -> [DVec3; 2] {
+        let known = self.known.iter().position(|(v, _)| *v == uv.y);
+        let place = known.unwrap_or_else(|| {
+            self.known.push((uv.y, self.surface.line(uv.y)));
+            self.known.len() - 1
+        });
+        (self.known[place].1)(uv.x)
+    }
 }
 
 /// The mesh in the making.
@@ -361,13 +383,18 @@ impl<'a, S: Surface> Builder<'a, S> {
         let at = |i: usize, j: usize| j * (counts[0] + 1) + i;
         let uvs: Vec<DVec2> =
             (0..grid.len()).map(|k| grid_uv(domain, counts, k % (counts[0] + 1), k / (counts[0] + 1))).collect();
-        let normals: Vec<DVec3> = uvs.par_iter().map(|uv| surface.normal(*uv)).collect();
+        let row = |row: &[DVec2]| -> Vec<DVec3> {
+            let line = surface.line(row[0].y);
+            row.iter().map(|uv| line(uv.x)[1]).collect()
+        };
+        let normals: Vec<DVec3> = uvs.par_chunks(counts[0] + 1).flat_map_iter(row).collect();
         for j in 0..counts[1] {
+            let mut lines = ParameterLines { surface, known: Vec::new() };
             for i in 0..counts[0] {
                 let quad = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
                 let points = quad.map(|k| self.mesh.vertices[grid[k] as usize]);
                 let middle = (uvs[quad[0]] + uvs[quad[2]]) * 0.5;
-                for corners in cut(is_cut_backward(surface, middle, points)) {
+                for corners in cut(is_cut_backward(lines.at(middle), points)) {
                     let [a, b, c] = corners.map(|corner| grid[quad[corner]]);
                     if a == b || b == c || c == a {
                         continue;
@@ -387,6 +414,7 @@ impl<'a, S: Surface> Builder<'a, S> {
         let [nu, nv] = counts;
         let mut grid = Vec::with_capacity((nu + 1) * (nv + 1));
         for j in 0..=nv {
+            let line = surface.line(grid_uv(surface.domain(), counts, 0, j).y);
             for i in 0..=nu {
                 let on_side = match (i, j) {
                     (i, 0) => Some((0, i)),
@@ -397,7 +425,7 @@ impl<'a, S: Surface> Builder<'a, S> {
                 };
                 grid.push(match on_side {
                     Some((side, k)) => self.side_vertex(index, side, k),
-                    None => self.vertex(surface.point(grid_uv(surface.domain(), counts, i, j))),
+                    None => self.vertex(line(grid_uv(surface.domain(), counts, i, j).x)[0]),
                 });
             }
         }

@@ -3,7 +3,7 @@
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 
 use super::curvature::Curved;
-use super::{Surface, nearest_from};
+use super::{ParameterLine, Surface, nearest_from};
 use crate::mesh::normal_matrix;
 
 /// A surface as an affine map places it: rotated, moved, scaled, sheared or mirrored.
@@ -61,6 +61,14 @@ impl<S: Surface> Surface for TransformedSurface<S> {
 
     fn normal(&self, uv: DVec2) -> DVec3 {
         (self.normals * self.surface.normal(self.inner(uv))).normalize_or_zero()
+    }
+
+    fn line(&self, v: f64) -> ParameterLine<'_> {
+        let line = self.surface.line(v);
+        Box::new(move |u| {
+            let [point, normal] = line(self.inner(DVec2::new(u, v)).x);
+            [self.placement.transform_point3(point), (self.normals * normal).normalize_or_zero()]
+        })
     }
 
     fn nearest(&self, point: DVec3, guess: DVec2) -> DVec2 {

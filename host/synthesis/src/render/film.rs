@@ -3,8 +3,12 @@
 use super::features::PixelFeatures;
 use super::tally::{PixelSample, RadianceByClass, Tally};
 use crate::memory::prefer_large_pages;
+use crate::numeric::hilbert::hilbert_place;
 use crate::picture::{Picture, PictureError};
 use rayon::prelude::*;
+
+/// Pixels along each side of a block.
+const BLOCK: u32 = 16;
 
 /// Samples of a picture, added up pixel by pixel. More can be added at any time.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,7 +58,15 @@ impl AdaptiveSampling {
     }
 }
 
-/// A row of a film.
+/// A block of a film: a square of pixels, which is cut off at the borders.
+pub(super) struct FilmBlock<'a> {
+    /// Column and row of its first pixel.
+    pub(super) first: [u32; 2],
+    /// Its part of each row.
+    pub(super) rows: Vec<FilmRow<'a>>,
+}
+
+/// A row of a film, or a part of it.
 pub(super) struct FilmRow<'a> {
     /// The pixels of the row.
     pub(super) tallies: &'a mut [Tally],
@@ -64,7 +76,18 @@ pub(super) struct FilmRow<'a> {
     features: Option<&'a mut [PixelFeatures]>,
 }
 
-impl FilmRow<'_> {
+impl<'a> FilmRow<'a> {
+    /// This row in parts, each but the last as long as a block.
+    fn parts(self) -> impl Iterator<Item = FilmRow<'a>> {
+        let mut classes = self.classes.map(|all| all.chunks_mut(BLOCK as usize));
+        let mut features = self.features.map(|all| all.chunks_mut(BLOCK as usize));
+        self.tallies.chunks_mut(BLOCK as usize).map(move |tallies| FilmRow {
+            tallies,
+            classes: classes.as_mut().and_then(Iterator::next),
+            features: features.as_mut().and_then(Iterator::next),
+        })
+    }
+
     /// Adds a sample to the pixel in a column.
     ///
     /// - `classes`: its radiance by class.
@@ -205,6 +228,21 @@ impl Film {
         self.tallies.chunks_exact_mut(width).map(row).collect()
     }
 
+    /// All blocks, along a Hilbert curve: what is seen in one is for the most part near what was seen in the one before.
+    pub(super) fn blocks_mut(&mut self) -> Vec<FilmBlock<'_>> {
+        let [columns, rows] = [self.width, self.height].map(|side| side.div_ceil(BLOCK));
+        let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| [column, row]));
+        let mut blocks: Vec<FilmBlock<'_>> =
+            cells.map(|cell| FilmBlock { first: cell.map(|at| at * BLOCK), rows: Vec::new() }).collect();
+        for (y, row) in self.rows_mut().into_iter().enumerate() {
+            let of_row = &mut blocks[y / BLOCK as usize * columns as usize..][..columns as usize];
+            row.parts().zip(of_row).for_each(|(part, block)| block.rows.push(part));
+        }
+        let bits = columns.max(rows).next_power_of_two().trailing_zeros();
+        blocks.sort_by_cached_key(|block| hilbert_place(bits, block.first.map(|at| at / BLOCK)));
+        blocks
+    }
+
     /// The picture so far; pixels without samples are black and uncovered.
     pub fn picture(&self) -> Result<Picture, PictureError> {
         let mut picture = Picture::new(self.width, self.height)?;
@@ -277,6 +315,27 @@ mod tests {
                 (0..count).for_each(|bit| tally.add(&sample(2.0 * f64::from(order as u32 >> bit & 1) - 1.0)));
             }
             assert!((film.standard_error().powi(2) * f64::from(count) - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn blocks_hold_each_pixel_once_and_follow_each_other() {
+        for [width, height] in [[1, 1], [16, 16], [17, 40], [200, 100]] {
+            let mut film = Film::new(width, height).expect("small").with_classes().with_features();
+            let blocks = film.blocks_mut();
+            assert_eq!(blocks.len() as u32, width.div_ceil(BLOCK) * height.div_ceil(BLOCK));
+            for FilmBlock { first: [x, y], mut rows } in blocks {
+                for (dy, row) in rows.iter_mut().enumerate() {
+                    for dx in 0..row.tallies.len() {
+                        let value = f64::from(x) + dx as f64 + 1000.0 * (f64::from(y) + dy as f64);
+                        let classes = RadianceByClass::default().map(|_| DVec3::splat(value));
+                        row.add(dx, &sample(value), &classes);
+                    }
+                }
+            }
+            let of = |pixel: usize| (pixel % width as usize + 1000 * (pixel / width as usize)) as f64;
+            assert!(film.tallies.iter().enumerate().all(|(n, tally)| tally.count == 1 && tally.sum.x == of(n)));
+            assert!(film.classes.iter().enumerate().all(|(n, classes)| classes[0].x == of(n)));
         }
     }
 

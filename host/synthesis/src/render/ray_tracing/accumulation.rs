@@ -6,7 +6,7 @@ use super::tracer::PathScratch;
 use super::{PathLog, RayTracer};
 use crate::memory;
 use crate::picture::PictureError;
-use crate::render::film::{AdaptiveSampling, Film, FilmRow};
+use crate::render::film::{AdaptiveSampling, Film, FilmBlock};
 use crate::render::state::after;
 use crate::render::tally::SHARING;
 use crate::render::two_way::{FluxBalance, PhotonEstimator};
@@ -167,10 +167,14 @@ impl RayTracer<'_> {
 
     /// How many samples pixels have after each pass: one first, so that there is a whole picture soon, and then twice
     /// as many each time, so that errors and the clock can decide about more; and where photons are traced anew.
+    ///
+    /// Detail on demand may have to be made again in each pass. So it is left at one if neither decides.
     fn passes(&self, order: &RenderOrder) -> Vec<u32> {
-        let doubled = std::iter::successors(Some(FIRST_DOUBLED), |samples| samples.checked_mul(2));
-        let mut passes = vec![1, order.samples];
-        passes.extend(doubled.take_while(|samples| *samples < order.samples));
+        let mut passes = vec![order.samples];
+        if !self.world.makes_detail() || order.seconds.is_some() || order.target.is_some() {
+            let doubled = std::iter::successors(Some(FIRST_DOUBLED), |samples| samples.checked_mul(2));
+            passes.extend(std::iter::once(1).chain(doubled).take_while(|samples| *samples < order.samples));
+        }
         if self.photon_mapper.is_some() {
             passes.extend((SHARING..order.samples).step_by(SHARING as usize));
         }
@@ -243,22 +247,26 @@ impl Accumulation<'_, '_> {
         let lacks_detail = || sampler.world.lacks_detail();
         let pauses =
             || watch.is_cancelled() || lacks_detail() || due.is_some_and(|due| Instant::now() >= due) || is_late();
-        let (stage, rows_done) = (&*stage, AtomicU64::new(0));
-        let row = |(y, mut row): (usize, FilmRow<'_>)| {
-            let _row = part!(stage, "row", y);
+        let (stage, blocks) = (&*stage, film.blocks_mut());
+        let (count, done) = (blocks.len() as f64, AtomicU64::new(0));
+        let block = |(number, block): (usize, FilmBlock<'_>)| {
+            let _block = part!(stage, "block", number);
             let mut scratch = PathScratch::default();
-            for x in 0..row.tallies.len() {
-                let goal = goal.of(y * order.width as usize + x);
-                while row.tallies[x].count < goal {
-                    if pauses() {
-                        return (scratch.counts, false);
+            let FilmBlock { first, mut rows } = block;
+            for (y, row) in (first[1]..).zip(&mut rows) {
+                for (column, x) in (first[0]..).take(row.tallies.len()).enumerate() {
+                    let goal = goal.of(y as usize * order.width as usize + x as usize);
+                    while row.tallies[column].count < goal {
+                        if pauses() {
+                            return (scratch.counts, false);
+                        }
+                        let index = row.tallies[column].count;
+                        let (sample, classes, _) = sampler.sample([x, y], index, &mut scratch, PathLog::SILENT);
+                        row.add(column, &sample, &classes);
                     }
-                    let (pixel, index) = ([x as u32, y as u32], row.tallies[x].count);
-                    let (sample, classes, _) = sampler.sample(pixel, index, &mut scratch, PathLog::SILENT);
-                    row.add(x, &sample, &classes);
                 }
             }
-            let part = (rows_done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / f64::from(order.height);
+            let part = (done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / count;
             match (order.seconds, order.target) {
                 (Some(seconds), _) => stage.progress(stage.seconds().min(seconds)),
                 (None, Some(_)) => {}
@@ -266,10 +274,10 @@ impl Accumulation<'_, '_> {
             }
             (scratch.counts, true)
         };
-        let rows: Vec<(RayCounts, bool)> =
-            workers.install(|| film.rows_mut().into_par_iter().enumerate().map(row).collect());
-        let rays = rows.iter().fold(RayCounts::default(), |sum, (counts, _)| sum + *counts);
-        (rays, rows.iter().all(|(_, is_whole)| *is_whole))
+        // Taken one by one in their order, so that threads work near each other, too.
+        let sum = |(rays, are_whole), (more, is_whole)| (rays + more, are_whole && is_whole);
+        let none = || (RayCounts::default(), true);
+        workers.install(|| blocks.into_iter().enumerate().par_bridge().map(block).reduce(none, sum))
     }
 
     /// Keeps the film, if it is to be kept from time to time.

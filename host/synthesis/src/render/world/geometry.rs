@@ -120,6 +120,11 @@ impl<'a> World<'a> {
         self.acceleration.still.as_ref()
     }
 
+    /// Whether it has procedural models, which are made while rays come to them.
+    pub(in crate::render) fn makes_detail(&self) -> bool {
+        self.details.is_some()
+    }
+
     /// Whether a procedural model could not be made: the picture is not what was asked for.
     pub(in crate::render) fn lacks_detail(&self) -> bool {
         self.details.as_ref().is_some_and(|details| details.has_failed())

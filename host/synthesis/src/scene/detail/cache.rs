@@ -1,4 +1,11 @@
 //! A cache of values that are functions of their keys, with a limit to what they take.
+//!
+//! When there is too much, those go first whose return would cost the least for the room that they give: of each value the
+//! time to make it, over its bytes, times how often it was used, counted on top of what that was for those that had gone when
+//! it was used last. So what is used now and then, is small or takes long to make outlives what was seen once.
+//!
+//! # Source
+//! Cherkasova, "Improving WWW Proxies Performance with Greedy-Dual-Size-Frequency Caching Policy", HP Labs 1998.
 
 use rustc_hash::{FxHashMap, FxHasher};
 use serde::Serialize;
@@ -9,7 +16,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError, RwLock};
 
 /// Threads seldom ask the same one of so many tables.
 const TABLES: usize = 32;
-/// When there is too much, what was not used for the longest time goes until so much of the limit is taken.
+/// When there is too much, values go until so much of the limit is taken.
 const KEPT: f64 = 7.0 / 8.0;
 /// What was used last stays, however much it takes: so many values.
 const ALWAYS_KEPT: usize = 2;
@@ -34,7 +41,18 @@ pub(super) struct DetailCache<K, V> {
     bytes: AtomicU64,
     /// How often something was made.
     made: AtomicU64,
+    /// Seconds a byte, times uses, of what went last: the bits of a number that only grows.
+    passed: AtomicU64,
     tidying: Mutex<()>,
+}
+
+/// A value that was made.
+pub(super) struct MadeValue<V> {
+    pub(super) value: V,
+    /// What it takes while it is kept, bytes.
+    pub(super) bytes: u64,
+    /// What it took to make it, seconds.
+    pub(super) seconds: f64,
 }
 
 /// The place of a value.
@@ -42,11 +60,16 @@ struct Slot<V> {
     value: OnceLock<SlotValue<V>>,
     /// How often something had been made when it was used last.
     used: AtomicU64,
+    /// How often it was used, where uses count once until something else is made.
+    uses: AtomicU64,
+    /// What had passed when it was used last: the bits of a number.
+    passed: AtomicU64,
 }
 
 struct SlotValue<V> {
     value: Arc<V>,
     bytes: u64,
+    seconds: f64,
 }
 
 impl<K: Copy + Eq + Hash, V> DetailCache<K, V> {
@@ -56,34 +79,40 @@ impl<K: Copy + Eq + Hash, V> DetailCache<K, V> {
             most_bytes,
             bytes: AtomicU64::new(0),
             made: AtomicU64::new(0),
+            passed: AtomicU64::new(0),
             tidying: Mutex::new(()),
         }
     }
 
     /// A value; if it is not there, it is made. Who asks for it meanwhile waits.
     ///
-    /// - `make`: gives it, and how many bytes it takes.
-    pub(super) fn get(&self, key: K, make: impl FnOnce() -> (V, u64)) -> Arc<V> {
+    pub(super) fn get(&self, key: K, make: impl FnOnce() -> MadeValue<V>) -> Arc<V> {
         let slot = self.slot(key);
-        let now = self.made.load(Ordering::Relaxed);
-        // Written only when it changes: all threads read it.
-        if slot.used.load(Ordering::Relaxed) != now {
-            slot.used.store(now, Ordering::Relaxed);
-        }
         let mut is_new = false;
         let SlotValue { value, .. } = slot.value.get_or_init(|| {
             is_new = true;
-            let (value, bytes) = make();
+            let MadeValue { value, bytes, seconds } = make();
             // Counted before it is seen: whoever sees it may let it go.
             let now = self.made.fetch_add(1, Ordering::Relaxed) + 1;
-            slot.used.store(now, Ordering::Relaxed);
+            self.note_use(&slot, now);
             self.bytes.fetch_add(bytes, Ordering::Relaxed);
-            SlotValue { value: Arc::new(value), bytes }
+            SlotValue { value: Arc::new(value), bytes, seconds }
         });
+        let now = self.made.load(Ordering::Relaxed);
         if is_new {
             self.tidy();
+        } else if slot.used.load(Ordering::Relaxed) != now {
+            // Written only when it changes: all threads read it.
+            self.note_use(&slot, now);
         }
         value.clone()
+    }
+
+    /// - `now`: how often something was made by now.
+    fn note_use(&self, slot: &Slot<V>, now: u64) {
+        slot.used.store(now, Ordering::Relaxed);
+        slot.uses.fetch_add(1, Ordering::Relaxed);
+        slot.passed.store(self.passed.load(Ordering::Relaxed), Ordering::Relaxed);
     }
 
     fn slot(&self, key: K) -> Arc<Slot<V>> {
@@ -94,11 +123,11 @@ impl<K: Copy + Eq + Hash, V> DetailCache<K, V> {
             return slot.clone();
         }
         let mut table = table.write().unwrap_or_else(PoisonError::into_inner);
-        let new = || Arc::new(Slot { value: OnceLock::new(), used: AtomicU64::new(0) });
+        let new = || Arc::new(Slot::new());
         table.entry(key).or_insert_with(new).clone()
     }
 
-    /// Lets go of what was not used for the longest time, if there is too much.
+    /// Lets go of what is worth the least, if there is too much.
     fn tidy(&self) {
         let is_much = || self.bytes.load(Ordering::Relaxed) > self.most_bytes;
         if !is_much() {
@@ -112,18 +141,23 @@ impl<K: Copy + Eq + Hash, V> DetailCache<K, V> {
         let mut all = Vec::new();
         for (place, table) in self.tables.iter().enumerate() {
             let table = table.read().unwrap_or_else(PoisonError::into_inner);
-            let there = table.iter().filter(|(_, slot)| slot.value.get().is_some());
-            all.extend(there.map(|(key, slot)| (slot.used.load(Ordering::Relaxed), place, *key)));
+            let known = |(key, slot): (&K, &Arc<Slot<V>>)| {
+                Some(Candidate { used: slot.used.load(Ordering::Relaxed), worth: slot.worth()?, place, key: *key })
+            };
+            all.extend(table.iter().filter_map(known));
         }
-        all.sort_by_key(|(used, ..)| *used);
+        all.sort_by_key(|candidate| candidate.used);
         all.truncate(all.len().saturating_sub(ALWAYS_KEPT));
-        for (_, place, key) in all {
+        all.sort_by(|a, b| a.worth.total_cmp(&b.worth).then(a.used.cmp(&b.used)));
+        for Candidate { worth, place, key, .. } in all {
             if self.bytes.load(Ordering::Relaxed) <= goal {
                 break;
             }
             let gone = self.tables[place].write().unwrap_or_else(PoisonError::into_inner).remove(&key);
             let bytes = gone.as_ref().and_then(|slot| slot.value.get()).map_or(0, |made| made.bytes);
             self.bytes.fetch_sub(bytes, Ordering::Relaxed);
+            // Of numbers that are not negative the bits have their order.
+            self.passed.fetch_max(worth.to_bits(), Ordering::Relaxed);
         }
     }
 
@@ -141,6 +175,29 @@ impl<K: Copy + Eq + Hash, V> DetailCache<K, V> {
     }
 }
 
+/// A value that may go.
+struct Candidate<K> {
+    used: u64,
+    worth: f64,
+    /// Number of its table.
+    place: usize,
+    key: K,
+}
+
+impl<V> Slot<V> {
+    fn new() -> Slot<V> {
+        let zero = || AtomicU64::new(0);
+        Slot { value: OnceLock::new(), used: zero(), uses: zero(), passed: zero() }
+    }
+
+    /// What its value is worth; none before it is made.
+    fn worth(&self) -> Option<f64> {
+        let SlotValue { bytes, seconds, .. } = self.value.get()?;
+        let uses = self.uses.load(Ordering::Relaxed) as f64;
+        Some(f64::from_bits(self.passed.load(Ordering::Relaxed)) + uses * seconds.max(0.0) / (*bytes).max(1) as f64)
+    }
+}
+
 impl<K, V> fmt::Debug for DetailCache<K, V> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "a cache of {} bytes", self.most_bytes)
@@ -152,13 +209,17 @@ mod tests {
     use super::*;
     use rayon::prelude::*;
 
+    fn made(value: u64, bytes: u64, seconds: f64) -> MadeValue<u64> {
+        MadeValue { value, bytes, seconds }
+    }
+
     #[test]
     fn values_are_those_of_their_keys_whatever_is_kept_and_no_more_is_kept_than_may_be() {
         for most in [0, 1_000, 1 << 40] {
             let cache: DetailCache<u64, u64> = DetailCache::new(most);
             let ask = |number: u64| {
                 let key = number * number % 257;
-                let value = cache.get(key, || (key * 3, 100));
+                let value = cache.get(key, || made(key * 3, 100, key as f64));
                 assert_eq!(*value, key * 3);
             };
             (0..20_000_u64).into_par_iter().for_each(ask);
@@ -172,19 +233,34 @@ mod tests {
         }
     }
 
+    /// Whether a value is kept.
+    fn keeps(cache: &DetailCache<u64, u64>, key: u64) -> bool {
+        cache.slot(key).value.get().is_some()
+    }
+
     #[test]
-    fn what_was_used_last_is_kept() {
-        let cache: DetailCache<u32, u32> = DetailCache::new(1_000);
-        let make = |key: u32| cache.get(key, || (key, 100));
-        for key in 0..10 {
-            make(key);
-            make(0);
+    fn what_is_used_often_outlives_what_is_seen_once() {
+        let cache = DetailCache::new(1_000);
+        for key in 1..100 {
+            cache.get(key, || made(key, 100, 1.0));
+            cache.get(0, || made(0, 100, 1.0));
         }
-        let before = cache.costs().made;
-        make(10);
-        make(0);
-        assert_eq!(cache.costs().made, before + 1, "0 is still there");
-        make(1);
-        assert_eq!(cache.costs().made, before + 2, "1 is gone");
+        assert!(keeps(&cache, 0) && keeps(&cache, 99) && !keeps(&cache, 50));
+        assert_eq!(cache.costs().made, 100);
+    }
+
+    #[test]
+    fn what_takes_long_to_make_for_its_bytes_outlives_what_is_soon_made_again_but_not_for_ever() {
+        let cache = DetailCache::new(1_000);
+        cache.get(0, || made(0, 100, 10.0));
+        cache.get(1, || made(1, 500, 10.0));
+        for key in 2..40 {
+            cache.get(key, || made(key, 100, 1.0));
+        }
+        assert!(keeps(&cache, 0) && !keeps(&cache, 1));
+        for key in 40..400 {
+            cache.get(key, || made(key, 100, 1.0));
+        }
+        assert!(!keeps(&cache, 0), "it was not used for long");
     }
 }

@@ -16,9 +16,10 @@ use super::prepared::Contents;
 use super::{DetailView, SceneError, Settings, View};
 use crate::memory;
 use crate::octree::{InstanceOctree, PlacedSurface, PrototypeMaker};
-use cache::DetailCache;
+use cache::{DetailCache, MadeValue};
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use std::sync::{Arc, OnceLock, mpsc};
+use std::time::Instant;
 
 /// Part of the memory that what is made takes at the most, if nothing else is asked for: one of so many.
 const SHARE: u64 = 2;
@@ -87,12 +88,12 @@ impl Details {
         let level = of.model.level(footprints.fold(f64::INFINITY, f64::min));
         let key = DetailKey { model, seed: of.model.seed(placed.variation), level };
         Some(self.cache.get(key, || {
+            let begin = Instant::now();
             let made = make(of, key).unwrap_or_else(|error| {
                 _ = self.failed.set(error.to_string());
                 MadeDetail::nothing()
             });
-            let bytes = made.bytes();
-            (made, bytes)
+            MadeValue { bytes: made.bytes(), seconds: begin.elapsed().as_secs_f64(), value: made }
         }))
     }
 
