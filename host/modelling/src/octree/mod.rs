@@ -48,7 +48,7 @@ pub use inside::Containment;
 pub use instances::{
     CellGrid, CellInstances, CellPlace, Instance, InstanceCosts, InstanceError, InstanceHit, InstanceOctree,
     InstanceParts, InstancePath, InstanceWalk, MOST_CELLS, MOST_IN_CELL, MOST_INSTANCES, MOST_LEVELS, MOST_MADE_LEVELS,
-    MOST_OVERHANG, MOST_PARTS, MOST_PROTOTYPES, PlacedSurface, PlacementForm, Prototype, PrototypeMaker,
+    MOST_OVERHANG, MOST_PARTS, MOST_PROTOTYPES, PlacedSurface, PlacementForm, Prototype, PrototypeMaker, RayInterval,
 };
 pub use nearest::{Nearest, hausdorff};
 pub use points::{NearbyPoints, SortedPoints};

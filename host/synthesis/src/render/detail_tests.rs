@@ -177,7 +177,7 @@ fn the_detail_that_is_made_is_that_of_a_quarter_pixel_near_and_far() {
     let triangles = |z: f64| {
         let placement = DAffine3::from_translation(DVec3::new(0.0, 0.0, z));
         let placed = crate::octree::PlacedSurface { placement, variation: 0, largest: 0.0 };
-        let made = details.made(0, &placed).expect("a model");
+        let made = details.made(0, &placed, None).expect("a model");
         made.contents().triangles.len() as f64
     };
     let counts = [-5.0, -39.0, -158.0, -638.0].map(triangles);

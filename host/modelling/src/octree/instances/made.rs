@@ -1,7 +1,17 @@
 //! Prototypes that are made when rays come to them.
 
+use super::super::Ray;
 use super::octree::InstanceOctree;
 use super::path::PlacedSurface;
+
+/// A ray, and where hits of it count.
+#[derive(Clone, Copy, Debug)]
+pub struct RayInterval<'r> {
+    /// The ray.
+    pub ray: &'r Ray,
+    /// The lengths between which hits count, in lengths of its direction.
+    pub between: [f64; 2],
+}
 
 /// Makes those prototypes of instances that are not stored: [`Prototype::made`](super::Prototype::made).
 ///
@@ -12,12 +22,19 @@ pub trait PrototypeMaker {
     ///
     /// - `model`: number of the prototype among those that are made.
     /// - `placed`: how it is placed; it may be made as finely as it is seen there.
-    fn give(&self, model: u32, placed: &PlacedSurface, to: &mut dyn FnMut(&InstanceOctree));
+    /// - `along`: the ray for which it is asked: it need not be given if this passes by. None for all of it.
+    fn give(
+        &self,
+        model: u32,
+        placed: &PlacedSurface,
+        along: Option<RayInterval<'_>>,
+        to: &mut dyn FnMut(&InstanceOctree),
+    );
 }
 
 /// Makes nothing, for instances whose prototypes are all stored.
 pub(super) struct NothingMade;
 
 impl PrototypeMaker for NothingMade {
-    fn give(&self, _: u32, _: &PlacedSurface, _: &mut dyn FnMut(&InstanceOctree)) {}
+    fn give(&self, _: u32, _: &PlacedSurface, _: Option<RayInterval<'_>>, _: &mut dyn FnMut(&InstanceOctree)) {}
 }

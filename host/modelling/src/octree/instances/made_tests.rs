@@ -29,7 +29,13 @@ struct Row {
 }
 
 impl PrototypeMaker for Row {
-    fn give(&self, model: u32, placed: &PlacedSurface, to: &mut dyn FnMut(&InstanceOctree)) {
+    fn give(
+        &self,
+        model: u32,
+        placed: &PlacedSurface,
+        _: Option<RayInterval<'_>>,
+        to: &mut dyn FnMut(&InstanceOctree),
+    ) {
         assert_eq!(model, 7);
         self.asked.borrow_mut().push(*placed);
         to(&self.row);

@@ -34,7 +34,7 @@ pub use error::{
     InstanceError, MOST_CELLS, MOST_IN_CELL, MOST_INSTANCES, MOST_LEVELS, MOST_MADE_LEVELS, MOST_OVERHANG, MOST_PARTS,
     MOST_PROTOTYPES,
 };
-pub use made::PrototypeMaker;
+pub use made::{PrototypeMaker, RayInterval};
 pub use octree::{InstanceCosts, InstanceOctree, Prototype};
 pub use parts::InstanceParts;
 pub use path::{InstanceHit, InstancePath, PlacedSurface};

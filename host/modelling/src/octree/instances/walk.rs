@@ -9,7 +9,7 @@ use super::super::{Hit, Octree, Ray};
 use super::blocks::SphereTest;
 use super::cells::{self, CellPlace, Cells};
 use super::descent::Descent;
-use super::made::{NothingMade, PrototypeMaker};
+use super::made::{NothingMade, PrototypeMaker, RayInterval};
 use super::octree::{Content, InstanceOctree, KnownInstances};
 use super::parts::PartsOnDemand;
 use super::path::{InstanceHit, InstancePath, PlacedSurface};
@@ -85,7 +85,7 @@ impl<'w> InstanceWalk<'w> {
         match &self.octree.prototypes[usize::from(instance.prototype)].content {
             Content::Surface { .. } => {}
             Content::Instances(octree) => placed = InstanceWalk { octree, ..*self }.placed_within(inner, placed),
-            Content::Made { model } => self.maker.give(*model, &placed.clone(), &mut |octree| {
+            Content::Made { model } => self.maker.give(*model, &placed.clone(), None, &mut |octree| {
                 placed = InstanceWalk { octree, maker: self.maker }.placed_within(inner, placed);
             }),
         }
@@ -124,7 +124,8 @@ impl<'w> InstanceWalk<'w> {
             return false;
         }
         let mut is_known = false;
-        self.maker.give(model, &descent.placed(), &mut |octree| {
+        let along = RayInterval { ray, between: query.limits() };
+        self.maker.give(model, &descent.placed(), Some(along), &mut |octree| {
             is_known = InstanceWalk { octree, maker: self.maker }.ask(ray, Some(descent), query);
         });
         is_known

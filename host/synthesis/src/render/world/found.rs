@@ -2,7 +2,9 @@
 
 use super::carrier::Carrier;
 use crate::numeric::ray::Hit;
-use crate::octree::{InstanceHit, InstanceOctree, InstancePath, InstanceWalk, PlacedSurface, PrototypeMaker};
+use crate::octree::{
+    InstanceHit, InstanceOctree, InstancePath, InstanceWalk, PlacedSurface, PrototypeMaker, RayInterval,
+};
 use crate::scene::{Contents, Details, Displacement, MadeDetail, Prepared};
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -80,8 +82,14 @@ struct Noting<'d> {
 }
 
 impl PrototypeMaker for Noting<'_> {
-    fn give(&self, model: u32, placed: &PlacedSurface, to: &mut dyn FnMut(&InstanceOctree)) {
-        let made = self.details.made(model, placed);
+    fn give(
+        &self,
+        model: u32,
+        placed: &PlacedSurface,
+        along: Option<RayInterval<'_>>,
+        to: &mut dyn FnMut(&InstanceOctree),
+    ) {
+        let made = self.details.made(model, placed, along);
         made.iter().flat_map(|made| made.octree()).for_each(to);
         *self.last.borrow_mut() = made;
     }

@@ -5,6 +5,7 @@ use super::super::placed_models::PlacedModel;
 use super::super::prepared::Contents;
 use super::super::procedural::{geometry_of, places_among};
 use super::super::{PreparedObject, Scene, SceneError, Settings};
+use super::outline::DetailOutline;
 use crate::numeric::bounds::Bounds;
 use crate::octree::{Instance, InstanceOctree, MOST_MADE_LEVELS, PlacementForm, Prototype};
 use crate::stages::stage;
@@ -91,6 +92,18 @@ impl MadeDetail {
     pub fn object_and_material(&self, triangle: u32) -> [u32; 2] {
         let own = self.contents.object_of[triangle as usize];
         [self.object, self.material_of[own as usize][self.contents.material_number(triangle) as usize]]
+    }
+
+    /// Boxes around its triangles and instances.
+    pub(super) fn outline(&self) -> DetailOutline {
+        let standing = |object: &PreparedObject| object.placed_by.is_none();
+        let triangles = self.contents.objects.iter().filter(|object| standing(object)).flat_map(|object| {
+            (object.first..object.first + object.count).map(|triangle| Bounds::of(self.contents.corners(triangle)))
+        });
+        let instances = self.contents.placed.iter().map(|placed| {
+            Bounds::of(placed.prototype.bounds().corners().map(|corner| placed.transform.transform_point3(corner)))
+        });
+        DetailOutline::around(&mut triangles.chain(instances).collect::<Vec<Bounds>>())
     }
 
     /// How much memory it takes.

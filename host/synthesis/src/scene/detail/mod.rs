@@ -6,6 +6,7 @@
 //! between two levels its surface moves by less than half a pixel.
 
 mod cache;
+mod outline;
 mod made;
 
 pub use cache::DetailCosts;
@@ -15,8 +16,9 @@ use super::placed_models::{KeptDetails, PlacedModel};
 use super::prepared::Contents;
 use super::{DetailView, SceneError, Settings, View};
 use crate::memory;
-use crate::octree::{InstanceOctree, PlacedSurface, PrototypeMaker};
+use crate::octree::{InstanceOctree, PlacedSurface, PrototypeMaker, RayInterval};
 use cache::{DetailCache, MadeValue};
+use outline::DetailOutline;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use std::sync::{Arc, OnceLock, mpsc};
 use std::time::Instant;
@@ -33,7 +35,7 @@ const STACK: usize = 16 << 20;
 pub struct Details {
     models: Vec<Arc<PlacedModel>>,
     views: Vec<DetailView>,
-    cache: DetailCache<DetailKey, MadeDetail>,
+    cache: DetailCache<DetailKey, MadeDetail, DetailOutline>,
     failed: OnceLock<String>,
 }
 
@@ -80,21 +82,25 @@ fn known(last: &Option<KeptDetails>) -> Option<Arc<Details>> {
 
 impl Details {
     /// What a model makes for an instance; nothing if it cannot, which [`Details::check`] tells. None if there is no such
-    /// model.
-    pub fn made(&self, model: u32, placed: &PlacedSurface) -> Option<Arc<MadeDetail>> {
+    /// model, or if a ray is known to pass by what it makes.
+    ///
+    /// - `along`: the ray for which it is asked, in coordinates of the model; none if it is wanted in any case.
+    pub fn made(&self, model: u32, placed: &PlacedSurface, along: Option<RayInterval<'_>>) -> Option<Arc<MadeDetail>> {
         let of = self.models.get(model as usize)?;
         let bounds = of.model.bounds();
         let footprints = self.views.iter().map(|view| view.footprint(&placed.placement, &bounds));
         let level = of.model.level(footprints.fold(f64::INFINITY, f64::min));
         let key = DetailKey { model, seed: of.model.seed(placed.variation), level };
-        Some(self.cache.get(key, || {
+        let is_wanted = |outline: &DetailOutline| along.is_none_or(|along| outline.is_met(&along));
+        self.cache.get(key, is_wanted, || {
             let begin = Instant::now();
             let made = make(of, key).unwrap_or_else(|error| {
                 _ = self.failed.set(error.to_string());
                 MadeDetail::nothing()
             });
-            MadeValue { bytes: made.bytes(), seconds: begin.elapsed().as_secs_f64(), value: made }
-        }))
+            let (bytes, outline) = (made.bytes(), made.outline());
+            MadeValue { value: made, outline, bytes, seconds: begin.elapsed().as_secs_f64() }
+        })
     }
 
     /// Whether something could not be made.
@@ -112,8 +118,14 @@ impl Details {
 }
 
 impl PrototypeMaker for Details {
-    fn give(&self, model: u32, placed: &PlacedSurface, to: &mut dyn FnMut(&InstanceOctree)) {
-        if let Some(made) = self.made(model, placed) {
+    fn give(
+        &self,
+        model: u32,
+        placed: &PlacedSurface,
+        along: Option<RayInterval<'_>>,
+        to: &mut dyn FnMut(&InstanceOctree),
+    ) {
+        if let Some(made) = self.made(model, placed, along) {
             made.octree().into_iter().for_each(to);
         }
     }
