@@ -2,6 +2,7 @@
 
 mod varied;
 mod wind;
+pub mod terrain;
 
 pub use varied::{Varied, VariedError, channel};
 pub use wind::{Wind, WindError};
