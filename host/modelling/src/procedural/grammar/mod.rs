@@ -1,0 +1,103 @@
+//! L-systems: grammars that grow plants. Strings are derived, drawn by a turtle, and made into triangles.
+//!
+//! [`LSystem::parse`] understands a grammar, [`Specimen::new`] draws its parameters from a seed, [`Specimen::derive`]
+//! makes a string of modules, [`Specimen::draw`] lets a turtle obey it, and [`TurtleDrawing::mesh`] makes triangles.
+//! [`ABOP_FIGURES`] are figures of "The Algorithmic Beauty of Plants" (ABOP) of Prusinkiewicz and Lindenmayer 1990.
+//!
+//! # Notation
+//! The notation is close to that of the book. A statement begins in the first column; lines that begin with a blank go
+//! on with it. `#` with a blank after it begins a comment.
+//!
+//! ```text
+//! # A tree that bends.
+//! derivation length: 6                      whole number of steps
+//! angle: 22.5                               of + - & ^ \ / without a parameter, degrees; 90 without a word
+//! length: 1                                 of F f G g without a parameter
+//! width: 0.1                                of lines at the beginning
+//! narrowing: 0.707                          factor of ! without a parameter
+//! tropism: 0, -1, 0                         direction to which branches bend
+//! elasticity: 0.22                          how strongly they do; 0 without a word
+//! #define d 137.5                           a constant, of numbers and of what stands before it
+//! parameter r = 0.9 +/- 0.05 "description"  a parameter: mean, largest deviation, what it is for
+//! names: seg leaf                           names of modules with more than one letter
+//! #ignore: + -                              modules that contexts do not see; or
+//! #consider: A B                            the only modules that contexts see
+//! axiom: !(1)F(2)A(0,1)
+//! A(t,w) : t < 3 & w > 0.1 -> F(r)[+A(t+1,w*0.7)]A(t+1,w) : 0.7
+//! A(t,w) : t < 3 & w > 0.1 -> F(r)A(t,w) : 0.3
+//! B(x) < A(t,w) > C[D(y)] -> A(x+y,w)
+//! decomposition:                            productions that apply to what each step made, as long as they can
+//! interpretation:                           productions that apply as the turtle reads; also `homomorphism:`
+//! maximum depth: 20                         how often they apply to what they made; 50 without a word
+//! S -> '(1)~petal(2)
+//! productions:                              productions of the derivation again
+//! surface petal:                            x to the right of the turtle, y ahead, z along its up vector
+//!   polygon (0,0,0) (1,1,0) (-1,1,0)        and `patch` with 16 points, row by row
+//! ```
+//!
+//! A **module** is one letter or sign, a declared name, `~` with the name of a surface, or `?` or `@` with a letter. It
+//! has any number of parameters in brackets, right behind it; modules with other numbers of parameters are other
+//! modules. Blanks part modules where that is needed, as in `- > -`.
+//!
+//! A **production** is `left < predecessor > right : condition -> successor : probability`; all but predecessor, arrow
+//! and successor may be left out, or be `*`. `*` is the empty successor. The arrow is `->`, `-->` or `→`. The first
+//! production that applies replaces the module. If it has a probability, all productions that apply and have one share
+//! the chance; they must add up to 1. Modules to which none applies stay. Predecessor and contexts name parameters;
+//! condition, probability and successor use these, the constants and the parameters of the grammar.
+//!
+//! **Contexts** see past brackets as in section 1.8 of ABOP: the left context lies on the way to the root, the right
+//! one on the way to the tip of the same branch, and what stands in brackets in it at the beginning of a side branch.
+//!
+//! **Expressions** have `|` or `||`, `&` or `&&`, `==` or `=`, `!=`, `<`, `<=`, `>`, `>=`, `+`, `-`, `*`, `/`, `%`,
+//! signs, `!` and `^`, from weak to strong, and the functions sin, cos, tan, asin, acos, atan, atan2 (degrees), exp,
+//! log, sqrt, abs, sign, floor, ceil, trunc, round, min, max, pow, `ran(a)`, which is uniform in 0..a, and `nran(mean,
+//! deviation)`, which is normal.
+//!
+//! **The turtle** obeys the modules that [`turtle_modules`] lists. `%` cuts off the rest of its branch after the step
+//! that made it. `?P(x,y,z)`, `?H`, `?U` and `?L` take position, heading, up and left vector of the turtle as
+//! parameters after each step, `?E` what an [`Environment`] answers.
+//!
+//! # Source
+//! Lindenmayer 1968. Prusinkiewicz and Lindenmayer 1990. Modules that ask and cuts: Prusinkiewicz, James and Mech 1994;
+//! environments: Mech and Prusinkiewicz 1996. Decomposition and interpretation as in the program cpfg: Prusinkiewicz,
+//! Hanan and Mech 1999.
+//!
+//! *Not modelled:* L-systems within L-systems, and modules with an age between steps.
+
+mod error;
+mod function;
+mod formula;
+mod alphabet;
+mod scanner;
+mod formula_parser;
+mod production;
+mod word_parser;
+mod predefined;
+mod lsystem;
+mod sight;
+mod rules;
+mod rewriting;
+mod growth;
+mod turtle;
+mod drawing;
+mod walk;
+mod specimen;
+mod tubes;
+mod meshing;
+mod figures;
+
+pub use alphabet::ModuleString;
+pub use drawing::{PlacedPredefined, StrokeNode, TurtleDrawing, TurtlePolygon, TurtleSphere};
+pub use error::{ArithmeticProblem, DerivationError, EvaluationError, GrammarError, GrammarProblem, TextPlace};
+pub use figures::{ABOP_FIGURES, AbopFigure};
+pub use lsystem::{GrammarParameter, LSystem};
+pub use predefined::{PredefinedPart, PredefinedSurface};
+pub use specimen::Specimen;
+pub use turtle::{EmptyEnvironment, Environment, TurtlePose, turtle_modules};
+
+#[cfg(test)]
+mod derivation_tests;
+#[cfg(test)]
+mod drawing_tests;
+#[cfg(test)]
+mod language_tests;
