@@ -11,7 +11,7 @@ use super::parameter::{Required, optional, required, with_default};
 use super::wind;
 use crate::numeric::sampling::mix;
 use crate::octree::{Instance, MOST_INSTANCES};
-use crate::scene::{Instances, Object, PlacementList, Placing, Scatter, Shape};
+use crate::scene::{Instances, MOST_DETAIL, Object, PlacementList, Placing, Scatter, Shape};
 use rhai::Dynamic;
 
 const OBJECTS: Required<ObjectGroups> = required(
@@ -87,6 +87,11 @@ pub(super) const FUNCTIONS: &[Function] = &[
                 "how far they lean in a wind() of 10 units a second, degrees; as the square of its speed in others",
             ),
             sink: with_default(ANY_NUMBER, 0.0, "how deep their origin is below the surface, along their y axis"),
+            aggregate: optional(
+                NumberKind(1.0 / MOST_DETAIL, MOST_DETAIL),
+                "none",
+                "in cells: beyond the distance from the eye at which the largest of them spans so many pixels, fewer and larger ones stand in for all",
+            ),
         )
         "Scatters objects over the surface of another by chance, as one object: as many on each part of its area. Each instance takes 29 bytes, and some millions are found in a second."
         "scatter(cone(0.1, 0.4), pot, #{ count: 400, distance: 0.1, scale: [0.7, 1.3], slope: [0, 60] });"
@@ -101,7 +106,22 @@ pub(super) const FUNCTIONS: &[Function] = &[
             let height = height.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
             let sway = if sway > 0.0 { Some(wind::sway(builder, sway)?) } else { None };
             let scatter = Scatter {
-                on, count, cell, distance, density, slope, height, scale, turn, lean, upright, sink, shares, sway, seed,
+                on,
+                count,
+                cell,
+                aggregate,
+                distance,
+                density,
+                slope,
+                height,
+                scale,
+                turn,
+                lean,
+                upright,
+                sink,
+                shares,
+                sway,
+                seed,
             };
             let all = add(builder, objects, Placing::Scattered(Box::new(scatter)))?;
             if !stays {

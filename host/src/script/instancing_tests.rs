@@ -85,6 +85,19 @@ fn what_stands_in_cells_is_stored_nowhere() {
 }
 
 #[test]
+fn aggregates_stand_in_for_what_is_in_cells_if_the_script_asks_for_them() {
+    let aggregate = |option: &str| {
+        let made = run(&format!("scatter(cone(0.1, 1), ground(500), #{{ count: 4, cell: 1{option} }});"));
+        let Shape::Instances(instances) = &made.scene.objects[1].shape else { panic!("instances") };
+        let Placing::Scattered(scatter) = &instances.placing else { panic!("scattered") };
+        let prepared = Prepared::new(&made.scene).expect("a scene");
+        (scatter.aggregate, prepared.aggregate_views(1, &[prepared.view()], &prepared.settings).len())
+    };
+    assert_eq!(aggregate(""), (None, 0));
+    assert_eq!(aggregate(", aggregate: 0.5"), (Some(0.5), 1));
+}
+
+#[test]
 fn what_cannot_be_placed_is_told_with_its_place() {
     for (text, expected) in [
         (
@@ -106,6 +119,15 @@ fn what_cannot_be_placed_is_told_with_its_place() {
         (
             "scatter(cube(1), ground(4), #{ count: 10, cell: 1, distance: 1 });",
             (1, 1, "a distance is not kept in cells"),
+        ),
+        ("scatter(cube(1), ground(4), #{ count: 10, aggregate: 1 });", (1, 1, "tell the side of a cell")),
+        (
+            "scatter(cube(1), ground(4), #{ count: 10, cell: 1, aggregate: 0 });",
+            (1, 1, "aggregate must be a number from 0.0039"),
+        ),
+        (
+            "let a = scatter(cube(1), ground(4), #{ count: 10, cell: 1, aggregate: 1 });\ninstances(a, [[0, 0, 0]]);",
+            (2, 1, "has aggregates, which stand in for what the scene itself has, not for what is placed again"),
         ),
         ("let b = cube(1); for i in 0..8 { b = instances(b, [[0, 0, 0]]); }", (1, 38, "nested more than 7 times")),
     ] {

@@ -46,9 +46,10 @@ pub use error::{MAX_TRIANGLES, OctreeError};
 pub use file::{ENDING, FileError, MAX_BYTES};
 pub use inside::Containment;
 pub use instances::{
-    CellGrid, CellInstances, CellPlace, Instance, InstanceCosts, InstanceError, InstanceHit, InstanceOctree,
-    InstanceParts, InstancePath, InstanceWalk, MOST_CELLS, MOST_IN_CELL, MOST_INSTANCES, MOST_LEVELS, MOST_MADE_LEVELS,
-    MOST_OVERHANG, MOST_PARTS, MOST_PROTOTYPES, PlacedSurface, PlacementForm, Prototype, PrototypeMaker, RayInterval,
+    AggregateView, CellGrid, CellInstances, CellPlace, Instance, InstanceCosts, InstanceError, InstanceHit,
+    InstanceOctree, InstanceParts, InstancePath, InstanceWalk, MOST_AGGREGATE_LEVELS, MOST_CELLS, MOST_IN_CELL,
+    MOST_INSTANCES, MOST_LEVELS, MOST_MADE_LEVELS, MOST_OVERHANG, MOST_PARTS, MOST_PROTOTYPES, PlacedSurface,
+    PlacementForm, Prototype, PrototypeMaker, RayInterval,
 };
 pub use nearest::{Nearest, hausdorff};
 pub use points::{NearbyPoints, SortedPoints};

@@ -248,11 +248,11 @@ fn estimate<S: Surface>(surface: &S) -> Option<[SegmentEstimate; 2]> {
                 (0..=counts[0]).map(|i| line(grid_uv(domain, counts, i, j).x)).collect()
             })
             .collect();
+        let sample = |line: usize, k: usize| if axis == 0 { rows[line][k] } else { rows[k][line] };
         for line in 0..ESTIMATE_LINES {
-            let sample = |k: usize| if axis == 0 { rows[line][k] } else { rows[k][line] };
             let is_side = line == 0 || line == ESTIMATE_LINES - 1;
             for k in (0..along).step_by(2) {
-                let [[a, from], [middle, normal], [b, to]] = [k, k + 1, k + 2].map(sample);
+                let [[a, from], [middle, normal], [b, to]] = [k, k + 1, k + 2].map(|k| sample(line, k));
                 let offset = middle - (a + b) * 0.5;
                 if !offset.is_finite() {
                     return None;

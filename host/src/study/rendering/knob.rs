@@ -19,6 +19,8 @@ const WIDEST_FILTER: f64 = 2.0;
 const LARGEST_ANGLE: f64 = 90.0;
 /// The coarsest detail that is tried, pixels.
 const COARSEST_DETAIL: f64 = 16.0;
+/// The most pixels at which aggregates begin that are tried.
+const COARSEST_AGGREGATE: f64 = 2.0;
 /// Depths that are tried; the reference has twice the last one.
 const DEPTHS: [f64; 10] = [0.0, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 32.0];
 /// Points of lights that the reference of scan line has for each of the finest setting.
@@ -207,6 +209,18 @@ pub const RENDER_KNOBS: &[RenderKnob] = &[
         best: |base, _| halved(base, COARSEST_DETAIL).last().unwrap_or(1.0).min(1.0) / 2.0,
         get: |setup| setup.settings.geometry.detail,
         set: |setup, value| setup.settings.geometry.detail = value,
+    },
+    RenderKnob {
+        name: "aggregate",
+        sets: "pixels that the largest of what is scattered in cells spans where fewer and larger ones begin to stand in for all; 0 for nowhere",
+        renderers: EYE,
+        is_model: false,
+        remodels: true,
+        idle: |base| base.has_no_cells().then_some("nothing is scattered in cells"),
+        values: |base| halved(base, COARSEST_AGGREGATE).take(base.options.settings as usize - 1).chain([0.0]).collect(),
+        best: |_, _| 0.0,
+        get: |setup| setup.settings.geometry.aggregate.unwrap_or(0.0),
+        set: |setup, value| setup.settings.geometry.aggregate = Some(value),
     },
     RenderKnob {
         name: "spectral",

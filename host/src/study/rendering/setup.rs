@@ -69,6 +69,12 @@ impl StudiedScene {
         let options = Options { settings: options.settings.clamp(2, 16), ..*options };
         let mut scene = resized(scene, &options);
         let prepared = Prepared::new(&scene)?;
+        // In words, if all that is scattered in cells tells the same.
+        let own = scene.objects.iter().filter(|object| object.is_in_cells()).map(Object::aggregate);
+        let own: Vec<f64> = own.map(|pixels| pixels.unwrap_or(0.0)).collect();
+        if own.windows(2).all(|pair| pair[0] == pair[1]) {
+            scene.settings.geometry.aggregate = scene.settings.geometry.aggregate.or(own.first().copied());
+        }
         // The camera stays where it is, even if it was framed automatically.
         scene.camera = Some(prepared.camera);
         let curved = scene.objects.iter().zip(&prepared.objects).filter(|(o, _)| o.shape.is_exact_and_curved());
@@ -93,6 +99,11 @@ impl StudiedScene {
     /// Whether no procedural model is in the scene.
     pub(super) fn has_no_models(&self) -> bool {
         !self.scene.objects.iter().any(Object::has_models)
+    }
+
+    /// Whether nothing is scattered in cells.
+    pub(super) fn has_no_cells(&self) -> bool {
+        !self.scene.objects.iter().any(Object::is_in_cells)
     }
 
     /// All knobs as the scene has them.

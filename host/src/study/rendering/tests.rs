@@ -11,8 +11,8 @@ use crate::numeric::ray::Ray;
 use crate::octree::Instance;
 use crate::render::RENDERERS;
 use crate::scene::{
-    Camera, Instances, Interreflection, Lens, Object, PlacementList, Placing, Procedural, ProceduralModel, Settings,
-    Shape,
+    Camera, Instances, Interreflection, Lens, Object, PlacementList, Placing, Procedural, ProceduralModel, Scatter,
+    Settings, Shape,
 };
 use crate::solid::Primitive;
 use crate::stages::{StageEvent, observed};
@@ -97,8 +97,20 @@ fn modelled(at: DVec3) -> Object {
     Object { name: "balls".into(), shape, transform: DMat4::IDENTITY, material: None, tolerance: None }
 }
 
+/// Posts in cells of a small ground.
+fn posts() -> Object {
+    let size = DVec3::new(0.05, 0.3, 0.05);
+    let post = object(Shape::from(Primitive::Box { size }), DMat4::from_translation(DVec3::Y * 0.15), diffuse(0.9));
+    let place = DMat4::from_translation(DVec3::new(1.2, 0.0, -2.5));
+    let on = object(Shape::Ground { size: 2.0 }, place, diffuse(0.1));
+    let scatter = Scatter { cell: Some(0.25), ..Scatter::over(on, 1) };
+    let placing = Placing::Scattered(Box::new(scatter));
+    let shape = Shape::Instances(Box::new(Instances { prototypes: vec![vec![post]], placing }));
+    Object { name: "posts".into(), shape, transform: DMat4::IDENTITY, material: None, tolerance: None }
+}
+
 /// Every knob has something to do: a ball that mirrors and one that is made on demand, on tiles beside a colored wall,
-/// under a lamp with a spectrum.
+/// before posts in cells, under a lamp with a spectrum.
 fn all_knobs() -> Scene {
     let (paints, laying) = (
         vec![Paint::grey(0.2), Paint::grey(0.8)],
@@ -116,6 +128,7 @@ fn all_knobs() -> Scene {
         ),
         object(Shape::from(Primitive::Sphere { radius: 0.6 }), DMat4::from_translation(DVec3::Y * 0.6), mirror(0.8)),
         modelled(DVec3::new(1.0, 0.4, 0.3)),
+        posts(),
     ];
     let patch = LightShape::Rectangle { corner: DVec3::new(-0.5, 2.5, 0.0), across: DVec3::X, up: DVec3::Z };
     let steep = Spectrum::regular(400.0, 100.0, vec![0.0, 0.2, 1.0, 0.1], Extrapolation::Held).expect("a spectrum");

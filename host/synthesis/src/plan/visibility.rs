@@ -4,6 +4,7 @@ use super::decision::Decision;
 use super::stage::Facts;
 use crate::illumination::light::LightOrigin;
 use crate::numeric::bounds::Bounds;
+use crate::octree::AggregateView;
 use crate::scene::{Prepared, PreparedObject, View};
 use glam::DVec3;
 
@@ -21,13 +22,13 @@ pub(super) fn objects(prepared: &Prepared, views: &[View], facts: &Facts<'_>) ->
     let seen = seen.fold(Bounds::EMPTY, |b, (o, _)| b.union(o.bounds));
     let mirrors = facts.reflection().needed;
     let shadows = facts.shadows().needed;
-    let decide = |(object, visible): (&PreparedObject, &bool)| {
+    let decide = |(number, (object, visible)): (usize, (&PreparedObject, &bool))| {
         if object.copies > 0 {
             Decision::new(false, format!("the copies of what it places stand for it, {} objects", object.copies))
         } else if object.is_empty() {
             Decision::new(false, "it has no triangles")
         } else if *visible {
-            Decision::new(true, format!("in view, {}", extent(object)))
+            Decision::new(true, format!("in view, {}{}", extent(object), aggregates(prepared, views, number)))
         } else if camera_moves {
             Decision::new(true, "out of view in the middle, but the camera moves")
         } else if seen.is_empty() {
@@ -42,7 +43,7 @@ pub(super) fn objects(prepared: &Prepared, views: &[View], facts: &Facts<'_>) ->
             Decision::new(false, "out of view, and neither its mirror image nor its shadow can be seen")
         }
     };
-    let standing: Vec<Decision> = prepared.objects.iter().zip(&visible).map(decide).collect();
+    let standing: Vec<Decision> = prepared.objects.iter().zip(&visible).enumerate().map(decide).collect();
     let decided = |(object, own): (&PreparedObject, &Decision)| match object.placed_by {
         Some(placing) if standing[placing as usize].needed => {
             let (name, triangles) = (&prepared.objects[placing as usize].name, object.count);
@@ -60,6 +61,22 @@ fn extent(object: &PreparedObject) -> String {
         (count, 0) => format!("{count} triangles"),
         (0, instances) => format!("{instances} instances"),
         (count, instances) => format!("{count} triangles and {instances} instances"),
+    }
+}
+
+/// From where on aggregates stand in for the instances of an object; nothing if they do not.
+fn aggregates(prepared: &Prepared, views: &[View], object: usize) -> String {
+    let (mut nearest, mut enlarged) = (f64::INFINITY, f64::INFINITY);
+    for view in prepared.aggregate_views(object, views, &prepared.settings) {
+        match view {
+            AggregateView::Eye { distance, .. } => nearest = nearest.min(distance),
+            AggregateView::Parallel { enlargement } => enlarged = enlarged.min(enlargement),
+        }
+    }
+    match (nearest.is_finite(), enlarged.is_finite() && enlarged > 1.0) {
+        (true, _) => format!("; aggregates stand in beyond {nearest:.4} from the eye"),
+        (false, true) => format!("; aggregates stand in for all, up to {enlarged:.2} times as large"),
+        (false, false) => String::new(),
     }
 }
 

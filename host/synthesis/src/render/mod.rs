@@ -30,6 +30,8 @@ mod instance_tests;
 #[cfg(test)]
 mod instance_extreme_tests;
 #[cfg(test)]
+mod aggregate_tests;
+#[cfg(test)]
 mod detail_tests;
 #[cfg(test)]
 mod lamp_tests;

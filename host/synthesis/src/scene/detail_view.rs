@@ -2,6 +2,7 @@
 
 use super::{ImageSettings, Settings, View};
 use crate::numeric::bounds::Bounds;
+use crate::octree::AggregateView;
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 
 /// Maps that lengthen all directions alike, but for rounding: the product of their norm and that of the inverse is 1.
@@ -12,8 +13,11 @@ const SIMILAR: f64 = 0.999;
 pub struct DetailView {
     /// The eye; none of parallel lines of sight.
     eye: Option<DVec3>,
-    /// What a pixel spans, or as many as the detail has: at a distance of 1 from the eye, in the middle of the picture; anywhere where there is no eye.
+    /// What a pixel spans: at a distance of 1 from the eye, in the middle of the picture; anywhere where there is no
+    /// eye.
     pixel: f64,
+    /// How many pixels the detail has.
+    detail: f64,
 }
 
 impl DetailView {
@@ -23,34 +27,50 @@ impl DetailView {
         let to_clip = view.projection().map_or(DMat4::IDENTITY, |projection| projection.to_clip);
         let rows = to_clip.transpose();
         let (x, y, w) = (rows.x_axis, rows.y_axis, rows.w_axis);
-        let across = x.truncate().length() * 0.5 * f64::from(width.min(height).max(1)) / settings.geometry.detail;
+        let across = x.truncate().length() * 0.5 * f64::from(width.min(height).max(1));
+        let detail = settings.geometry.detail;
         // The eye is where all lines of sight meet.
         let eye = DMat3::from_cols(x.truncate(), y.truncate(), w.truncate()).transpose().inverse()
             * -DVec3::new(x.w, y.w, w.w);
         if eye.is_finite() && w.truncate() != DVec3::ZERO {
-            return DetailView { eye: Some(eye), pixel: w.truncate().length() / across };
+            return DetailView { eye: Some(eye), pixel: w.truncate().length() / across, detail };
         }
-        DetailView { eye: None, pixel: w.w.abs() / across }
+        DetailView { eye: None, pixel: w.w.abs() / across, detail }
     }
 
-    /// What a pixel spans where a model is placed nearest to the eye, in coordinates of the model.
+    /// What a pixel spans where a model is placed nearest to the eye, or as many as the detail has, in coordinates of
+    /// the model.
     ///
     /// - `bounds`: of the model, in its coordinates.
     pub(super) fn footprint(&self, placement: &DAffine3, bounds: &Bounds) -> f64 {
+        let own = self.within(placement);
+        let away = own.eye.map_or(1.0, |eye| eye.distance(eye.clamp(bounds.min, bounds.max)));
+        away * own.pixel * self.detail
+    }
+
+    /// From where what is placed in cells is seen, in coordinates of the cells.
+    ///
+    /// - `size`: of the largest thing, above 0. `pixels`: how many it spans where aggregates begin to stand in.
+    pub(super) fn aggregates(&self, placement: &DAffine3, size: f64, pixels: f64) -> AggregateView {
+        let own = self.within(placement);
+        match own.eye {
+            Some(at) => AggregateView::Eye { at, distance: size / (pixels * own.pixel) },
+            None => AggregateView::Parallel { enlargement: pixels * own.pixel / size },
+        }
+    }
+
+    /// This, in coordinates of what is placed.
+    fn within(&self, placement: &DAffine3) -> DetailView {
         let to_own = placement.inverse();
         let norm = |map: &DMat3| map.to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt();
         let [there, back] = [norm(&placement.matrix3), norm(&to_own.matrix3)];
         // Along the direction that is lengthened the most, a pixel spans less.
         let alike = 3.0 / (there * back);
         let least = if alike > SIMILAR { 1.0 } else { alike * alike };
-        let span = match self.eye {
-            Some(eye) => {
-                let eye = to_own.transform_point3(eye);
-                eye.distance(eye.clamp(bounds.min, bounds.max)) * self.pixel
-            }
-            None => self.pixel * back / 3f64.sqrt(),
-        };
-        span * least
+        match self.eye {
+            Some(eye) => DetailView { eye: Some(to_own.transform_point3(eye)), pixel: self.pixel * least, ..*self },
+            None => DetailView { pixel: self.pixel * back / 3f64.sqrt() * least, ..*self },
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::ShapeError;
 use super::object::{Instances, Object, Placing, Shape};
-use super::scatter::{FoundPlaces, ScatterCells, ScatterParts};
+use super::scatter::{FoundPlaces, PlacedGrid, ScatterCells, ScatterParts};
 use super::shape_mesh::{ShapeMesh, flat_normals};
 use super::stretch::largest_stretch;
 use crate::memory;
@@ -107,11 +107,23 @@ impl Places<'_> {
         }
     }
 
+    /// Where their cells are, if they are in cells.
+    pub(super) fn grid(&self, prototypes: &[Prototype]) -> Option<PlacedGrid> {
+        let KnownPlaces::Cells(cells) = &self.0 else { return None };
+        Some(cells.placed(prototypes))
+    }
+
     /// The octree over these instances.
     ///
     /// # Errors
     /// [`InstanceError`], for those that cannot be placed.
-    pub(super) fn octree(self, prototypes: Vec<Prototype>) -> Result<InstanceOctree, InstanceError> {
+    ///
+    /// - `aggregates`: the number of the octree among those that have aggregates, if it is one of them.
+    pub(super) fn octree(
+        self,
+        prototypes: Vec<Prototype>,
+        aggregates: Option<u32>,
+    ) -> Result<InstanceOctree, InstanceError> {
         let count = self.count();
         match self.0 {
             KnownPlaces::Listed(all) => InstanceOctree::new(prototypes, PlacementForm::Affine, count, |n| all[n]),
@@ -129,6 +141,7 @@ impl Places<'_> {
                 let placement = cells.to_instances();
                 let grid = cells.grid(&prototypes);
                 let octree = InstanceOctree::in_cells(prototypes, grid, Arc::new(*cells))?;
+                let octree = aggregates.into_iter().fold(octree, InstanceOctree::aggregated);
                 if placement == DAffine3::IDENTITY {
                     return Ok(octree);
                 }
@@ -255,6 +268,11 @@ impl Instances {
             match &object.shape {
                 Shape::Curve(_) => return Err(format!("{} is a curve; only surfaces can be instances", object.name)),
                 Shape::HalfSpace { .. } => return Err(format!("{} has no end", object.name)),
+                Shape::Instances(inner) if inner.aggregate(None).is_some() => {
+                    let what =
+                        "has aggregates, which stand in for what the scene itself has, not for what is placed again";
+                    return Err(format!("{} {what}", object.name));
+                }
                 _ => {}
             }
         }

@@ -125,6 +125,9 @@ pub struct Scatter {
     /// Side of square cells, units of the instances: those in a cell are a function of the cell and the seed, and stored
     /// nowhere. The object must be a ground then.
     pub cell: Option<f64>,
+    /// In cells: beyond the distance from the eye at which the largest of them spans so many pixels, fewer and larger
+    /// ones stand in for all; 1/256 to 256. None where all are seen as they are.
+    pub aggregate: Option<f64>,
     /// Of each two instances the least distance, 0 and more.
     pub distance: f64,
     /// The part of the instances that stay, 0 to 1, by place.
@@ -166,6 +169,16 @@ pub struct Sway {
     pub lean: f64,
 }
 
+impl Instances {
+    /// How many pixels the largest of them spans where aggregates begin to stand in; none where none do.
+    ///
+    /// - `asked`: what counts instead of what they tell themselves.
+    pub(super) fn aggregate(&self, asked: Option<f64>) -> Option<f64> {
+        let Placing::Scattered(scatter) = &self.placing else { return None };
+        asked.filter(|_| scatter.cell.is_some()).or(scatter.aggregate).filter(|pixels| *pixels > 0.0)
+    }
+}
+
 impl Scatter {
     /// Instances of one prototype all over an object, square to its surface, each turned by chance.
     pub fn over(on: Object, count: usize) -> Scatter {
@@ -173,6 +186,7 @@ impl Scatter {
             on,
             count,
             cell: None,
+            aggregate: None,
             distance: 0.0,
             density: NumberTexture::Constant(1.0),
             slope: [0.0, 180.0],
@@ -350,6 +364,18 @@ impl Object {
             Shape::Instances(instances) => instances.prototypes.iter().flatten().any(Object::has_models),
             _ => false,
         }
+    }
+
+    /// Whether it is scattered in cells, so that aggregates may stand in for what is far away.
+    pub fn is_in_cells(&self) -> bool {
+        let Shape::Instances(instances) = &self.shape else { return false };
+        matches!(&instances.placing, Placing::Scattered(scatter) if scatter.cell.is_some())
+    }
+
+    /// How many pixels the largest of its instances spans where aggregates begin to stand in; none where none do.
+    pub fn aggregate(&self) -> Option<f64> {
+        let Shape::Instances(instances) = &self.shape else { return None };
+        instances.aggregate(None)
     }
 
     /// Whether any of its surface emits light.

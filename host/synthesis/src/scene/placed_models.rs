@@ -1,6 +1,8 @@
-//! The procedural models that instances of a prepared scene place.
+//! What of the instances of a prepared scene depends on the views: the procedural models that they place, and the
+//! aggregates that stand in for them.
 
 use super::object::Procedural;
+use super::scatter::PlacedGrid;
 use crate::illumination::Material;
 use std::any::Any;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
@@ -15,6 +17,17 @@ pub(super) struct PlacedModel {
     pub(super) object: u32,
     /// These materials.
     pub(super) materials: Vec<Material>,
+}
+
+/// Instances in cells for which aggregates stand in.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PlacedAggregates {
+    /// The object of the scene that they are.
+    pub(super) object: u32,
+    /// Their cells, placed in the scene; but for the box, which is in coordinates of the object.
+    pub(super) grid: PlacedGrid,
+    /// How many pixels the largest of them spans where aggregates begin.
+    pub(super) pixels: f64,
 }
 
 /// What is made of models, kept by the scene that has them: it does not know what that is, since it is made of scenes.

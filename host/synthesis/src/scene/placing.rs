@@ -3,7 +3,7 @@
 use super::acceleration::PlacedInstances;
 use super::instances::{Places, ShortScatter};
 use super::object::{Instances, Object, Procedural, Shape};
-use super::placed_models::PlacedModel;
+use super::placed_models::{PlacedAggregates, PlacedModel};
 use super::prepared::{Contents, PreparedObject};
 use super::procedural::geometry_of;
 use super::shape_mesh::ShapeMesh;
@@ -79,8 +79,16 @@ impl Contents {
                 copied.add_to(self, &object.name, transform, motion, geometry, view.as_ref())?;
             return Ok(());
         }
-        let octree = self.instance_octree(&object.name, instances, &whole, geometry)?;
-        self.stand(index, octree, transform, geometry)
+        let pixels = instances.aggregate(geometry.aggregate);
+        let octree = self.instance_octree(&object.name, instances, &whole, geometry, pixels)?;
+        let mut exact = octree.bounds();
+        if let Some(own) = self.aggregates.last_mut().filter(|aggregates| aggregates.object == index) {
+            if octree.count() > 0 {
+                exact = own.grid.exact;
+            }
+            own.grid.placement = transform * own.grid.placement;
+        }
+        self.stand(index, octree, &exact, transform, geometry)
     }
 
     /// Places what the file of an object of the scene places many times.
@@ -98,28 +106,38 @@ impl Contents {
     ) -> Result<(), SceneError> {
         let _stage = stage!("placing instances");
         let octree = self.mesh_octree(index, object, meshes, geometry)?;
-        self.stand(index, octree, DAffine3::from_mat4(object.transform), geometry)
+        let exact = octree.bounds();
+        self.stand(index, octree, &exact, DAffine3::from_mat4(object.transform), geometry)
     }
 
     /// Lets instances of an object stand in the scene.
+    ///
+    /// - `exact`: around all of them as they are, in coordinates of the object.
     fn stand(
         &mut self,
         index: u32,
         octree: Arc<InstanceOctree>,
+        exact: &Bounds,
         transform: DAffine3,
         geometry: &GeometrySettings,
     ) -> Result<(), SceneError> {
         let group = &mut self.objects[index as usize];
-        let corners = octree.bounds().corners().map(|corner| transform.transform_point3(corner));
-        let still = if octree.bounds().is_empty() { Bounds::EMPTY } else { Bounds::of(corners) };
+        let placed = |bounds: &Bounds| match bounds.is_empty() {
+            true => Bounds::EMPTY,
+            false => Bounds::of(bounds.corners().map(|corner| transform.transform_point3(corner))),
+        };
+        let still = placed(&octree.bounds());
         let is_near = still.is_empty() || still.min.abs().max(still.max.abs()).max_element() <= MAX_MAGNITUDE;
         if !is_near {
             let problem = format!("an instance is placed farther than {MAX_MAGNITUDE:e} from the origin");
             return Err(failed(&group.name, problem));
         }
         let half = 0.5 * geometry.shutter;
-        let bounds = group.motion.map_or(still, |motion| motion.swept(&still, [-half, half]));
-        group.bounds = if group.count == 0 { bounds } else { group.bounds.union(bounds) };
+        let swept = |still: Bounds| group.motion.map_or(still, |motion| motion.swept(&still, [-half, half]));
+        let [bounds, framed] = [still, placed(exact)].map(swept);
+        let has_triangles = group.count > 0;
+        let with = |own: Bounds, more: Bounds| if has_triangles { own.union(more) } else { more };
+        (group.bounds, group.framed) = (with(group.bounds, bounds), with(group.framed, framed));
         group.instances = octree.count();
         self.bounds = self.bounds.union(group.bounds);
         self.placed_triangles = self.placed_triangles.saturating_add(octree.costs().triangles);
@@ -166,19 +184,27 @@ impl Contents {
     }
 
     /// The octree over instances, in coordinates of the object that has them; what they place is added.
+    ///
+    /// - `pixels`: how many the largest of them spans where aggregates begin to stand in, if they do.
     fn instance_octree(
         &mut self,
         name: &str,
         instances: &Instances,
         whole: &Whole,
         geometry: &GeometrySettings,
+        pixels: Option<f64>,
     ) -> Result<Arc<InstanceOctree>, SceneError> {
         let places = whole.places(name, instances, geometry)?;
         self.short_scatters.extend(places.short(name));
         let placed = whole.placed_by(instances);
         let prototypes = instances.prototypes.iter().map(|group| self.prototype(name, group, &placed, geometry));
         let prototypes = prototypes.collect::<Result<Vec<Prototype>, SceneError>>()?;
-        Ok(self.counted(places.octree(prototypes).map_err(|error| failed(name, error))?))
+        let grid = pixels.and_then(|pixels| Some((pixels, places.grid(&prototypes)?)));
+        let number = grid.is_some().then_some(self.aggregates.len() as u32);
+        let octree = places.octree(prototypes, number).map_err(|error| failed(name, error))?;
+        let placed = |(pixels, grid)| PlacedAggregates { object: whole.object, grid, pixels };
+        self.aggregates.extend(grid.map(placed));
+        Ok(self.counted(octree))
     }
 
     /// A group of objects as one prototype.
@@ -219,7 +245,7 @@ impl Contents {
         for object in group {
             let part = match &object.shape {
                 Shape::Instances(inner) => {
-                    let octree = self.instance_octree(&object.name, inner, &whole.within(object), geometry)?;
+                    let octree = self.instance_octree(&object.name, inner, &whole.within(object), geometry, None)?;
                     Prototype::instances(octree)
                 }
                 Shape::Procedural(model) => self.model(object, model, whole, geometry)?,

@@ -6,7 +6,7 @@ use super::instances::ShortScatter;
 use super::lamp_body::lamp_body;
 use super::object::{GROUND, Object, Shape};
 use super::parameters::parameters;
-use super::placed_models::{LastDetails, PlacedModel};
+use super::placed_models::{LastDetails, PlacedAggregates, PlacedModel};
 use super::shape_mesh::ShapeMesh;
 use super::shared::SharedMeshes;
 use super::stretch::cofactors;
@@ -74,6 +74,8 @@ pub struct Contents {
     pub(super) placed_triangles: u64,
     /// The procedural models that its instances place, by their numbers.
     pub(super) models: Vec<Arc<PlacedModel>>,
+    /// Those of its instances for which aggregates stand in, by their numbers.
+    pub(super) aggregates: Vec<PlacedAggregates>,
     /// Its octrees, as far as they were asked for.
     pub(super) octrees: AccelerationCache,
     /// What was made of its models, as far as it was asked for and is kept.
@@ -93,8 +95,10 @@ pub struct PreparedObject {
     pub first: u32,
     /// How many triangles it has.
     pub count: u32,
-    /// A box around it, wherever it moves.
+    /// A box around it, wherever it moves, and around the aggregates that may stand in for its instances.
     pub bounds: Bounds,
+    /// A box around it, wherever it moves, without aggregates: what a camera frames.
+    pub framed: Bounds,
     /// The light whose body it is, an index into the lights of the scene; none of an object of the scene.
     pub light: Option<u32>,
     /// The object whose instances place it, an index into the objects; it and its box are in coordinates of its own then.
@@ -181,6 +185,7 @@ impl Contents {
             instanced: Vec::new(),
             placed_triangles: 0,
             models: Vec::new(),
+            aggregates: Vec::new(),
             octrees: AccelerationCache::default(),
             details: LastDetails::default(),
         }
@@ -223,8 +228,8 @@ impl Contents {
     pub fn subject(&self) -> Bounds {
         let is_meant =
             |object: &&PreparedObject| object.shape != GROUND && object.light.is_none() && object.placed_by.is_none();
-        let all = self.objects.iter().filter(is_meant).filter(|object| !object.bounds.is_empty());
-        all.map(|object| object.bounds).reduce(Bounds::union).unwrap_or(self.bounds)
+        let all = self.objects.iter().filter(is_meant).filter(|object| !object.framed.is_empty());
+        all.map(|object| object.framed).reduce(Bounds::union).unwrap_or(self.bounds)
     }
 
     /// Adds an object that stands in the scene as the last one.
@@ -295,6 +300,7 @@ impl Contents {
             first,
             count: mesh.triangles.len() as u32,
             bounds,
+            framed: bounds,
             light: None,
             placed_by: None,
             instances: 0,
@@ -402,6 +408,7 @@ impl Contents {
     pub fn add_placements_to_checksum(&self, sum: &mut crc32fast::Hasher) {
         self.models.iter().for_each(|placed| sum.update(placed.model.definition().as_bytes()));
         self.placed.iter().for_each(|placed| placed.prototype.add_to_checksum(sum));
+        self.aggregates.iter().for_each(|placed| sum.update(&placed.pixels.to_le_bytes()));
     }
 
     /// An object whose instances are placed, if there is one: renderers that go through triangles one by one do not see

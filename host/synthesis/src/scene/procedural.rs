@@ -178,6 +178,9 @@ fn check_made(object: &Object) -> Result<(), String> {
         Shape::Curve(_) => Err(format!("{} is a curve; a model is made of surfaces", object.name)),
         Shape::HalfSpace { .. } => Err(format!("{} has no end", object.name)),
         Shape::Procedural(_) => Err(format!("{} is a procedural model; a model cannot be made of models", object.name)),
+        Shape::Instances(instances) if instances.aggregate(None).is_some() => {
+            Err(format!("{} has aggregates; what a model makes cannot", object.name))
+        }
         Shape::Instances(instances) => instances.prototypes.iter().flatten().try_for_each(check_made),
         _ if object.emits() => Err(format!("{} emits light; what a model makes cannot", object.name)),
         _ => Ok(()),

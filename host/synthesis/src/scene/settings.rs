@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 pub const MAX_SAMPLES: u32 = 65_536;
 /// Most photons that are traced at a time: stored, they take up to 1.2 GB.
 pub const MAX_PHOTONS: u32 = 16_000_000;
-/// Most pixels that the detail has which models leave out.
+/// Most pixels that the detail has which models leave out, and where aggregates begin.
 pub const MOST_DETAIL: f64 = 256.0;
 /// Deepest chain of reflections.
 pub const MAX_REFLECTION_DEPTH: u32 = 1_000;
@@ -64,6 +64,9 @@ pub struct GeometrySettings {
     pub shutter: f64,
     /// How many pixels small the detail is that procedural models may leave out, 1/256 to 256: 1 is what a pixel spans.
     pub detail: f64,
+    /// How many pixels the largest of what is scattered in cells spans where aggregates begin to stand in for all,
+    /// 1/256 to 256 or 0 for nowhere, instead of what each scattering tells itself.
+    pub aggregate: Option<f64>,
     /// Whether instances become objects of their own, for renderers that go through triangles one by one.
     pub copies_instances: bool,
 }
@@ -219,6 +222,7 @@ impl GeometrySettings {
         exact_surfaces: true,
         shutter: 1.0,
         detail: 1.0,
+        aggregate: None,
         copies_instances: false,
     };
 
@@ -232,7 +236,16 @@ impl GeometrySettings {
         if !(1.0 / MOST_DETAIL..=MOST_DETAIL).contains(&self.detail) {
             return Err(format!("detail of {} pixels is not within 1/{MOST_DETAIL} to {MOST_DETAIL}", self.detail));
         }
+        self.aggregate.filter(|pixels| *pixels != 0.0).map_or(Ok(()), check_aggregate)?;
         self.tolerance.map_or(Ok(()), check_tolerance)
+    }
+}
+
+/// Checks how many pixels the largest of what is scattered spans where aggregates begin; the problem in words.
+pub(super) fn check_aggregate(pixels: f64) -> Result<(), String> {
+    match (1.0 / MOST_DETAIL..=MOST_DETAIL).contains(&pixels) {
+        true => Ok(()),
+        false => Err(format!("aggregates from {pixels} pixels on are not within 1/{MOST_DETAIL} to {MOST_DETAIL}")),
     }
 }
 

@@ -1,10 +1,11 @@
 //! Instances in the cells of a grid, which are a function of the cell and stored nowhere.
 
+use super::aggregates::{AggregateView, Aggregates, MOST_AGGREGATE_LEVELS};
 use super::error::{InstanceError, MOST_CELLS, MOST_IN_CELL, MOST_OVERHANG};
 use super::placement::Instance;
 use crate::numeric::bounds::Bounds;
 use crate::numeric::ray::Ray;
-use glam::{DVec2, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 use std::fmt;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -28,7 +29,7 @@ pub trait CellInstances: fmt::Debug + Send + Sync {
     fn place(&self, cell: [u32; 2], number: u32) -> CellPlace;
 
     /// The one of a number: a rotation and a scale of its prototype, whose origin is over that place; none where the cell
-    /// has none.
+    /// has none. Where it is enlarged, it is about that place.
     fn instance(&self, cell: [u32; 2], number: u32) -> Option<Instance>;
 
     /// How often each prototype is placed on the whole, in any unit.
@@ -66,8 +67,10 @@ pub struct CellGrid {
 /// The instances of a grid.
 #[derive(Clone, Debug)]
 pub(super) struct Cells {
-    grid: CellGrid,
+    pub(super) grid: CellGrid,
     pub(super) source: Arc<dyn CellInstances>,
+    /// The number by which who knows the views knows them, if aggregates may stand in for them.
+    pub(super) aggregates: Option<u32>,
 }
 
 /// Cells side by side that a ray comes to about at once.
@@ -80,6 +83,117 @@ pub(super) struct CellRow {
     /// Nothing that they place is hit at a shorter length of the ray, nor at a longer one.
     pub(super) enter: f64,
     pub(super) exit: f64,
+}
+
+impl CellGrid {
+    /// The box around all that is placed.
+    fn bounds(&self) -> Bounds {
+        let CellGrid { corner, overhang, heights: [low, high], .. } = *self;
+        let (from, to) = (corner - overhang, self.far_corner() + overhang);
+        Bounds { min: DVec3::new(from.x, low, from.y), max: DVec3::new(to.x, high, to.y) }
+    }
+
+    fn far_corner(&self) -> DVec2 {
+        let CellGrid { cells: [x, z], corner, side, .. } = *self;
+        corner + DVec2::new(f64::from(x), f64::from(z)) * side
+    }
+
+    /// The grid of a level of aggregates: cells 2^level times as large, in which things are enlarged up to so many
+    /// times, or made smaller.
+    pub(super) fn of_level(&self, level: u32, enlargement: f64) -> CellGrid {
+        CellGrid {
+            cells: self.cells.map(|cells| cells.div_ceil(1 << level)),
+            side: self.side * f64::from(1_u32 << level),
+            overhang: self.overhang * enlargement,
+            heights: [self.heights[0].min(0.0) * enlargement, self.heights[1].max(0.0) * enlargement],
+            ..*self
+        }
+    }
+
+    /// How far off, at the most, what is computed of a ray is from where things are.
+    pub(super) fn rounding(&self, ray: &Ray) -> f64 {
+        let largest = self.corner.abs().max(self.far_corner().abs()).max_element().max(ray.origin.abs().max_element());
+        largest * ROUNDING
+    }
+
+    /// The lengths of a ray within which it may hit anything.
+    pub(super) fn chord(&self, ray: &Ray, limits: [f64; 2]) -> Option<[f64; 2]> {
+        let Bounds { min, max } = self.bounds();
+        let margin = self.rounding(ray);
+        ray.within(&Bounds { min: min - margin, max: max + margin }, limits)
+    }
+
+    /// The rows of cells that a ray comes to between two lengths that are finite, by their numbers along the axis along
+    /// which it goes faster.
+    pub(super) fn rows_between(&self, ray: &Ray, [from, to]: [f64; 2]) -> Option<[u32; 2]> {
+        let AlongRay { origin, rate, .. } = self.along(ray);
+        self.along(ray).within(0, [origin[0] + rate[0] * from, origin[0] + rate[0] * to])
+    }
+
+    /// The rows of cells along a ray, the nearer ones first; each cell is in one of them.
+    ///
+    /// - `chord`: between which lengths, finite ones.
+    pub(super) fn rows(&self, ray: &Ray, chord: [f64; 2]) -> impl Iterator<Item = CellRow> + use<> {
+        let (line, side, [from, to]) = (self.along(ray), self.side, chord);
+        let AlongRay { is_along_x, origin: [origin, beside], rate: [rate, drift], corner, reach, .. } = line;
+        let along = self.rows_between(ray, chord);
+        let [first, last] = along.unwrap_or([1, 0]);
+        let count = if along.is_some() { last - first + 1 } else { 0 };
+        (0..count).filter_map(move |step| {
+            let along = if rate >= 0.0 { first + step } else { last - step };
+            let low = corner[0] + f64::from(along) * side - reach;
+            let [one, other] = [low, low + side + 2.0 * reach].map(|at| (at - origin) / rate);
+            // Along a ray that goes down they are at any length.
+            let (enter, exit) = match one.is_finite() && other.is_finite() {
+                true => (one.min(other).max(from), one.max(other).min(to)),
+                false => (from, to),
+            };
+            if enter > exit {
+                return None;
+            }
+            let [least, most] = line.within(1, [beside + drift * enter, beside + drift * exit])?;
+            Some(CellRow { along, across: least..=most, is_along_x, enter, exit })
+        })
+    }
+
+    fn along(&self, ray: &Ray) -> AlongRay {
+        let CellGrid { cells: [x, z], corner, side, overhang, .. } = *self;
+        let is_along_x = ray.direction.x.abs() >= ray.direction.z.abs();
+        let turned = |[x, z]: [f64; 2]| if is_along_x { [x, z] } else { [z, x] };
+        AlongRay {
+            is_along_x,
+            origin: turned([ray.origin.x, ray.origin.z]),
+            rate: turned([ray.direction.x, ray.direction.z]),
+            corner: turned(corner.to_array()),
+            cells: turned([f64::from(x), f64::from(z)]),
+            side,
+            reach: overhang + self.rounding(ray),
+        }
+    }
+}
+
+/// A ray and a grid, by the axis along which the ray goes faster and the other one.
+#[derive(Clone, Copy)]
+struct AlongRay {
+    is_along_x: bool,
+    origin: [f64; 2],
+    rate: [f64; 2],
+    corner: [f64; 2],
+    cells: [f64; 2],
+    side: f64,
+    /// How far from its place anything can be hit by the ray, rounding included.
+    reach: f64,
+}
+
+impl AlongRay {
+    /// The cells of an axis, what is placed by which comes into a part of it.
+    #[inline]
+    fn within(&self, axis: usize, [one, other]: [f64; 2]) -> Option<[u32; 2]> {
+        let at = |x: f64| ((x - self.corner[axis]) / self.side).floor();
+        let from = at(one.min(other) - self.reach).max(0.0);
+        let to = at(one.max(other) + self.reach).min(self.cells[axis] - 1.0);
+        (from <= to).then_some([from as u32, to as u32])
+    }
 }
 
 impl Cells {
@@ -104,14 +218,22 @@ impl Cells {
         if !is_narrow {
             return Err(InstanceError::SmallCells { overhang, side });
         }
-        Ok(Cells { grid, source })
+        Ok(Cells { grid, source, aggregates: None })
     }
 
-    /// The box around all that is placed.
+    /// The box around all that is placed, and around all that may stand in for it.
     pub(super) fn bounds(&self) -> Bounds {
-        let CellGrid { corner, overhang, heights: [low, high], .. } = self.grid;
-        let (from, to) = (corner - overhang, self.far_corner() + overhang);
-        Bounds { min: DVec3::new(from.x, low, from.y), max: DVec3::new(to.x, high, to.y) }
+        let own = self.grid.bounds();
+        match self.aggregates {
+            Some(_) => own.union(self.grid.of_level(0, f64::from(1_u32 << self.levels())).bounds()),
+            None => own,
+        }
+    }
+
+    /// How many levels of aggregates there are, if there are any: cells of the last one are no longer than the grid.
+    fn levels(&self) -> u32 {
+        let most = self.grid.cells[0].max(self.grid.cells[1]).max(1);
+        MOST_AGGREGATE_LEVELS.min(most.ilog2())
     }
 
     /// How many instances there are at the most.
@@ -120,73 +242,44 @@ impl Cells {
         (x * z).saturating_mul(self.source.count() as usize)
     }
 
-    fn far_corner(&self) -> DVec2 {
-        let CellGrid { cells: [x, z], corner, side, .. } = self.grid;
-        corner + DVec2::new(f64::from(x), f64::from(z)) * side
+    /// How they are seen; a grid of a single cell as it is.
+    pub(super) fn seen_by<'v>(&self, views: &'v [AggregateView]) -> Aggregates<'v> {
+        match self.levels() {
+            0 => Aggregates::NONE,
+            levels => Aggregates { views, levels },
+        }
     }
 
-    /// How far from its place anything can be hit by a ray, rounding included.
-    pub(super) fn reach(&self, ray: &Ray) -> f64 {
-        let CellGrid { corner, overhang, .. } = self.grid;
-        let largest = corner.abs().max(self.far_corner().abs()).max_element().max(ray.origin.abs().max_element());
-        overhang + largest * ROUNDING
-    }
-
-    /// How far what is placed is from its place at the most, along x and z.
-    pub(super) fn overhang(&self) -> f64 {
-        self.grid.overhang
-    }
-
-    /// The least and the greatest y of what is placed.
-    pub(super) fn heights(&self) -> [f64; 2] {
-        self.grid.heights
-    }
-
-    /// The rows of cells along a ray, the nearer ones first; each cell is in one of them.
-    pub(super) fn rows(&self, ray: &Ray, [t_min, t_max]: [f64; 2]) -> impl Iterator<Item = CellRow> + '_ {
-        let CellGrid { cells, corner, side, .. } = self.grid;
-        let reach = self.reach(ray);
-        let mut bounds = self.bounds();
-        let margin = DVec3::splat(reach - self.grid.overhang);
-        (bounds.min, bounds.max) = (bounds.min - margin, bounds.max + margin);
-        let chord = ray.within(&bounds, [t_min, t_max]);
-        let is_along_x = ray.direction.x.abs() >= ray.direction.z.abs();
-        let (axes, corner) = if is_along_x { ([0, 2], corner.to_array()) } else { ([2, 0], [corner.y, corner.x]) };
-        let counts = if is_along_x { cells } else { [cells[1], cells[0]] };
-        let [(origin, rate), (beside, drift)] = axes.map(|axis| (ray.origin[axis], ray.direction[axis]));
-        // The cells of an axis, what is placed by which comes into a part of it.
-        let within = move |which: usize, one: f64, other: f64| -> Option<[u32; 2]> {
-            let from = ((one.min(other) - reach - corner[which]) / side).floor().max(0.0);
-            let to = ((one.max(other) + reach - corner[which]) / side).floor().min(f64::from(counts[which]) - 1.0);
-            (from <= to).then_some([from as u32, to as u32])
-        };
-        let along = chord.and_then(|[from, to]| within(0, origin + rate * from, origin + rate * to));
-        let [first, last] = along.unwrap_or([1, 0]);
-        let count = if along.is_some() { last - first + 1 } else { 0 };
-        (0..count).filter_map(move |step| {
-            let [from, to] = chord?;
-            let along = if rate >= 0.0 { first + step } else { last - step };
-            let low = corner[0] + f64::from(along) * side - reach;
-            let [one, other] = [low, low + side + 2.0 * reach].map(|at| (at - origin) / rate);
-            // Along a ray that goes down they are at any length.
-            let (enter, exit) = match one.is_finite() && other.is_finite() {
-                true => (one.min(other).max(from), one.max(other).min(to)),
-                false => (from, to),
-            };
-            if enter > exit {
-                return None;
-            }
-            let [least, most] = within(1, beside + drift * enter, beside + drift * exit)?;
-            Some(CellRow { along, across: least..=most, is_along_x, enter, exit })
-        })
+    /// Whether there is a cell.
+    #[inline]
+    pub(super) fn has(&self, [x, z]: [u32; 2]) -> bool {
+        x < self.grid.cells[0] && z < self.grid.cells[1]
     }
 
     /// An instance by its number; none if there is none.
     pub(super) fn instance(&self, number: u64) -> Option<Instance> {
         let (cell, own) = cell_of(number);
-        let is_within = cell.iter().zip(&self.grid.cells).all(|(at, cells)| at < cells) && own < self.source.count();
+        let is_within = self.has(cell) && own < self.source.count();
         is_within.then(|| self.source.instance(cell, own)).flatten()
     }
+
+    /// An instance by its number as it is seen; none if there is none, or something else stands in for it.
+    pub(super) fn instance_seen(&self, number: u64, seen: &Aggregates<'_>) -> Option<Instance> {
+        let (instance, (cell, own)) = (self.instance(number)?, cell_of(number));
+        let CellPlace { at, .. } = self.source.place(cell, own);
+        Some(resized(&instance, at, seen.size(at, cell, own, self.source.count())?))
+    }
+}
+
+/// An instance enlarged or made smaller about its place.
+#[inline]
+pub(super) fn resized(instance: &Instance, at: DVec2, size: f64) -> Instance {
+    if size == 1.0 {
+        return *instance;
+    }
+    let (foot, DAffine3 { matrix3, translation }) = (DVec3::new(at.x, 0.0, at.y), instance.placement);
+    let placement = DAffine3 { matrix3: matrix3 * size, translation: foot + (translation - foot) * size };
+    Instance { placement, ..*instance }
 }
 
 impl CellRow {

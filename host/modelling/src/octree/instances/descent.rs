@@ -2,6 +2,7 @@
 
 use super::octree::InstanceOctree;
 use super::path::{InstancePath, PlacedSurface};
+use super::placement::Instance;
 
 /// An instance that a ray has been taken into, and those around it: a path that is not written down before it is asked
 /// for.
@@ -10,6 +11,8 @@ pub(super) struct Descent<'d> {
     /// The octree that has the instance.
     pub(super) octree: &'d InstanceOctree,
     pub(super) number: u64,
+    /// The instance as the ray met it, where the octree may know it otherwise.
+    pub(super) met: Option<&'d Instance>,
     pub(super) outer: Option<&'d Descent<'d>>,
 }
 
@@ -27,6 +30,7 @@ impl Descent<'_> {
     /// How what is here is placed.
     pub(super) fn placed(&self) -> PlacedSurface {
         let outer = self.outer.map_or(PlacedSurface::UNPLACED, Descent::placed);
-        self.octree.instance(self.number).map_or(outer, |instance| outer.then(&instance))
+        let instance = self.met.copied().or_else(|| self.octree.instance(self.number));
+        instance.map_or(outer, |instance| outer.then(&instance))
     }
 }

@@ -40,6 +40,10 @@ impl PrototypeMaker for Row {
         self.asked.borrow_mut().push(*placed);
         to(&self.row);
     }
+
+    fn aggregate_views(&self, _: u32) -> &[AggregateView] {
+        &[]
+    }
 }
 
 /// Instances of it in two levels, the outer ones mirrored and skewed.

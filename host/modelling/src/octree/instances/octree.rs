@@ -200,7 +200,21 @@ impl InstanceOctree {
         Ok(InstanceOctree { prototypes, extents, known, bounds, count, triangles, levels })
     }
 
-    /// The box around all instances; empty without any. It may be larger where they are not all stored.
+    /// This, with aggregates that may stand in for instances in cells which are far from the eye: fewer and larger
+    /// ones, up to 2^[`MOST_AGGREGATE_LEVELS`](super::MOST_AGGREGATE_LEVELS) times. Without cells it stays as it is.
+    /// Without anybody who knows the views, rays meet all instances as they are.
+    ///
+    /// - `number`: by which [`PrototypeMaker`](super::PrototypeMaker) knows the views.
+    pub fn aggregated(mut self, number: u32) -> InstanceOctree {
+        if let KnownInstances::Cells(cells) = &mut self.known {
+            cells.aggregates = Some(number);
+            self.bounds = if self.count == 0 { Bounds::EMPTY } else { cells.bounds() };
+        }
+        self
+    }
+
+    /// The box around all instances, and around the aggregates that may stand in for them; empty without any. It may be
+    /// larger where they are not all stored.
     pub fn bounds(&self) -> Bounds {
         self.bounds
     }

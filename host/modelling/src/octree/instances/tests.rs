@@ -28,7 +28,7 @@ fn octree(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Arc<Octree> {
     Arc::new(Octree::build(vertices, triangles, &settings).expect("a sound mesh"))
 }
 
-fn surface() -> Prototype {
+pub(super) fn surface() -> Prototype {
     let (vertices, triangles) = tetrahedron();
     Prototype::surface(octree(&vertices, &triangles), 0)
 }
@@ -49,7 +49,7 @@ fn of(prototypes: Vec<Prototype>, form: PlacementForm, count: usize, seed: u64) 
     InstanceOctree::new(prototypes, form, count, |number| scattered(seed, number, 1.0, size)).expect("sound placements")
 }
 
-fn rays(seed: u64, count: usize, reach: f64) -> impl Iterator<Item = Ray> {
+pub(super) fn rays(seed: u64, count: usize, reach: f64) -> impl Iterator<Item = Ray> {
     let mut random = RandomStream::new(seed, 1 << 40);
     (0..count).map(move |_| {
         let (origin, towards) =
@@ -73,7 +73,7 @@ fn asked(octree: &InstanceOctree, ray: &Ray, outer: Option<&Descent<'_>>) -> (Op
         let inner = placements.own_ray(positions, block, lane, center, ray);
         let far = placement.transform_point3(inner.at(0.7)).distance(ray.at(0.7));
         assert!(far < 1e-9 * (ray.at(0.7).length() + placement.translation.length()), "{far}");
-        let descent = Descent { octree, number, outer };
+        let descent = Descent { octree, number, met: None, outer };
         let path = descent.path();
         let (found, hits) = match &octree.prototypes[usize::from(prototype)].content {
             Content::Surface { octree: surface, .. } => {
@@ -411,8 +411,8 @@ fn instances_in_parts_are_hit_as_if_all_were_stored_and_only_the_parts_that_rays
 
 /// Instances by chance in cells.
 #[derive(Clone, Debug)]
-struct Tufts {
-    grid: CellGrid,
+pub(super) struct Tufts {
+    pub(super) grid: CellGrid,
     count: u32,
 }
 
@@ -446,12 +446,12 @@ impl CellInstances for Tufts {
 }
 
 impl Tufts {
-    fn new(cells: [u32; 2], side: f64, count: u32) -> Tufts {
+    pub(super) fn new(cells: [u32; 2], side: f64, count: u32) -> Tufts {
         let corner = DVec2::new(-3.0, 5.0);
         Tufts { grid: CellGrid { cells, corner, side, overhang: 0.8, heights: [-0.7, 0.9] }, count }
     }
 
-    fn octree(&self) -> InstanceOctree {
+    pub(super) fn octree(&self) -> InstanceOctree {
         InstanceOctree::in_cells(vec![surface()], self.grid, Arc::new(self.clone())).expect("sound cells")
     }
 

@@ -6,8 +6,10 @@ use super::super::lanes::{LANES, Lanes, ScalarLanes};
 use super::super::prepared_ray::PreparedRay;
 use super::super::visit::{LeafVisitor, visit_leaves};
 use super::super::{Hit, Octree, Ray};
+use super::aggregates::Aggregates;
 use super::blocks::SphereTest;
-use super::cells::{self, CellPlace, Cells};
+use super::cell_walk::{CellVisitor, visit_cells};
+use super::cells::Cells;
 use super::descent::Descent;
 use super::made::{NothingMade, PrototypeMaker, RayInterval};
 use super::octree::{Content, InstanceOctree, KnownInstances};
@@ -15,7 +17,6 @@ use super::parts::PartsOnDemand;
 use super::path::{InstanceHit, InstancePath, PlacedSurface};
 use super::placement::Instance;
 use super::stored::{Extents, StoredInstances};
-use glam::DVec2;
 use std::ops::Range;
 
 /// An octree of instances, and who makes those of its prototypes that are made on demand.
@@ -80,7 +81,7 @@ impl<'w> InstanceWalk<'w> {
     /// How the surface at the end of a path is placed by what is placed itself.
     fn placed_within(&self, numbers: &[u64], outer: PlacedSurface) -> PlacedSurface {
         let Some((number, inner)) = numbers.split_first() else { return outer };
-        let Some(instance) = self.octree.instance(*number) else { return outer };
+        let Some(instance) = self.instance(*number) else { return outer };
         let mut placed = outer.then(&instance);
         match &self.octree.prototypes[usize::from(instance.prototype)].content {
             Content::Surface { .. } => {}
@@ -133,63 +134,47 @@ impl<'w> InstanceWalk<'w> {
 
     /// Asks what is placed in the cells along a ray.
     fn ask_cells(&self, cells: &Cells, ray: &Ray, outer: Option<&Descent<'_>>, query: &mut impl Query) -> bool {
-        let square = ray.direction.length_squared();
-        let (reach, level) = (cells.reach(ray), DVec2::new(ray.direction.x, ray.direction.z));
-        let (overhang, [low, high]) = (cells.overhang(), cells.heights());
-        let (margin, speed) = (reach - overhang, level.length() * (1.0 + ROUNDING));
-        for row in cells.rows(ray, query.limits()) {
-            if row.enter >= query.limits()[1] {
-                break;
-            }
-            let near = ray.at(row.enter);
-            let far = ray.at(row.exit);
-            let (lowest, highest) = (near.y.min(far.y) - margin, near.y.max(far.y) + margin);
-            for cell in row.cells() {
-                for number in 0..cells.source.count() {
-                    // Seen from above and from the side first: that needs no more than the place.
-                    let CellPlace { at, part } = cells.source.place(cell, number);
-                    let beside = level.perp_dot(at - DVec2::new(near.x, near.z));
-                    if beside.abs() > (overhang * part + margin) * speed
-                        || lowest > high * part + margin
-                        || highest < low * part - margin
-                    {
-                        continue;
-                    }
-                    let Some(Instance { prototype, placement, .. }) = cells.source.instance(cell, number) else {
-                        continue;
-                    };
-                    let Some(sphere) = self.octree.extents.spheres.get(usize::from(prototype)) else { continue };
-                    let scale = placement.matrix3.x_axis.length_squared();
-                    let center = placement.transform_point3(sphere.center);
-                    let radius = f64::from(sphere.radius) * scale.sqrt() * (1.0 + ROUNDING) + margin;
-                    let to_center = center - near;
-                    let along = to_center.dot(ray.direction) / square;
-                    let beside = to_center - ray.direction * along;
-                    let half = radius / square.sqrt();
-                    let [from, to] = query.limits();
-                    let is_between = row.enter + along - half <= to && row.enter + along + half >= from;
-                    if !(is_between && beside.length_squared() <= radius * radius) {
-                        continue;
-                    }
-                    // Of a rotation with a scale.
-                    let inverse = placement.matrix3.transpose() * scale.recip();
-                    let own = Ray {
-                        origin: inverse * (ray.origin - placement.translation),
-                        direction: inverse * ray.direction,
-                    };
-                    let descent = Descent { octree: self.octree, number: cells::number_of(cell, number), outer };
-                    if self.ask_prototype(usize::from(prototype), &own, &descent, query) {
-                        return true;
-                    }
-                }
-            }
+        let mut below = CellPrototypes { walk: *self, outer, query };
+        visit_cells(cells, &self.seen(cells), &self.octree.extents.spheres, ray, &mut below)
+    }
+
+    /// How instances in cells are seen.
+    fn seen(&self, cells: &Cells) -> Aggregates<'w> {
+        match cells.aggregates.map(|number| self.maker.aggregate_views(number)) {
+            Some(views) if !views.is_empty() => cells.seen_by(views),
+            _ => Aggregates::NONE,
         }
-        false
+    }
+
+    /// An instance as it is seen; none if there is none, or something else stands in for it.
+    fn instance(&self, number: u64) -> Option<Instance> {
+        match &self.octree.known {
+            KnownInstances::Cells(cells) => cells.instance_seen(number, &self.seen(cells)),
+            KnownInstances::Stored(_) | KnownInstances::Parts(_) => self.octree.instance(number),
+        }
     }
 }
 
-/// What is computed of a sphere is off by less than this part of it.
-const ROUNDING: f64 = 1e-9;
+/// What is placed in cells.
+struct CellPrototypes<'p, Q> {
+    walk: InstanceWalk<'p>,
+    outer: Option<&'p Descent<'p>>,
+    query: &'p mut Q,
+}
+
+impl<Q: Query> CellVisitor for CellPrototypes<'_, Q> {
+    #[inline(always)]
+    fn limits(&self) -> [f64; 2] {
+        self.query.limits()
+    }
+
+    #[inline(always)]
+    fn visit(&mut self, number: u64, instance: &Instance, ray: &Ray) -> bool {
+        let CellPrototypes { walk, outer, .. } = *self;
+        let descent = Descent { octree: walk.octree, number, met: Some(instance), outer };
+        walk.ask_prototype(usize::from(instance.prototype), ray, &descent, self.query)
+    }
+}
 
 /// What is behind the leaves of an index.
 trait Below {
@@ -213,7 +198,7 @@ impl Below for Placed<'_> {
         let Some(prototype) = placements.prototype(block, lane).map(usize::from) else { return false };
         let ray = placements.own_ray(positions, block, lane, self.walk.octree.extents.spheres[prototype].center, ray);
         let number = self.base | (block * LANES + lane) as u64;
-        let descent = Descent { octree: self.walk.octree, number, outer: self.outer };
+        let descent = Descent { octree: self.walk.octree, number, met: None, outer: self.outer };
         self.walk.ask_prototype(prototype, &ray, &descent, query)
     }
 }

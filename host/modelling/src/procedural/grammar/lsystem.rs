@@ -304,6 +304,7 @@ impl Reader {
             }
         }
         if cursor.take_heading("maximum depth") {
+            cursor.skip_blanks();
             let before = cursor.clone();
             let value = self.number(cursor)?;
             if !(1.0..=200.0).contains(&value) || value.fract() != 0.0 {

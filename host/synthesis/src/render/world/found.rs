@@ -3,7 +3,7 @@
 use super::carrier::Carrier;
 use crate::numeric::ray::Hit;
 use crate::octree::{
-    InstanceHit, InstanceOctree, InstancePath, InstanceWalk, PlacedSurface, PrototypeMaker, RayInterval,
+    AggregateView, InstanceHit, InstanceOctree, InstancePath, InstanceWalk, PlacedSurface, PrototypeMaker, RayInterval,
 };
 use crate::scene::{Contents, Details, Displacement, MadeDetail, Prepared};
 use std::cell::RefCell;
@@ -92,5 +92,9 @@ impl PrototypeMaker for Noting<'_> {
         let made = self.details.made(model, placed, along);
         made.iter().flat_map(|made| made.octree()).for_each(to);
         *self.last.borrow_mut() = made;
+    }
+
+    fn aggregate_views(&self, number: u32) -> &[AggregateView] {
+        self.details.aggregate_views(number)
     }
 }

@@ -122,7 +122,7 @@ impl<'a> World<'a> {
 
     /// Whether it has procedural models, which are made while rays come to them.
     pub(in crate::render) fn makes_detail(&self) -> bool {
-        self.details.is_some()
+        self.details.as_ref().is_some_and(|details| details.has_models())
     }
 
     /// Whether a procedural model could not be made: the picture is not what was asked for.

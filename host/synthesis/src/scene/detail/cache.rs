@@ -40,7 +40,7 @@ pub struct DetailCosts {
 ///
 /// Of each that went, an outline stays, which may tell that it is not wanted.
 pub(super) struct DetailCache<K, V, O> {
-    tables: Vec<RwLock<FxHashMap<K, Arc<Slot<V, O>>>>>,
+    tables: Vec<RwLock<Table<K, V, O>>>,
     most_bytes: u64,
     /// Of the values.
     bytes: AtomicU64,
@@ -52,6 +52,9 @@ pub(super) struct DetailCache<K, V, O> {
     passed: AtomicU64,
     tidying: Mutex<()>,
 }
+
+/// The places of values by their keys.
+type Table<K, V, O> = FxHashMap<K, Arc<Slot<V, O>>>;
 
 /// A value that was made.
 pub(super) struct MadeValue<V, O> {
@@ -213,7 +216,7 @@ impl<K: Copy + Eq + Hash, V, O: Copy> DetailCache<K, V, O> {
 
     /// What it costs by now.
     pub(super) fn costs(&self) -> DetailCosts {
-        let kept = |table: &RwLock<FxHashMap<K, Arc<Slot<V, O>>>>| {
+        let kept = |table: &RwLock<Table<K, V, O>>| {
             table.read().unwrap_or_else(PoisonError::into_inner).values().filter(|s| s.value.get().is_some()).count()
         };
         DetailCosts {

@@ -4,6 +4,8 @@
 //! lights and between surfaces. What it makes then is a function of its seed and this level of detail. So pictures are the
 //! same whatever is in the cache, and for any number of threads. A thing is made as a whole on one level, and has no cracks;
 //! between two levels its surface moves by less than half a pixel.
+//!
+//! From the same views, aggregates stand in for what is scattered in cells and far away.
 
 mod cache;
 mod outline;
@@ -12,12 +14,15 @@ mod made;
 pub use cache::DetailCosts;
 pub use made::MadeDetail;
 
-use super::placed_models::{KeptDetails, PlacedModel};
+use super::placed_models::{KeptDetails, PlacedAggregates, PlacedModel};
 use super::prepared::Contents;
+use super::scatter::PlacedGrid;
+use super::stretch::largest_stretch;
 use super::{DetailView, SceneError, Settings, View};
 use crate::memory;
-use crate::octree::{InstanceOctree, PlacedSurface, PrototypeMaker, RayInterval};
+use crate::octree::{AggregateView, InstanceOctree, PlacedSurface, PrototypeMaker, RayInterval};
 use cache::{DetailCache, MadeValue};
+use glam::DMat4;
 use outline::DetailOutline;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use std::sync::{Arc, OnceLock, mpsc};
@@ -30,11 +35,13 @@ const MOST_UNKNOWN: u64 = 1 << 30;
 /// Stack of threads that make detail, bytes: scripts may nest calls and expressions.
 const STACK: usize = 16 << 20;
 
-/// What is made of the models of a scene for some views.
+/// What is made of the models of a scene for some views, and from where aggregates are seen.
 #[derive(Debug)]
 pub struct Details {
     models: Vec<Arc<PlacedModel>>,
     views: Vec<DetailView>,
+    /// For each of the instances for which aggregates stand in, these views in coordinates of its cells.
+    aggregates: Vec<Vec<AggregateView>>,
     cache: DetailCache<DetailKey, MadeDetail, DetailOutline>,
     failed: OnceLock<String>,
 }
@@ -48,10 +55,10 @@ struct DetailKey {
 }
 
 impl Contents {
-    /// What is made of its models for some views in the pictures that settings ask for; none without models. Those that
-    /// were asked for last are given again for the same views.
+    /// What is made of its models for some views in the pictures that settings ask for, and from where its aggregates
+    /// are seen; none without models and aggregates. Those that were asked for last are given again for the same views.
     pub fn details(&self, views: &[View], settings: &Settings) -> Option<Arc<Details>> {
-        if self.models.is_empty() {
+        if self.models.is_empty() && self.aggregates.is_empty() {
             return None;
         }
         let views: Vec<DetailView> = views.iter().map(|view| DetailView::new(view, settings)).collect();
@@ -60,7 +67,9 @@ impl Contents {
             return Some(details);
         }
         let cache = DetailCache::new(self.details.most_bytes().unwrap_or_else(default_most));
-        let details = Arc::new(Details { models: self.models.clone(), views, cache, failed: OnceLock::new() });
+        let aggregates = self.aggregates.iter().map(|placed| placed.seen_by(&views)).collect();
+        let models = self.models.clone();
+        let details = Arc::new(Details { models, views, aggregates, cache, failed: OnceLock::new() });
         *last = Some(details.clone());
         Some(details)
     }
@@ -70,14 +79,43 @@ impl Contents {
         self.details.limit(most_bytes);
     }
 
-    /// What the details cost by now that were asked for last; none if none were.
+    /// What the details cost by now that were asked for last; none if none were, or without models.
     pub fn detail_costs(&self) -> Option<DetailCosts> {
-        known(&self.details.last()).map(|details| details.cache.costs())
+        known(&self.details.last()).filter(|_| !self.models.is_empty()).map(|details| details.cache.costs())
+    }
+
+    /// From where on aggregates stand in for the instances of an object, for some views in the pictures that settings
+    /// ask for: for each its eye and a distance from it, in coordinates of the scene, or how much they are enlarged;
+    /// nothing if they do nowhere.
+    pub fn aggregate_views(&self, object: usize, views: &[View], settings: &Settings) -> Vec<AggregateView> {
+        let views: Vec<DetailView> = views.iter().map(|view| DetailView::new(view, settings)).collect();
+        let own = self.aggregates.iter().filter(|placed| placed.object as usize == object);
+        let in_scene = |placed: &PlacedAggregates| {
+            let placement = placed.grid.placement;
+            let longest = largest_stretch(&DMat4::from(placement));
+            let to_scene = move |view: AggregateView| match view {
+                AggregateView::Eye { at, distance } => {
+                    AggregateView::Eye { at: placement.transform_point3(at), distance: distance * longest }
+                }
+                parallel => parallel,
+            };
+            placed.seen_by(&views).into_iter().map(to_scene)
+        };
+        own.flat_map(in_scene).collect()
     }
 }
 
 fn known(last: &Option<KeptDetails>) -> Option<Arc<Details>> {
     last.clone()?.downcast::<Details>().ok()
+}
+
+impl PlacedAggregates {
+    /// The views from which they are seen, in coordinates of the cells.
+    fn seen_by(&self, views: &[DetailView]) -> Vec<AggregateView> {
+        let PlacedGrid { placement, size, .. } = self.grid;
+        let views = views.iter().filter(|_| size > 0.0);
+        views.map(|view| view.aggregates(&placement, size, self.pixels)).collect()
+    }
 }
 
 impl Details {
@@ -101,6 +139,11 @@ impl Details {
             let (bytes, outline) = (made.bytes(), made.outline());
             MadeValue { value: made, outline, bytes, seconds: begin.elapsed().as_secs_f64() }
         })
+    }
+
+    /// Whether there are models, whose detail is made on demand.
+    pub fn has_models(&self) -> bool {
+        !self.models.is_empty()
     }
 
     /// Whether something could not be made.
@@ -128,6 +171,10 @@ impl PrototypeMaker for Details {
         if let Some(made) = self.made(model, placed, along) {
             made.octree().into_iter().for_each(to);
         }
+    }
+
+    fn aggregate_views(&self, number: u32) -> &[AggregateView] {
+        self.aggregates.get(number as usize).map_or(&[], Vec::as_slice)
     }
 }
 

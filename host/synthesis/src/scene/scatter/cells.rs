@@ -5,6 +5,7 @@ use super::super::object::{Object, Scatter, Shape};
 use super::standing::Standing;
 use super::surface::ScatterSurface;
 use crate::illumination::texture::{NumberTexture, TextureFootprint};
+use crate::numeric::bounds::Bounds;
 use crate::numeric::sampling::{RandomStream, mix};
 use crate::octree::{CellGrid, CellInstances, CellPlace, Instance, Prototype};
 use glam::{DAffine3, DMat3, DVec2, DVec3};
@@ -36,6 +37,17 @@ impl GroundFrame {
         let to_instances = DAffine3 { matrix3, translation: placed.translation };
         is_upright.then_some(GroundFrame { to_instances, size: DVec2::new(x.length(), z.length()) * size })
     }
+}
+
+/// Where cells are, and how large what is placed in them is.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::scene) struct PlacedGrid {
+    /// From coordinates of the cells to those of the object that has the instances.
+    pub(in crate::scene) placement: DAffine3,
+    /// Diagonal of the largest thing, in coordinates of the cells.
+    pub(in crate::scene) size: f64,
+    /// A box around all instances as they are, in coordinates of the object.
+    pub(in crate::scene) exact: Bounds,
 }
 
 /// Instances by the cells of a ground.
@@ -96,6 +108,16 @@ impl ScatterCells {
         let (overhang, heights) = self.standing.level_reach(prototypes, self.vertical);
         // The cells at the ends may be cut off.
         CellGrid { cells: self.cells, corner: -0.5 * self.frame.size, side: self.side, overhang, heights }
+    }
+
+    /// Where the cells are, and how large what is placed in them is.
+    pub(in crate::scene) fn placed(&self, prototypes: &[Prototype]) -> PlacedGrid {
+        let CellGrid { overhang, heights: [low, high], .. } = self.grid(prototypes);
+        let (from, to) = (-0.5 * self.frame.size - overhang, 0.5 * self.frame.size + overhang);
+        let exact = Bounds { min: DVec3::new(from.x, low, from.y), max: DVec3::new(to.x, high, to.y) };
+        let placement = self.frame.to_instances;
+        let exact = Bounds::of(exact.corners().map(|corner| placement.transform_point3(corner)));
+        PlacedGrid { placement, size: self.standing.largest(prototypes), exact }
     }
 
     /// How many there are at the most.

@@ -14,11 +14,12 @@ mod cells;
 #[cfg(test)]
 mod tests;
 
-pub(super) use cells::ScatterCells;
+pub(super) use cells::{PlacedGrid, ScatterCells};
 pub(super) use parts::ScatterParts;
 pub(super) use places::FoundPlaces;
 
 use super::object::{Scatter, Shape, Sway};
+use super::settings::check_aggregate;
 use crate::octree::{MOST_CELLS, MOST_IN_CELL, MOST_INSTANCES};
 
 impl Scatter {
@@ -68,8 +69,12 @@ impl Scatter {
 
     /// Checks how many there are, and where they are if they are in cells.
     fn check_counts(&self) -> Result<(), String> {
-        let Scatter { on, count, distance, cell, .. } = self;
+        let Scatter { on, count, distance, cell, aggregate, .. } = self;
+        aggregate.map_or(Ok(()), check_aggregate)?;
         let Some(side) = *cell else {
+            if aggregate.is_some() {
+                return Err("aggregates stand in for what is in cells; tell the side of a cell".into());
+            }
             let most = format!("more than {MOST_INSTANCES} instances; place groups of them");
             return if *count > MOST_INSTANCES { Err(most) } else { Ok(()) };
         };

@@ -115,6 +115,12 @@ impl Standing {
         normal.lerp(vertical, self.upright).try_normalize().unwrap_or(normal)
     }
 
+    /// The diagonal of the box about the largest thing that is placed.
+    pub(super) fn largest(&self, prototypes: &[Prototype]) -> f64 {
+        let boxes = prototypes.iter().map(Prototype::bounds).filter(|bounds| !bounds.is_empty());
+        boxes.map(|bounds| bounds.diagonal()).fold(0.0, f64::max) * self.scale[1]
+    }
+
     /// How far what is placed can be from its place.
     pub(super) fn reach(&self, prototypes: &[Prototype]) -> f64 {
         let corners = prototypes.iter().filter(|of| !of.bounds().is_empty()).flat_map(|of| of.bounds().corners());
