@@ -31,9 +31,8 @@ pub enum ProofBy {
 }
 
 /// Proves that a ray crosses a height field first where it was found to, or nowhere: every part of the ray before the
-/// hit is
-/// halved until bounds exclude a crossing in it, and the sign over the surface is another one before the hit than
-/// after it.
+/// hit is halved until bounds exclude a crossing in it, and the sign over the surface is another one before the hit
+/// than after it.
 ///
 /// - `hit`: the t that was found, if one was.
 /// - `tolerance`: how far in t the crossing may be from it; at least some roundings of the coordinates.
@@ -70,8 +69,7 @@ pub fn certify(
 }
 
 /// The first crossing of a ray with a height field by plain subdivision: parts in which interval arithmetic excludes
-/// one
-/// are dropped, others halved down to the tolerance.
+/// one are dropped, others halved down to the tolerance.
 ///
 /// - Returns a t within `tolerance` of the first change of sign; none where there is none, or rounding leaves it open.
 pub fn crossing_by_subdivision(

@@ -16,17 +16,14 @@ const MOST_SIDE: usize = 1 << 15;
 
 /// Terrain by recursive subdivision of squares: the middle of each square gets the mean of its corners and a random
 /// displacement, then the middle of each side the mean of its four neighbours and another one. What is displaced falls
-/// by
-/// 2^(-H/2) with each of these steps.
+/// by 2^(-H/2) with each of these steps.
 ///
 /// The random number of a point is a function of its place, its level and the seed: a region at a level is a function
-/// of
-/// these alone, and regions that touch agree bit by bit along what they share, without cracks.
+/// of these alone, and regions that touch agree bit by bit along what they share, without cracks.
 ///
 /// # Source
 /// Fournier, Fussell and Carpenter 1982, "Computer rendering of stochastic models": subdivision of squares and numbers
-/// tied to
-/// places; middles of sides by four neighbours.
+/// tied to places; middles of sides by four neighbours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MidpointDisplacement {
     /// Exponent H, 0 to 1: the lower, the rougher. The fractal dimension is 3 - H.

@@ -13,12 +13,9 @@ const MOST_REACH: f64 = 1e12;
 /// The surface y = h(x, z) over a rectangle, a function that is stored nowhere.
 ///
 /// Heights are known at every place to every octave, with rigorous bounds over discs: that is what rays and triangles
-/// are
-/// found by. All answers depend on the function and the arguments alone. A footprint is the width of what is seen as
-/// one;
-/// octaves whose cells are smaller are left out, those of about its size in part, with a continuous slope. 0 leaves
-/// nothing
-/// out.
+/// are found by. All answers depend on the function and the arguments alone. A footprint is the width of what is seen
+/// as one; octaves whose cells are smaller are left out, those of about its size in part, with a continuous slope. 0
+/// leaves nothing out.
 #[derive(Clone, Debug)]
 pub struct HeightField {
     function: Prepared,

@@ -8,8 +8,7 @@ use glam::DVec2;
 use std::ops::{Add, Mul};
 
 /// Numbers with bounds that hold over a part of the plane. The formulas of all kinds of terrain are written once for
-/// all
-/// of these.
+/// all of these.
 pub(super) trait Form: Copy + Add<Output = Self> + Mul<Output = Self> {
     /// The part of the plane, perhaps moved by functions.
     type Place;

@@ -12,8 +12,7 @@ const BYTES_EACH: u64 = 56;
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Heights on a square grid and the bicubic surface through them, whose slopes are continuous; beyond the grid it goes
-/// on
-/// as at its edge.
+/// on as at its edge.
 ///
 /// # Source
 /// Catmull and Rom 1974. Bounds of parts in a pyramid: Tevs, Ihrke and Seidel 2008.
@@ -25,8 +24,7 @@ pub struct HeightGrid {
     spacing: f64,
     heights: Vec<f64>,
     /// Bounds of cells, of squares of four cells, and so on to one of all. The cells are those between heights and one
-    /// more
-    /// all around.
+    /// more all around.
     levels: Vec<GridLevel>,
     /// The largest absolute value of a height.
     largest: f64,
@@ -188,8 +186,7 @@ impl HeightGrid {
     }
 
     /// Bounds of heights and of their derivatives over a rectangle: of a part of the cells that it touches where they
-    /// are
-    /// few.
+    /// are few.
     pub(super) fn over(&self, low: [f64; 2], high: [f64; 2]) -> ([f64; 2], [[f64; 2]; 2]) {
         let [from, to] = [low, high].map(|at| self.in_cells(DVec2::from(at)));
         let off = DVec2::splat(ROUNDING * (1.0 + from.abs().max(to.abs()).max_element()));

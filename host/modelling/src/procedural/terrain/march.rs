@@ -34,10 +34,8 @@ impl HeightField {
     ///
     /// Between the beginning of the interval and the hit the ray crosses nowhere, and there its sign over the surface
     /// changes: both are proved by bounds, so that no peak is missed however thin. Where rounding leaves the sign open
-    /// all
-    /// along a contact, it counts as a hit if the ray is on the other side after it. A ray that begins on the surface
-    /// leaves
-    /// it without a hit.
+    /// all along a contact, it counts as a hit if the ray is on the other side after it. A ray that begins on the
+    /// surface leaves it without a hit.
     ///
     /// - `interval`: the least and the greatest t.
     /// - `footprint`: width of what the ray sees as one, units of length; 0 for all octaves.
@@ -79,8 +77,7 @@ pub(super) struct Line<'a> {
 }
 
 /// The height of a ray above the surface around a t: `value + slope (s - t)`, off by at most `error`, with derivatives
-/// off
-/// `slope` by at most `slope_error`.
+/// off `slope` by at most `slope_error`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Above {
     pub(super) value: f64,
@@ -243,8 +240,7 @@ impl<'a> Line<'a> {
     }
 
     /// The crossing in a contact whose sign rounding left open, before which the ray was on one side and is on the
-    /// other
-    /// after it.
+    /// other after it.
     fn crossing_of_contact(&mut self, mut low: f64, mut high: f64, side: f64) -> Option<(f64, DVec2)> {
         for _ in 0..200 {
             let middle = low + 0.5 * (high - low);
@@ -262,8 +258,7 @@ impl<'a> Line<'a> {
 }
 
 /// How far from its beginning an interval is proved to be without a crossing, and how long the part after that is in
-/// which
-/// there may be some; none where there are none.
+/// which there may be some; none where there are none.
 fn split(above: &Above, half: f64) -> (f64, Option<f64>) {
     let Above { value, slope, error, .. } = *above;
     let (begin, end) = (value - slope * half, value + slope * half);

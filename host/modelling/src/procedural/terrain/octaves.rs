@@ -13,8 +13,7 @@ pub(super) const LANES: usize = 4;
 pub(super) const MOST_COORDINATE: f64 = (1_u64 << 44) as f64;
 
 /// The noise lies between -1 and 1: the sum over the corners of a cell of weight times distance, whose greatest value
-/// is
-/// in its middle, is 1 / sqrt 2, and noise is sqrt 2 times that.
+/// is in its middle, is 1 / sqrt 2, and noise is sqrt 2 times that.
 pub(super) const MOST_NOISE: f64 = 1.000_000_1;
 /// No slope of the noise is longer, lattice spacings taken as 1.
 pub(super) const MOST_SLOPE: f64 = 2.93;
@@ -49,8 +48,7 @@ const TURN: DVec2 = DVec2::new(0.8, 0.6);
 const STEPS: [u64; 2] = [0x9e37_79b9_7f4a_7c15, 0xd1b5_4a32_d192_ed03];
 
 /// The lattices of the octaves of a fractal: octave i has the frequency `lacunarity^i / scale`, a turn and a shift of
-/// its
-/// own, so that neither their axes nor their zeros add up.
+/// its own, so that neither their axes nor their zeros add up.
 #[derive(Clone, Debug)]
 pub(super) struct Octaves {
     count: usize,
@@ -202,8 +200,7 @@ pub(super) fn remaining(width: f64) -> f64 {
 }
 
 /// The cells of lattice coordinates, and where they are within, 0..=1 but for rounding: a coordinate between two cells
-/// may
-/// be in either.
+/// may be in either.
 #[inline(always)]
 fn cells_of(coordinates: Four) -> ([u64; LANES], Four) {
     // Numbers of this size have no places behind the point: adding it rounds to a whole number, which is in the low

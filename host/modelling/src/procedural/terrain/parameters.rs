@@ -11,8 +11,7 @@ pub struct FractalParameters {
     /// Frequency of an octave over that of the one before.
     pub lacunarity: f64,
     /// Exponent H: octave i has the amplitude `lacunarity^(-i H)`. The fractal dimension of the surface is 3 - H
-    /// between 0
-    /// and 1.
+    /// between 0 and 1.
     pub hurst: f64,
     /// What is added to the noise of each octave, in units of it; it raises plains of multifractals above valleys.
     pub offset: f64,

@@ -35,16 +35,14 @@ impl HeightField {
     /// Triangles over a rectangle, large where the surface is flat and small where it bends.
     ///
     /// Right triangles are halved until bounds prove that they keep the tolerance, and those beside them as far as
-    /// shared
-    /// edges ask for it, so that there are no cracks. Normals at the corners are those of the surface; parameters are
-    /// x and z.
+    /// shared edges ask for it, so that there are no cracks. Normals at the corners are those of the surface;
+    /// parameters are x and z.
     ///
     /// - `region`: its least and its greatest x and z, within the region of the field.
     ///
     /// # Errors
-    /// [`TerrainError`] for a region or a tolerance that cannot be, too many triangles, too little memory, a base
-    /// above the
-    /// ground.
+    /// [`TerrainError`] for a region or a tolerance that cannot be, too many triangles, too little memory, a base above
+    /// the ground.
     ///
     /// # Source
     /// Bisection of right triangles: Lindstrom et al. 1996; Evans, Kirkpatrick and Townsend 2001. The proof by bounds
@@ -105,11 +103,8 @@ impl Bisection<'_> {
         while let Some(triangle) = self.pending.pop() {
             let [a, b, _] = triangle;
             let middle = middle(a, b);
-            if self.halved.contains(&middle) {
-                self.pending.extend(children(triangle, middle));
-                continue;
-            }
-            if self.is_kept(triangle) {
+            // Whoever halved it left its children here.
+            if self.halved.contains(&middle) || self.is_kept(triangle) {
                 continue;
             }
             let is_odd = |k: usize| (a[k] ^ b[k]) & 1 == 1;
@@ -117,7 +112,6 @@ impl Bisection<'_> {
                 return Err(TerrainError::Tolerance { tolerance: self.settings.tolerance });
             }
             self.halve(middle);
-            self.pending.push(triangle);
             if 2 * self.halved.len() > self.settings.most_triangles {
                 return Err(TerrainError::TooManyTriangles { most: self.settings.most_triangles });
             }

@@ -11,8 +11,7 @@ pub(super) const ROW: FractalRow = FractalRow {
 };
 
 /// Each octave is (noise + offset) times amplitude; it is added times a weight, the product of the octaves before it
-/// but
-/// not above 1.
+/// but not above 1.
 ///
 /// # Source
 /// Musgrave in Ebert et al. 2003, Texturing and Modeling, chapter 16, HybridMultifractal.

@@ -88,8 +88,7 @@ impl Fractal {
     }
 
     /// Calls for each octave, with its amplitude, its noise and how much is left of that; noise of which nothing is
-    /// left is
-    /// given as 0.
+    /// left is given as 0.
     fn each_octave<F: Form>(&self, place: &F::Place, footprint: f64, mut call: impl FnMut(usize, f64, F, f64)) {
         let octaves = &self.sum.octaves;
         let mut noise = [F::constant(place, 0.0); LANES];
