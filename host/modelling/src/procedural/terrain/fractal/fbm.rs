@@ -1,7 +1,7 @@
 //! Fractional Brownian motion: a sum of octaves of noise.
 
 use super::super::form::Form;
-use super::{Fractal, FractalKind, FractalRow};
+use super::kind::{Fractal, FractalKind, FractalRow};
 
 pub(super) const ROW: FractalRow = FractalRow {
     kind: FractalKind::Fbm,

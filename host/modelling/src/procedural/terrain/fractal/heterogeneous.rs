@@ -1,7 +1,7 @@
 //! Heterogeneous terrain: octaves whose amplitude grows with the height so far.
 
 use super::super::form::Form;
-use super::{Fractal, FractalKind, FractalRow};
+use super::kind::{Fractal, FractalKind, FractalRow};
 
 pub(super) const ROW: FractalRow = FractalRow {
     kind: FractalKind::Heterogeneous,

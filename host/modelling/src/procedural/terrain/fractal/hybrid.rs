@@ -1,7 +1,7 @@
 //! Hybrid multifractal: octaves weighted by the product of those before them.
 
 use super::super::form::Form;
-use super::{Fractal, FractalKind, FractalRow};
+use super::kind::{Fractal, FractalKind, FractalRow};
 
 pub(super) const ROW: FractalRow = FractalRow {
     kind: FractalKind::Hybrid,

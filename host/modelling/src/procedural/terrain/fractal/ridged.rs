@@ -2,7 +2,7 @@
 
 use super::super::form::Form;
 use super::super::octaves::MEAN_ABSOLUTE;
-use super::{Fractal, FractalKind, FractalRow};
+use super::kind::{Fractal, FractalKind, FractalRow};
 
 pub(super) const ROW: FractalRow = FractalRow {
     kind: FractalKind::Ridged,
