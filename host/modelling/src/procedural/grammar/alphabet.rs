@@ -75,18 +75,18 @@ impl Alphabet {
 
 /// Modules with formulas for their parameters: a successor or an axiom.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Word {
+pub(super) struct ModuleWord {
     pub modules: Vec<u8>,
     /// The parameters of all modules, one after the other.
     pub arguments: Vec<Formula>,
     pub place: TextPlace,
 }
 
-impl Word {
+impl ModuleWord {
     /// The word with numbers for constants and parameters of the grammar.
-    pub fn bound(&self, globals: &[f64]) -> Word {
+    pub fn bound(&self, globals: &[f64]) -> ModuleWord {
         let arguments = self.arguments.iter().map(|formula| formula.bound(globals)).collect();
-        Word { modules: self.modules.clone(), arguments, place: self.place }
+        ModuleWord { modules: self.modules.clone(), arguments, place: self.place }
     }
 }
 

@@ -52,7 +52,7 @@ fn faults_have_places_and_say_what_was_expected_and_found() {
         ("axiom: F\nsurface leaf:\n  circle", "line 3, column 3: expected `polygon` or `patch`, found `circle`"),
         (
             "axiom: F\nsurface leaf:\n  patch (0,0,0)",
-            "line 3, column 2: expected `patch` with 16 points, found `patch`",
+            "line 3, column 3: expected `patch` with 16 points, found `patch`",
         ),
         ("axiom: F\nF -> F : 0.5 0.5", "line 2, column 14: expected the end of the statement, found `0.5`"),
     ];

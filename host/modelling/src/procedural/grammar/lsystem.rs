@@ -1,11 +1,11 @@
 //! A grammar as a whole, and how its statements become one.
 
-use super::alphabet::{Alphabet, Word};
+use super::alphabet::{Alphabet, ModuleWord};
 use super::error::{GrammarError, GrammarProblem, TextPlace};
 use super::formula::Formula;
 use super::formula_parser::{Names, formula};
 use super::predefined::{PredefinedSurface, surface};
-use super::production::{Production, ProductionSet};
+use super::production::{GrammarProduction, ProductionSet};
 use super::scanner::{Cursor, Statement, statements};
 use super::word_parser::WordParser;
 use crate::procedural::Varied;
@@ -99,7 +99,7 @@ pub struct LSystem {
     /// Constants and parameters, each of which may use those before it.
     pub(super) globals: Vec<(GlobalValue, TextPlace)>,
     pub(super) settings: [Option<Formula>; SETTINGS.len()],
-    pub(super) axiom: Word,
+    pub(super) axiom: ModuleWord,
     pub(super) sight: ContextSight,
     pub(super) productions: ProductionSet,
     pub(super) decomposition: ProductionSet,
@@ -176,7 +176,7 @@ struct Reader {
     globals: Vec<(GlobalValue, TextPlace)>,
     parameters: Vec<GrammarParameter>,
     settings: [Option<Formula>; SETTINGS.len()],
-    axiom: Option<Word>,
+    axiom: Option<ModuleWord>,
     sight: ContextSight,
     is_sight_set: bool,
     /// Of derivation, decomposition and interpretation.
@@ -325,7 +325,7 @@ impl Reader {
 
     fn production(&mut self, cursor: &mut Cursor) -> Result<(), GrammarError> {
         let before = cursor.clone();
-        let production: Production = self.words().production(cursor)?;
+        let production: GrammarProduction = self.words().production(cursor)?;
         let is_context_free = production.left.is_empty() && production.right.is_empty();
         let set = &mut self.sets[self.current].productions;
         if self.current > 0 && !is_context_free {

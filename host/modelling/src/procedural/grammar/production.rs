@@ -1,6 +1,6 @@
 //! Productions as they stand in a grammar.
 
-use super::alphabet::Word;
+use super::alphabet::ModuleWord;
 use super::error::TextPlace;
 use super::formula::Formula;
 
@@ -11,7 +11,7 @@ pub(super) const MOST_CONTEXT: usize = 64;
 
 /// A production: what a module turns into, where, when and how probably.
 #[derive(Clone, Debug)]
-pub(super) struct Production {
+pub(super) struct GrammarProduction {
     pub place: TextPlace,
     /// The kind of the strict predecessor.
     pub predecessor: u8,
@@ -23,13 +23,13 @@ pub(super) struct Production {
     /// context and then over the right one, both as they stand in the text.
     pub condition: Option<Formula>,
     pub probability: Option<Formula>,
-    pub successor: Word,
+    pub successor: ModuleWord,
 }
 
 /// Productions of one purpose, in the order of the text.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ProductionSet {
-    pub productions: Vec<Production>,
+    pub productions: Vec<GrammarProduction>,
     /// How often they apply to what they made themselves; none where the grammar does not say.
     pub depth: Option<u32>,
 }

@@ -1,10 +1,10 @@
 //! Productions ready to be applied: bound to numbers, and sorted by their predecessors.
 
-use super::alphabet::{Alphabet, Word};
+use super::alphabet::{Alphabet, ModuleWord};
 use super::error::{DerivationError, EvaluationError, TextPlace};
 use super::formula::Formula;
 use super::function::ModuleRandom;
-use super::production::{MOST_CONTEXT, MOST_FORMALS, Production};
+use super::production::{GrammarProduction, MOST_CONTEXT, MOST_FORMALS};
 use super::sight::{ContextMatch, StringView};
 
 /// No production: the module stays as it is.
@@ -53,9 +53,9 @@ pub(super) struct Rule {
 }
 
 impl Rule {
-    fn of(production: &Production, globals: &[f64]) -> Rule {
+    fn of(production: &GrammarProduction, globals: &[f64]) -> Rule {
         let bound = |formula: &Option<Formula>| formula.as_ref().map(|formula| formula.bound(globals));
-        let Word { modules, arguments, .. } = production.successor.bound(globals);
+        let ModuleWord { modules, arguments, .. } = production.successor.bound(globals);
         Rule {
             place: production.place,
             left: production.left.clone(),
@@ -130,7 +130,7 @@ pub(super) struct RuleSet {
 
 impl RuleSet {
     /// Binds productions.
-    pub fn new(productions: &[Production], alphabet: &Alphabet, globals: &[f64]) -> RuleSet {
+    pub fn new(productions: &[GrammarProduction], alphabet: &Alphabet, globals: &[f64]) -> RuleSet {
         let rules: Vec<Rule> = productions.iter().map(|production| Rule::of(production, globals)).collect();
         let mut actions = alphabet.table(Action::Keep, |_| Action::Keep);
         let mut candidates = Vec::new();

@@ -1,6 +1,6 @@
 //! A plant of a grammar: its parameters are drawn, its string is derived and drawn.
 
-use super::alphabet::{Alphabet, CLOSE, ModuleString, OPEN, Word};
+use super::alphabet::{Alphabet, CLOSE, ModuleString, ModuleWord, OPEN};
 use super::drawing::{DrawingBuilder, TurtleDrawing};
 use super::error::DerivationError;
 use super::function::ModuleRandom;
@@ -12,7 +12,7 @@ use super::rewriting::Rewriting;
 use super::rules::RuleSet;
 use super::sight::StringView;
 use super::turtle::Environment;
-use super::walk::{Meaning, Walk, WalkRules, meanings};
+use super::walk::{Meaning, TurtleWalk, WalkRules, meanings};
 use crate::numeric::sampling::mix;
 use crate::procedural::{Varied, channel};
 use crate::spelling;
@@ -30,7 +30,7 @@ pub struct Specimen {
     surfaces: Arc<[PredefinedSurface]>,
     parameters: Vec<f64>,
     settings: [f64; SETTINGS.len()],
-    axiom: Word,
+    axiom: ModuleWord,
     arities: Box<[u8; 256]>,
     is_seen: Box<[bool; 256]>,
     meanings: Box<[Meaning; 256]>,
@@ -148,7 +148,7 @@ impl Specimen {
     pub fn draw(&self, string: &ModuleString) -> Result<TurtleDrawing, DerivationError> {
         let mut builder = DrawingBuilder::default();
         builder.drawing.surfaces = Arc::clone(&self.surfaces);
-        Walk::new(&self.walk_rules(), Some(&mut builder)).draw(string)?;
+        TurtleWalk::new(&self.walk_rules(), Some(&mut builder)).draw(string)?;
         Ok(builder.finish()?)
     }
 
@@ -220,7 +220,7 @@ impl Specimen {
             self.cut_off(string, cut);
         }
         if self.asks() {
-            Walk::new(&self.walk_rules(), None).answer(string, environment)?;
+            TurtleWalk::new(&self.walk_rules(), None).answer(string, environment)?;
         }
         Ok(())
     }

@@ -68,7 +68,7 @@ struct Turtle {
 }
 
 /// A turtle on its way.
-pub(super) struct Walk<'a> {
+pub(super) struct TurtleWalk<'a> {
     rules: &'a WalkRules<'a>,
     turtle: Turtle,
     branches: Vec<Turtle>,
@@ -77,11 +77,11 @@ pub(super) struct Walk<'a> {
     interpreted: u64,
 }
 
-impl<'a> Walk<'a> {
+impl<'a> TurtleWalk<'a> {
     /// A turtle at its start.
     ///
     /// - `builder`: what it draws on; nothing is drawn without one.
-    pub fn new(rules: &'a WalkRules<'a>, builder: Option<&'a mut DrawingBuilder>) -> Walk<'a> {
+    pub fn new(rules: &'a WalkRules<'a>, builder: Option<&'a mut DrawingBuilder>) -> TurtleWalk<'a> {
         let set = |setting: Setting| rules.settings[setting as usize];
         let turtle = Turtle {
             pose: TurtlePose::default(),
@@ -90,7 +90,7 @@ impl<'a> Walk<'a> {
             elasticity: set(Setting::Elasticity),
             stroke: None,
         };
-        Walk { rules, turtle, branches: Vec::new(), polygons: Vec::new(), builder, interpreted: 0 }
+        TurtleWalk { rules, turtle, branches: Vec::new(), polygons: Vec::new(), builder, interpreted: 0 }
     }
 
     /// Goes along a string.

@@ -1,10 +1,10 @@
 //! Modules, words and productions out of the text of a grammar.
 
-use super::alphabet::{Alphabet, CLOSE, MOST_PARAMETERS, OPEN, Word};
+use super::alphabet::{Alphabet, CLOSE, MOST_PARAMETERS, ModuleWord, OPEN};
 use super::error::{GrammarError, GrammarProblem};
 use super::formula::Formula;
 use super::formula_parser::{Names, formula, unknown};
-use super::production::{MOST_CONTEXT, MOST_FORMALS, Production};
+use super::production::{GrammarProduction, MOST_CONTEXT, MOST_FORMALS};
 use super::scanner::Cursor;
 
 /// Letters that part the parts of a production, or that parameters need.
@@ -64,7 +64,7 @@ impl WordParser<'_> {
     }
 
     /// Reads a production.
-    pub fn production(&mut self, cursor: &mut Cursor) -> Result<Production, GrammarError> {
+    pub fn production(&mut self, cursor: &mut Cursor) -> Result<GrammarProduction, GrammarError> {
         cursor.skip_blanks();
         let place = cursor.place();
         let mut left = None;
@@ -116,7 +116,15 @@ impl WordParser<'_> {
         let successor = self.word(cursor, &formals)?;
         let probability = if cursor.take(":") { Some(formula(cursor, names)?) } else { None };
         cursor.require_end()?;
-        Ok(Production { place, predecessor, left: left_kinds, right: right.modules, condition, probability, successor })
+        Ok(GrammarProduction {
+            place,
+            predecessor,
+            left: left_kinds,
+            right: right.modules,
+            condition,
+            probability,
+            successor,
+        })
     }
 
     /// Reads modules with names for their parameters, or `*` for none.
@@ -152,10 +160,10 @@ impl WordParser<'_> {
     }
 
     /// Reads modules with expressions for their parameters, up to a `:` or the end; `*` for none.
-    pub fn word(&mut self, cursor: &mut Cursor, formals: &[String]) -> Result<Word, GrammarError> {
+    pub fn word(&mut self, cursor: &mut Cursor, formals: &[String]) -> Result<ModuleWord, GrammarError> {
         cursor.skip_blanks();
         let start = cursor.clone();
-        let mut word = Word { place: cursor.place(), ..Word::default() };
+        let mut word = ModuleWord { place: cursor.place(), ..ModuleWord::default() };
         if cursor.take("*") || cursor.take("ε") {
             return Ok(word);
         }

@@ -37,7 +37,7 @@ pub struct MidpointDisplacement {
 }
 
 /// Heights of one level over a rectangle of its lattice.
-struct Lattice {
+struct HeightLattice {
     /// Number of the first point along x and z.
     first: [i64; 2],
     size: [usize; 2],
@@ -79,10 +79,10 @@ impl MidpointDisplacement {
     }
 
     /// Heights of a level, from those of the one before over a region that is a little larger than half as large.
-    fn lattice(&self, level: u32, first: [i64; 2], size: [usize; 2]) -> Lattice {
+    fn lattice(&self, level: u32, first: [i64; 2], size: [usize; 2]) -> HeightLattice {
         if level == 0 {
             let heights = points(first, size).map(|at| self.height * self.deviate(at, 0)).collect();
-            return Lattice { first, size, heights };
+            return HeightLattice { first, size, heights };
         }
         // The middle of a side needs middles of squares a step beyond, and these corners a step beyond that.
         const MARGIN: i64 = 2;
@@ -111,7 +111,7 @@ impl MidpointDisplacement {
                 mean + of_sides * self.deviate([x, z], level)
             }
         };
-        Lattice { first, size, heights: points(first, size).map(of).collect() }
+        HeightLattice { first, size, heights: points(first, size).map(of).collect() }
     }
 
     /// A number of a point, of mean 0 and variance 1: the sum of eight even ones, which is close to the normal
@@ -128,7 +128,7 @@ impl MidpointDisplacement {
     }
 }
 
-impl Lattice {
+impl HeightLattice {
     fn at(&self, [x, z]: [i64; 2]) -> f64 {
         self.heights[(z - self.first[1]) as usize * self.size[0] + (x - self.first[0]) as usize]
     }

@@ -3,7 +3,7 @@
 use super::enclosure::Enclosure;
 use super::error::TerrainError;
 use super::form::Disc;
-use super::function::{HeightFunction, Prepared};
+use super::function::{HeightFunction, PreparedHeights};
 use crate::numeric::bounds::Bounds;
 use glam::{DVec2, DVec3};
 
@@ -18,7 +18,7 @@ const MOST_REACH: f64 = 1e12;
 /// leaves nothing out.
 #[derive(Clone, Debug)]
 pub struct HeightField {
-    function: Prepared,
+    function: PreparedHeights,
     region: [DVec2; 2],
     heights: [f64; 2],
 }
@@ -84,7 +84,7 @@ impl HeightField {
     }
 
     /// The function.
-    pub(super) fn function(&self) -> &Prepared {
+    pub(super) fn function(&self) -> &PreparedHeights {
         &self.function
     }
 

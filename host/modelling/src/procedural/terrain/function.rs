@@ -43,15 +43,15 @@ pub enum HeightFunction {
 
 /// A function whose lattices are made.
 #[derive(Clone, Debug)]
-pub(super) enum Prepared {
+pub(super) enum PreparedHeights {
     Constant(f64),
     Fractal(Box<Fractal>),
     Grid(Arc<HeightGrid>),
-    Sum(Vec<Prepared>),
-    Product(Box<[Prepared; 2]>),
-    Scaled(Box<Prepared>, f64),
-    Clamped(Box<Prepared>, [f64; 2]),
-    Warped(Box<Prepared>, Box<[Prepared; 2]>),
+    Sum(Vec<PreparedHeights>),
+    Product(Box<[PreparedHeights; 2]>),
+    Scaled(Box<PreparedHeights>, f64),
+    Clamped(Box<PreparedHeights>, [f64; 2]),
+    Warped(Box<PreparedHeights>, Box<[PreparedHeights; 2]>),
 }
 
 impl HeightFunction {
@@ -71,7 +71,7 @@ impl HeightFunction {
     ///
     /// # Errors
     /// [`TerrainError`] for a number out of range.
-    pub(super) fn prepare(&self, reach: f64, level: usize) -> Result<Prepared, TerrainError> {
+    pub(super) fn prepare(&self, reach: f64, level: usize) -> Result<PreparedHeights, TerrainError> {
         if level > MOST_NESTED {
             return Err(TerrainError::TooDeep { most: MOST_NESTED });
         }
@@ -81,51 +81,53 @@ impl HeightFunction {
         Ok(match self {
             HeightFunction::Constant(value) => {
                 height("height", *value)?;
-                Prepared::Constant(*value)
+                PreparedHeights::Constant(*value)
             }
             HeightFunction::Fractal(kind, parameters) => {
-                Prepared::Fractal(Box::new(Fractal::new(*kind, *parameters, reach)?))
+                PreparedHeights::Fractal(Box::new(Fractal::new(*kind, *parameters, reach)?))
             }
-            HeightFunction::Grid(grid) => Prepared::Grid(grid.clone()),
-            HeightFunction::Sum(of) => Prepared::Sum(of.iter().map(below).collect::<Result<_, _>>()?),
-            HeightFunction::Product(of) => Prepared::Product(both(of)?),
+            HeightFunction::Grid(grid) => PreparedHeights::Grid(grid.clone()),
+            HeightFunction::Sum(of) => PreparedHeights::Sum(of.iter().map(below).collect::<Result<_, _>>()?),
+            HeightFunction::Product(of) => PreparedHeights::Product(both(of)?),
             HeightFunction::Scaled(of, by) => {
                 in_range("factor", *by, [-MOST_SCALE, MOST_SCALE])?;
-                Prepared::Scaled(Box::new(below(of)?), *by)
+                PreparedHeights::Scaled(Box::new(below(of)?), *by)
             }
             HeightFunction::Clamped(of, [low, high]) => {
                 height("lower limit", *low)?;
                 in_range("upper limit", *high, [*low, MOST_SCALE])?;
-                Prepared::Clamped(Box::new(below(of)?), [*low, *high])
+                PreparedHeights::Clamped(Box::new(below(of)?), [*low, *high])
             }
             HeightFunction::Warped { of, by } => {
                 let by = both(by)?;
                 let farthest: f64 = by.iter().map(|by| by.most_absolute()).sum();
                 let of = of.prepare(reach + farthest, level + 1)?;
-                Prepared::Warped(Box::new(of), by)
+                PreparedHeights::Warped(Box::new(of), by)
             }
         })
     }
 }
 
-impl Prepared {
+impl PreparedHeights {
     /// Heights over a place.
     ///
     /// - `footprint`: what is finer is left out, with smooth edges.
     pub(super) fn heights<F: Form>(&self, place: &F::Place, footprint: f64) -> F {
         match self {
-            Prepared::Constant(value) => F::constant(place, *value).of_plane(place),
-            Prepared::Fractal(fractal) => fractal.heights::<F>(place, footprint).of_plane(place),
-            Prepared::Grid(grid) => F::grid(grid, place).of_plane(place),
-            Prepared::Sum(of) => of
+            PreparedHeights::Constant(value) => F::constant(place, *value).of_plane(place),
+            PreparedHeights::Fractal(fractal) => fractal.heights::<F>(place, footprint).of_plane(place),
+            PreparedHeights::Grid(grid) => F::grid(grid, place).of_plane(place),
+            PreparedHeights::Sum(of) => of
                 .iter()
                 .map(|part| part.heights::<F>(place, footprint))
                 .reduce(|a, b| a + b)
                 .unwrap_or_else(|| F::constant(place, 0.0).of_plane(place)),
-            Prepared::Product(of) => of[0].heights::<F>(place, footprint) * of[1].heights::<F>(place, footprint),
-            Prepared::Scaled(of, by) => of.heights::<F>(place, footprint).scaled(*by),
-            Prepared::Clamped(of, [low, high]) => of.heights::<F>(place, footprint).at_least(*low).at_most(*high),
-            Prepared::Warped(of, by) => {
+            PreparedHeights::Product(of) => of[0].heights::<F>(place, footprint) * of[1].heights::<F>(place, footprint),
+            PreparedHeights::Scaled(of, by) => of.heights::<F>(place, footprint).scaled(*by),
+            PreparedHeights::Clamped(of, [low, high]) => {
+                of.heights::<F>(place, footprint).at_least(*low).at_most(*high)
+            }
+            PreparedHeights::Warped(of, by) => {
                 let by = [&by[0], &by[1]].map(|by| by.heights::<F>(place, footprint));
                 of.heights::<F>(&F::moved(place, by), footprint)
             }
@@ -142,13 +144,13 @@ impl Prepared {
     /// Lattice points of the finest octave in a unit of length, those of grids among them.
     pub(super) fn finest(&self) -> f64 {
         match self {
-            Prepared::Constant(_) => 0.0,
-            Prepared::Fractal(fractal) => fractal.finest(),
-            Prepared::Grid(grid) => 1.0 / grid.spacing(),
-            Prepared::Sum(of) => of.iter().map(Prepared::finest).fold(0.0, f64::max),
-            Prepared::Product(of) => of[0].finest().max(of[1].finest()),
-            Prepared::Scaled(of, _) | Prepared::Clamped(of, _) => of.finest(),
-            Prepared::Warped(of, by) => of.finest().max(by[0].finest()).max(by[1].finest()),
+            PreparedHeights::Constant(_) => 0.0,
+            PreparedHeights::Fractal(fractal) => fractal.finest(),
+            PreparedHeights::Grid(grid) => 1.0 / grid.spacing(),
+            PreparedHeights::Sum(of) => of.iter().map(PreparedHeights::finest).fold(0.0, f64::max),
+            PreparedHeights::Product(of) => of[0].finest().max(of[1].finest()),
+            PreparedHeights::Scaled(of, _) | PreparedHeights::Clamped(of, _) => of.finest(),
+            PreparedHeights::Warped(of, by) => of.finest().max(by[0].finest()).max(by[1].finest()),
         }
     }
 }

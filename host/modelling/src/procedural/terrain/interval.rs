@@ -3,7 +3,7 @@
 use super::form::Form;
 use super::grid::HeightGrid;
 use super::octave_sum::OctaveSum;
-use super::octaves::{LANES, Lattice, Octaves, remaining};
+use super::octaves::{LANES, NoiseLattice, Octaves, remaining};
 use std::ops::{Add, Mul, Sub};
 
 /// All numbers between two, both included.
@@ -211,7 +211,7 @@ impl Form for BoundedSlopes {
 }
 
 /// Noise over a place that functions moved, cell by cell where it lies over few of them.
-fn noise_of(lattice: &Lattice, place: &[BoundedSlopes; 2]) -> BoundedSlopes {
+fn noise_of(lattice: &NoiseLattice, place: &[BoundedSlopes; 2]) -> BoundedSlopes {
     const MOST_CELLS: f64 = 3.0;
     let [x, z] = [place[0].value, place[1].value];
     let [cosine, sine] = [lattice.cosine, lattice.sine].map(Interval::point);

@@ -71,7 +71,7 @@ pub(super) struct NoiseLanes {
 
 /// The lattice cell of an octave, as the reference asks for it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Lattice {
+pub(super) struct NoiseLattice {
     /// Lattice coordinates are (c x - s z, s x + c z) + shift.
     pub(super) cosine: f64,
     pub(super) sine: f64,
@@ -122,8 +122,8 @@ impl Octaves {
         self.count
     }
 
-    pub(super) fn lattice(&self, octave: usize) -> Lattice {
-        Lattice {
+    pub(super) fn lattice(&self, octave: usize) -> NoiseLattice {
+        NoiseLattice {
             cosine: self.cosines[octave],
             sine: self.sines[octave],
             shift: DVec2::new(self.shifts[0][octave], self.shifts[1][octave]),
@@ -174,7 +174,7 @@ impl Octaves {
     }
 }
 
-impl Lattice {
+impl NoiseLattice {
     /// Gradients at the corners of a cell: (0, 0), (1, 0), (0, 1), (1, 1).
     pub(super) fn gradients(&self, cell: [i64; 2]) -> [[f64; 2]; 4] {
         let number = number_of(cell.map(|axis| axis as u64), self.seed);

@@ -63,7 +63,7 @@ pub const FRACTAL_PARAMETERS: &[FractalParameter] = &[
     row!(hurst, [0.0, 4.0], 1.0, "Octave i has the amplitude lacunarity^(-i H): the lower, the rougher."),
     row!(offset, [-4.0, 4.0], 0.7, "Added to the noise of each octave of a multifractal."),
     row!(feedback, [0.0, 8.0], 2.0, "How strongly an octave of a ridged multifractal weighs the next one."),
-    row!(scale, [1e-9, 1e9], 1.0, "Lattice spacing of the first octave, units of length."),
+    row!(scale, [1e-9, 1e9], 1.0, "NoiseLattice spacing of the first octave, units of length."),
     row!(height, [-1e9, 1e9], 1.0, "Amplitude of the first octave, units of length."),
     row!(seed, [0.0, 9_007_199_254_740_991.0], 0.0, "Another terrain for each whole number."),
 ];
