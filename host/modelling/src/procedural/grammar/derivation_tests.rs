@@ -199,6 +199,10 @@ fn faults_of_formulas_and_probabilities_have_places() {
     let place = TextPlace { line: 2, column: 1 };
     assert_eq!(fault("axiom: F\nF -> F : 0.5\nF -> FF : 0.4"), DerivationError::Probability { place, sum: 0.9 });
     assert_eq!(fault("axiom: F\nF -> F : 0-0.5"), DerivationError::NegativeProbability { place, value: -0.5 });
+    let many = |count: usize| format!("axiom: F{}", format!("\nF -> F : 1/{count}").repeat(count));
+    assert_eq!(try_string(&many(64), 3).expect("as many as there may be").len(), 1);
+    let place = TextPlace { line: 66, column: 1 };
+    assert_eq!(fault(&many(65)), DerivationError::TooManyChances { place, most: 64 });
     assert_eq!(
         fault("axiom: F\ndecomposition:\nmaximum depth: 9\nF -> FG"),
         DerivationError::EndlessDecomposition { depth: 9 }

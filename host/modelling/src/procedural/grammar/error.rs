@@ -2,6 +2,7 @@
 
 use crate::memory::MemoryExceeded;
 use crate::procedural::VariedError;
+use crate::surface::TessellationError;
 use std::fmt;
 
 /// A place in the text of a grammar.
@@ -142,6 +143,14 @@ pub enum DerivationError {
         /// The probability.
         value: f64,
     },
+    /// More productions with a probability that apply to a module than one is drawn of.
+    #[error("{place}: more than {most} productions with a probability apply to one module")]
+    TooManyChances {
+        /// The first that is too much.
+        place: TextPlace,
+        /// How many there may be.
+        most: usize,
+    },
     /// A parameter that the grammar does not declare.
     #[error("the grammar has no parameter `{name}`; {advice}")]
     UnknownParameter {
@@ -217,6 +226,9 @@ pub enum DerivationError {
     /// A length of detail that is none.
     #[error("a detail of {0} is not a positive number")]
     Detail(f64),
+    /// A patch of a surface that does not become triangles.
+    #[error(transparent)]
+    Patch(#[from] TessellationError),
     /// More memory than is left.
     #[error(transparent)]
     Memory(#[from] MemoryExceeded),

@@ -7,7 +7,7 @@ use super::tubes::{Tube, append_sphere, push, sphere_triangles, tubes};
 use crate::memory::{self, MemoryExceeded};
 use crate::mesh::{Mesh, normal_matrix};
 use crate::polygon::{TriangulationKind, triangulate_in_space};
-use crate::surface::{TessellationError, Tolerance, tessellate};
+use crate::surface::{Tolerance, tessellate};
 use glam::{DVec2, DVec3};
 
 /// Largest angle between the normals at neighbouring vertices of a patch, degrees.
@@ -146,8 +146,7 @@ impl PredefinedSurface {
                     let control = patch.control().as_flattened();
                     let size = control.iter().map(|point| point.distance(control[0])).fold(0.0, f64::max);
                     let tolerance = Tolerance::new(detail.min(COARSEST * size), ANGLE);
-                    let made = tessellate(std::slice::from_ref(patch.as_ref()), tolerance);
-                    let made = made.map_err(|_: TessellationError| DerivationError::Detail(detail))?;
+                    let made = tessellate(std::slice::from_ref(patch.as_ref()), tolerance)?;
                     make_room(&mut mesh, made.triangles.len(), made.vertices.len())?;
                     let first = mesh.vertices.len() as u32;
                     mesh.vertices.extend(made.vertices);

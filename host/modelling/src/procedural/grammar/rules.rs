@@ -195,11 +195,12 @@ impl RuleSet {
             if value < 0.0 {
                 return Err(DerivationError::NegativeProbability { place: rule.place, value });
             }
-            sum += value;
-            if count < MOST_CHANCES {
-                chances[count] = (*candidate, value);
-                count += 1;
+            if count == MOST_CHANCES {
+                return Err(DerivationError::TooManyChances { place: rule.place, most: MOST_CHANCES });
             }
+            sum += value;
+            chances[count] = (*candidate, value);
+            count += 1;
         }
         let Some((first, _)) = chances[..count].first() else { return Ok(KEEP) };
         if (sum - 1.0).abs() > ROUNDING {
