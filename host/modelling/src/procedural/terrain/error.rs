@@ -33,6 +33,21 @@ pub enum TerrainError {
     /// Heights that overflow.
     #[error("heights of the terrain are not finite")]
     NotFinite,
+    /// A cell of a grid has a number that it cannot have.
+    #[error("{what} is {value} in column {column} of row {row}")]
+    Cell {
+        /// What the number is.
+        what: &'static str,
+        /// Number of the cell along x, from 0.
+        column: usize,
+        /// Its number along z, from 0.
+        row: usize,
+        /// The number.
+        value: f64,
+    },
+    /// The erosion was cancelled before it was done.
+    #[error("the erosion was cancelled")]
+    Cancelled,
     /// Functions within functions, too many times over.
     #[error("functions of height are nested more than {most} times")]
     TooDeep {

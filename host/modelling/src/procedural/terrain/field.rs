@@ -4,6 +4,7 @@ use super::enclosure::Enclosure;
 use super::error::TerrainError;
 use super::form::Disc;
 use super::function::{HeightFunction, PreparedHeights};
+use super::point::PointHeight;
 use crate::numeric::bounds::Bounds;
 use glam::{DVec2, DVec3};
 
@@ -62,7 +63,7 @@ impl HeightField {
 
     /// The height at a place, units of length.
     pub fn height(&self, at: DVec2, footprint: f64) -> f64 {
-        self.enclosure(at, 0.0, footprint).value
+        self.function.heights::<PointHeight>(&at, footprint).0
     }
 
     /// The derivatives of the height by x and z.
@@ -86,6 +87,11 @@ impl HeightField {
     /// The function.
     pub(super) fn function(&self) -> &PreparedHeights {
         &self.function
+    }
+
+    /// A lattice of this spacing shows whatever there is, however coarsely; infinite where there is nothing.
+    pub(super) fn coarsest_spacing(&self) -> f64 {
+        1.0 / self.function.coarsest()
     }
 
     /// Length of the finest cells, of noise or of a grid; infinite where there are none.

@@ -141,6 +141,20 @@ impl PreparedHeights {
         low.abs().max(high.abs())
     }
 
+    /// Points in a unit of length of a lattice that shows every part, however coarsely: two in a cell of the first octave,
+    /// those of grids.
+    pub(super) fn coarsest(&self) -> f64 {
+        match self {
+            PreparedHeights::Constant(_) => 0.0,
+            PreparedHeights::Fractal(fractal) => 2.0 * fractal.coarsest(),
+            PreparedHeights::Grid(grid) => 1.0 / grid.spacing(),
+            PreparedHeights::Sum(of) => of.iter().map(PreparedHeights::coarsest).fold(0.0, f64::max),
+            PreparedHeights::Product(of) => of[0].coarsest().max(of[1].coarsest()),
+            PreparedHeights::Scaled(of, _) | PreparedHeights::Clamped(of, _) => of.coarsest(),
+            PreparedHeights::Warped(of, by) => of.coarsest().max(by[0].coarsest()).max(by[1].coarsest()),
+        }
+    }
+
     /// Lattice points of the finest octave in a unit of length, those of grids among them.
     pub(super) fn finest(&self) -> f64 {
         match self {

@@ -5,9 +5,12 @@ use super::error::TerrainError;
 use super::parameters::in_range;
 use crate::memory;
 use glam::DVec2;
+use rayon::prelude::*;
 
 /// Bytes that a height takes with the bounds of all sizes of cells.
 const BYTES_EACH: u64 = 56;
+/// Heights are lower than this, and higher than less it.
+const MOST_HEIGHT: f64 = 1e15;
 /// Rounding of heights as a part of the largest.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
@@ -65,9 +68,12 @@ impl HeightGrid {
             return Err(TerrainError::GridSize { columns, rows, heights: heights.len() });
         }
         in_range("spacing", spacing, [1e-9, 1e9])?;
-        let is_finite = corner.is_finite() && heights.iter().all(|height| height.abs() < 1e15);
-        if !is_finite {
+        if !corner.is_finite() {
             return Err(TerrainError::NotFinite);
+        }
+        if let Some(cell) = heights.iter().position(|height| height.is_nan() || height.abs() >= MOST_HEIGHT) {
+            let (column, row, value) = (cell % columns, cell / columns, heights[cell]);
+            return Err(TerrainError::Cell { what: "a height", column, row, value });
         }
         memory::reserve(heights.len() as u64 * BYTES_EACH, || format!("bounds of {} heights", heights.len()))?;
         let largest = heights.iter().fold(0.0, |largest: f64, height| largest.max(height.abs()));
@@ -99,7 +105,8 @@ impl HeightGrid {
     /// Makes the bounds of all sizes of cells.
     fn bound(&mut self) {
         let (columns, rows) = (self.columns + 1, self.rows + 1);
-        let cells = (0..columns * rows).map(|cell| self.cell_bounds([cell % columns, cell / columns])).collect();
+        let of = |cell: usize| self.cell_bounds([cell % columns, cell / columns]);
+        let cells = (0..columns * rows).into_par_iter().map(of).collect();
         self.levels.push(GridLevel { columns, rows, cells });
         while let Some(fine) = self.levels.last().filter(|level| level.columns > 1 || level.rows > 1) {
             let (columns, rows) = (fine.columns.div_ceil(2), fine.rows.div_ceil(2));
@@ -205,6 +212,11 @@ impl HeightGrid {
         let spread =
             (DVec2::new(x, z) / self.spacing).length() * radius + 0.5 * bounds.bend * radius * radius + rounding;
         ([(value - spread).max(bounds.low), (value + spread).min(bounds.high)], slopes)
+    }
+
+    /// The height of the surface at a place.
+    pub(super) fn height(&self, at: DVec2) -> f64 {
+        self.surface(self.in_cells(at))[0]
     }
 
     /// The height at a place in cells, and its derivatives there.

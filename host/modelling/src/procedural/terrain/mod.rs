@@ -9,19 +9,25 @@ mod octave_sum;
 mod grid;
 mod form;
 mod interval;
+mod point;
 mod fractal;
 mod function;
 mod field;
 mod march;
 mod certificate;
+mod spline;
+mod height_lattice;
 mod triangulation;
 mod displacement;
-mod cover;
+mod erosion;
 
 pub use certificate::{ProofBy, Verdict, certify, crossing_by_subdivision};
-pub use cover::{CoverWeights, Stratum, StratumMix, TerrainCover};
 pub use displacement::MidpointDisplacement;
 pub use enclosure::Enclosure;
+pub use erosion::{
+    EROSION_PARAMETERS, ErodedTerrain, ErosionAccount, ErosionEdge, ErosionParameter, ErosionSettings, RiverOutcome,
+    erode,
+};
 pub use error::TerrainError;
 pub use field::HeightField;
 pub use fractal::{FRACTALS, FractalKind, FractalRow};
@@ -31,6 +37,7 @@ pub use interval::{BoundedSlopes, Interval};
 pub use march::{TerrainHit, TerrainWork};
 pub use octaves::MOST_OCTAVES;
 pub use parameters::{FRACTAL_PARAMETERS, FractalParameter, FractalParameters};
+pub use spline::{GroundView, TerrainCosts, TerrainSurface};
 pub use triangulation::TerrainTriangles;
 
 #[cfg(test)]

@@ -71,17 +71,51 @@ impl OctaveSum {
         self.planes_by_lanes(at, known, weights)
     }
 
+    /// The sum at a place.
+    pub(super) fn value(&self, at: DVec2, footprint: f64) -> f64 {
+        let weights = Weights::new(self, footprint);
+        #[cfg(target_arch = "x86_64")]
+        {
+            // Products are not rounded together with sums: the result is the same on every processor.
+            #[target_feature(enable = "avx2")]
+            fn wide(sum: &OctaveSum, at: DVec2, weights: &Weights) -> f64 {
+                sum.value_by_lanes(at, weights)
+            }
+            if self.octaves.is_wide() {
+                // SAFETY: the processor was asked for what the function is compiled for.
+                return unsafe { wide(self, at, &weights) };
+            }
+        }
+        self.value_by_lanes(at, &weights)
+    }
+
+    #[inline(always)]
+    fn value_by_lanes(&self, at: DVec2, weights: &Weights) -> f64 {
+        let mut sum = Four::default();
+        for first in (0..weights.count).step_by(LANES) {
+            sum = sum + self.weighted(first, weights.count, weights) * self.octaves.values(first, at);
+        }
+        sum.sum()
+    }
+
+    /// Amplitudes of the octaves `first..first + 4` times what is left of them; 0 from `end` on.
+    #[inline(always)]
+    fn weighted(&self, first: usize, end: usize, weights: &Weights) -> Four {
+        let mut amplitudes = Four::of(&self.amplitudes, first);
+        if first + LANES > end.min(weights.full) {
+            for (octave, amplitude) in (first..).zip(&mut amplitudes.0) {
+                *amplitude = if octave < end { *amplitude * weights.of(octave) } else { 0.0 };
+            }
+        }
+        amplitudes
+    }
+
     #[inline(always)]
     fn planes_by_lanes(&self, at: DVec2, known: usize, weights: &Weights) -> [f64; 3] {
         let mut sums = NoiseLanes::default();
         for first in (0..known).step_by(LANES) {
             let noise = self.octaves.noise(first, at);
-            let mut amplitudes = Four::of(&self.amplitudes, first);
-            if first + LANES > known.min(weights.full) {
-                for (octave, amplitude) in (first..).zip(&mut amplitudes.0) {
-                    *amplitude = if octave < known { *amplitude * weights.of(octave) } else { 0.0 };
-                }
-            }
+            let amplitudes = self.weighted(first, known, weights);
             sums.value = sums.value + amplitudes * noise.value;
             let [x, z] = noise.slopes;
             sums.slopes = [sums.slopes[0] + amplitudes * x, sums.slopes[1] + amplitudes * z];

@@ -154,9 +154,43 @@ impl Octaves {
         self.noise(first, at)
     }
 
+    /// Noise of the octaves `first..first + 4` without its slopes, with the widest instructions; those beyond the last
+    /// have no meaning.
+    pub(super) fn values_at(&self, first: usize, at: DVec2) -> Four {
+        #[cfg(target_arch = "x86_64")]
+        {
+            // Products are not rounded together with sums: the result is the same on every processor.
+            #[target_feature(enable = "avx2")]
+            fn wide(octaves: &Octaves, first: usize, at: DVec2) -> Four {
+                octaves.values(first, at)
+            }
+            if self.is_wide {
+                // SAFETY: the processor was asked for what the function is compiled for.
+                return unsafe { wide(self, first, at) };
+            }
+        }
+        self.values(first, at)
+    }
+
+    /// Noise of the octaves `first..first + 4` without its slopes; those beyond the last have no meaning.
+    #[inline(always)]
+    pub(super) fn values(&self, first: usize, at: DVec2) -> Four {
+        let (_, gradients, place) = self.cells(first, at);
+        interpolated(gradients, place)[0]
+    }
+
     /// Noise of the octaves `first..first + 4`; those beyond the last have no meaning.
     #[inline(always)]
     pub(super) fn noise(&self, first: usize, at: DVec2) -> NoiseLanes {
+        let ([cosines, sines], gradients, place) = self.cells(first, at);
+        let [value, along, across] = interpolated(gradients, place);
+        NoiseLanes { value, slopes: [cosines * along + sines * across, cosines * across - sines * along] }
+    }
+
+    /// The cells of the octaves `first..first + 4` in which a place is: cosines and sines of their lattices, gradients
+    /// at the corners, the place in each.
+    #[inline(always)]
+    fn cells(&self, first: usize, at: DVec2) -> ([Four; 2], [[Four; 2]; 4], [Four; 2]) {
         let (cosines, sines) = (Four::of(&self.cosines, first), Four::of(&self.sines, first));
         let x = cosines * at.x - sines * at.y + Four::of(&self.shifts[0], first);
         let z = sines * at.x + cosines * at.y + Four::of(&self.shifts[1], first);
@@ -169,8 +203,7 @@ impl Octaves {
             gradients_at(&numbers, 2),
             gradients_at(&numbers, 3),
         ];
-        let [value, along, across] = interpolated(gradients, [x, z]);
-        NoiseLanes { value, slopes: [cosines * along + sines * across, cosines * across - sines * along] }
+        ([cosines, sines], gradients, [x, z])
     }
 }
 

@@ -2,9 +2,10 @@
 
 use super::error::TerrainError;
 use super::octaves::MOST_OCTAVES;
+use serde::{Deserialize, Serialize};
 
 /// The numbers of a fractal terrain.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FractalParameters {
     /// Number of octaves, rounded to a whole number.
     pub octaves: f64,
@@ -30,7 +31,7 @@ pub struct FractalParameters {
 pub struct FractalParameter {
     /// Its name in scripts.
     pub name: &'static str,
-    /// What it does, a sentence.
+    /// What it does, in words that may follow its name.
     pub summary: &'static str,
     /// The least and the greatest that it may be.
     pub range: [f64; 2],
@@ -58,14 +59,14 @@ macro_rules! row {
 
 /// All numbers of a fractal terrain.
 pub const FRACTAL_PARAMETERS: &[FractalParameter] = &[
-    row!(octaves, [1.0, MOST_OCTAVES as f64], 12.0, "Number of octaves of noise."),
-    row!(lacunarity, [1.25, 8.0], 2.0, "Frequency of an octave over that of the one before."),
-    row!(hurst, [0.0, 4.0], 1.0, "Octave i has the amplitude lacunarity^(-i H): the lower, the rougher."),
-    row!(offset, [-4.0, 4.0], 0.7, "Added to the noise of each octave of a multifractal."),
-    row!(feedback, [0.0, 8.0], 2.0, "How strongly an octave of a ridged multifractal weighs the next one."),
-    row!(scale, [1e-9, 1e9], 1.0, "NoiseLattice spacing of the first octave, units of length."),
-    row!(height, [-1e9, 1e9], 1.0, "Amplitude of the first octave, units of length."),
-    row!(seed, [0.0, 9_007_199_254_740_991.0], 0.0, "Another terrain for each whole number."),
+    row!(octaves, [1.0, MOST_OCTAVES as f64], 12.0, "how many octaves of noise there are"),
+    row!(lacunarity, [1.25, 8.0], 2.0, "frequency of an octave over that of the one before"),
+    row!(hurst, [0.0, 4.0], 1.0, "octave i is lacunarity^(-i hurst) as high as the first: the lower, the rougher"),
+    row!(offset, [-4.0, 4.0], 0.7, "added to the noise of each octave, for kinds other than fbm"),
+    row!(feedback, [0.0, 8.0], 2.0, "how strongly an octave weighs the next one, of ridged ground"),
+    row!(scale, [1e-9, 1e9], 1.0, "how far hills of the first octave are apart, units of length"),
+    row!(height, [-1e9, 1e9], 1.0, "how far the first octave goes up and down, units of length"),
+    row!(seed, [0.0, FractalParameters::MOST_SEED], 0.0, "another ground for each whole number"),
 ];
 
 impl Default for FractalParameters {
@@ -88,6 +89,9 @@ impl Default for FractalParameters {
 }
 
 impl FractalParameters {
+    /// The greatest seed: the largest whole number that is told from its neighbours.
+    pub const MOST_SEED: f64 = 9_007_199_254_740_991.0;
+
     /// Sets one number by its name.
     ///
     /// # Errors

@@ -380,7 +380,8 @@ fn a_grid_is_met_at_its_heights_and_goes_on_beyond_its_edge() {
     assert_eq!(field.height(DVec2::new(20.0, 0.0), 0.0), field.height(DVec2::new(6.0, 0.0), 0.0));
     assert!(matches!(HeightGrid::new([2, 2], DVec2::ZERO, 1.0, vec![0.0; 3]), Err(TerrainError::GridSize { .. })));
     assert!(HeightGrid::new([2, 2], DVec2::ZERO, 0.0, vec![0.0; 4]).is_err());
-    assert_eq!(HeightGrid::new([2, 2], DVec2::ZERO, 1.0, vec![f64::NAN; 4]), Err(TerrainError::NotFinite));
+    let refused = HeightGrid::new([2, 2], DVec2::ZERO, 1.0, vec![0.0, 0.0, 0.0, f64::NAN]);
+    assert!(matches!(refused, Err(TerrainError::Cell { column: 1, row: 1, .. })));
 }
 
 #[test]
@@ -440,40 +441,4 @@ fn numbers_out_of_range_are_refused_by_name() {
         powers = HeightFunction::Product(Box::new([powers.clone(), powers]));
     }
     assert_eq!(new(&powers, REGION), TerrainError::NotFinite);
-}
-
-#[test]
-fn snow_lies_high_plants_grow_low_and_neither_holds_on_cliffs() {
-    let layer = |thickness: f64, material: u32| Stratum { thickness, material };
-    let cover = TerrainCover {
-        snow_line: 2000.0,
-        snow_edge: 100.0,
-        snow_slope: 1.0,
-        tree_line: 1800.0,
-        tree_edge: 150.0,
-        plant_slope: 0.8,
-        half_wetness: 0.2,
-        strata: vec![layer(3.0, 7), layer(1.0, 8)],
-        strata_base: 0.0,
-        strata_dip: [0.1, 0.0],
-        strata_edge: 0.5,
-    };
-    cover.check().expect("sound");
-    let at = |height: f64, slope: f64, wetness: f64| cover.weights(height, slope, wetness);
-    assert_eq!(at(3000.0, 0.0, 0.5), CoverWeights { snow: 1.0, plants: 0.0, rock: 0.0 });
-    assert_eq!(at(500.0, 0.0, 1.0), CoverWeights { snow: 0.0, plants: 1.0, rock: 0.0 });
-    assert_eq!(at(500.0, 0.0, 0.2).plants, 0.6);
-    assert_eq!([at(3000.0, 2.0, 1.0).rock, at(500.0, 1.6, 1.0).rock, at(500.0, 0.0, 0.0).rock], [1.0; 3]);
-    assert_eq!(at(2000.0, 0.0, 0.0).snow, 0.5);
-    for k in 0..4000 {
-        let CoverWeights { snow, plants, rock } = at(f64::from(k), 0.3, 0.7);
-        assert!(snow >= 0.0 && plants >= 0.0 && rock >= 0.0 && (snow + plants + rock - 1.0).abs() < 1e-15);
-        assert!((at(f64::from(k) + 1.0, 0.3, 0.7).plants - plants).abs() < 0.011, "{k}");
-    }
-    let stratum = |x: f64, y: f64| cover.stratum(DVec3::new(x, y, 5.0)).expect("layers");
-    assert_eq!(stratum(0.0, 1.0), StratumMix { material: 7, next: 8, part: 0.0 });
-    assert_eq!(stratum(0.0, 2.25), StratumMix { material: 7, next: 8, part: 0.5 });
-    assert_eq!([stratum(0.0, 3.2).material, stratum(0.0, -0.5).material, stratum(10.0, 4.2).material], [8, 8, 8]);
-    assert_eq!(TerrainCover { strata: Vec::new(), ..cover.clone() }.stratum(DVec3::ZERO), None);
-    assert!(TerrainCover { snow_edge: 0.0, ..cover }.check().is_err());
 }

@@ -2,18 +2,19 @@
 
 use super::error::TerrainError;
 use super::field::{HeightField, normal_of};
+use super::height_lattice::{HeightLattice, SIDE, Vertex};
 use super::parameters::in_range;
 use crate::memory;
 use crate::mesh::Mesh;
 use glam::{DVec2, DVec3};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-/// Sides of the square are divided into 2^22 at the most.
-const SIDE: u32 = 1 << 22;
 /// Bytes that a triangle takes while it is made.
-const BYTES_EACH: u64 = 256;
+const BYTES_EACH: u64 = 320;
 /// Memory is asked for after so many triangles.
 const BATCH: usize = 1 << 16;
+/// Part of the tolerance that triangles may be off at the points that are looked at; the rest is for what is between.
+const PART: f64 = 0.8;
 
 /// How triangles are made of a height field.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,14 +29,12 @@ pub struct TerrainTriangles {
     pub base: Option<f64>,
 }
 
-/// A place on the lattice of a region: parts of its sides.
-type Vertex = [u32; 2];
-
 impl HeightField {
     /// Triangles over a rectangle, large where the surface is flat and small where it bends.
     ///
-    /// Right triangles are halved until bounds prove that they keep the tolerance, and those beside them as far as
-    /// shared edges ask for it, so that there are no cracks. Normals at the corners are those of the surface;
+    /// Right triangles are halved until the surface is within the tolerance at points in them, and those beside them as far
+    /// as shared edges ask for it, so that there are no cracks. The points are those of a lattice so fine that the surface
+    /// departs little from straight lines between them, or where it is too rough for one, 28 in each triangle. Normals at the corners are those of the surface;
     /// parameters are x and z.
     ///
     /// - `region`: its least and its greatest x and z, within the region of the field.
@@ -45,8 +44,7 @@ impl HeightField {
     /// the ground.
     ///
     /// # Source
-    /// Bisection of right triangles: Lindstrom et al. 1996; Evans, Kirkpatrick and Townsend 2001. The proof by bounds
-    /// is ours.
+    /// Bisection of right triangles: Lindstrom et al. 1996; Evans, Kirkpatrick and Townsend 2001.
     pub fn triangles(&self, region: [DVec2; 2], settings: &TerrainTriangles) -> Result<Mesh, TerrainError> {
         let [from, to] = self.region();
         let is_within = region[0].cmpge(from).all() && region[1].cmple(to).all() && region[0].cmplt(region[1]).all();
@@ -55,14 +53,10 @@ impl HeightField {
         }
         in_range("tolerance", settings.tolerance, [f64::MIN_POSITIVE, f64::MAX])?;
         in_range("footprint", settings.footprint, [0.0, f64::MAX])?;
-        let mut made = Bisection {
-            field: self,
-            region,
-            settings,
-            halved: FxHashSet::default(),
-            heights: FxHashMap::default(),
-            pending: ROOTS.to_vec(),
-        };
+        let between = (1.0 - PART) * settings.tolerance;
+        let lattice = HeightLattice::new(self, region, settings.footprint, between)?;
+        let pending = ROOTS.to_vec();
+        let mut made = Bisection { field: self, settings, lattice, halved: FxHashSet::default(), pending };
         made.refine()?;
         made.mesh()
     }
@@ -71,32 +65,15 @@ impl HeightField {
 /// Which edges are halved. A triangle is two ends of its longest side and the corner between the others.
 struct Bisection<'a> {
     field: &'a HeightField,
-    region: [DVec2; 2],
     settings: &'a TerrainTriangles,
+    lattice: HeightLattice<'a>,
     /// Middles of longest sides that are halved.
     halved: FxHashSet<Vertex>,
-    heights: FxHashMap<Vertex, f64>,
     /// Triangles that are yet to be tested.
     pending: Vec<[Vertex; 3]>,
 }
 
 impl Bisection<'_> {
-    fn place(&self, [x, z]: Vertex) -> DVec2 {
-        let part = DVec2::new(f64::from(x), f64::from(z)) / f64::from(SIDE);
-        let [from, to] = self.region;
-        // Exact at both ends.
-        from * (DVec2::ONE - part) + to * part
-    }
-
-    fn height(&mut self, vertex: Vertex) -> f64 {
-        if let Some(height) = self.heights.get(&vertex) {
-            return *height;
-        }
-        let height = self.field.height(self.place(vertex), self.settings.footprint);
-        self.heights.insert(vertex, height);
-        height
-    }
-
     /// Halves triangles until all keep the tolerance.
     fn refine(&mut self) -> Result<(), TerrainError> {
         let mut asked = 0;
@@ -104,10 +81,10 @@ impl Bisection<'_> {
             let [a, b, _] = triangle;
             let middle = middle(a, b);
             // Whoever halved it left its children here.
-            if self.halved.contains(&middle) || self.is_kept(triangle) {
+            if self.halved.contains(&middle) || self.lattice.is_near(triangle, PART * self.settings.tolerance) {
                 continue;
             }
-            let is_odd = |k: usize| (a[k] ^ b[k]) & 1 == 1;
+            let is_odd = |axis: usize| (a[axis] ^ b[axis]) & 1 == 1;
             if is_odd(0) || is_odd(1) {
                 return Err(TerrainError::Tolerance { tolerance: self.settings.tolerance });
             }
@@ -121,22 +98,6 @@ impl Bisection<'_> {
             }
         }
         Ok(())
-    }
-
-    /// Whether the surface is proved to be within the tolerance of a triangle.
-    fn is_kept(&mut self, [a, b, c]: [Vertex; 3]) -> bool {
-        let corners = [a, b, c].map(|vertex| self.place(vertex));
-        let center = 0.5 * (corners[0] + corners[1]);
-        // The middle of the longest side of a right triangle is as far from all corners.
-        let radius = corners.iter().map(|corner| corner.distance(center)).fold(0.0, f64::max) * (1.0 + 1e-12);
-        let over = self.field.enclosure(center, radius, self.settings.footprint);
-        let mut off = 0.0_f64;
-        for (vertex, corner) in [a, b, c].into_iter().zip(corners) {
-            let plane = over.value + over.slope.dot(corner - center);
-            off = off.max((self.height(vertex) - plane).abs());
-        }
-        // Both the triangle and the plane of the bounds are linear: they are farthest apart at a corner.
-        off + over.error <= self.settings.tolerance
     }
 
     /// Halves the two triangles at a longest side, and first those that have to be there for that.
@@ -164,7 +125,7 @@ impl Bisection<'_> {
         }
     }
 
-    fn mesh(mut self) -> Result<Mesh, TerrainError> {
+    fn mesh(self) -> Result<Mesh, TerrainError> {
         let mut triangles = Vec::new();
         let mut pending = ROOTS.to_vec();
         while let Some(triangle) = pending.pop() {
@@ -185,15 +146,15 @@ impl Bisection<'_> {
         for triangle in &triangles {
             let indices = triangle.map(|vertex| {
                 *numbers.entry(vertex).or_insert_with(|| {
-                    let at = self.place(vertex);
-                    mesh.vertices.push(DVec3::new(at.x, self.height(vertex), at.y));
+                    let at = self.lattice.place(vertex);
+                    mesh.vertices.push(DVec3::new(at.x, self.lattice.height(vertex), at.y));
                     normals.push(normal_of(self.field.slope(at, self.settings.footprint)));
                     mesh.vertices.len() as u32 - 1
                 })
             });
             mesh.triangles.push(indices);
             mesh.corner_normals.push(indices.map(|index| normals[index as usize]));
-            mesh.corner_parameters.push(triangle.map(|vertex| self.place(vertex)));
+            mesh.corner_parameters.push(triangle.map(|vertex| self.lattice.place(vertex)));
         }
         if let Some(base) = self.settings.base {
             close(&mut mesh, &numbers, base)?;

@@ -8,6 +8,7 @@ pub(super) const ROW: FractalRow = FractalRow {
     name: "fbm",
     summary: "Hills as rough everywhere: a sum of octaves of noise.",
     parameters: &[],
+    offset: 0.0,
 };
 
 /// The sum over the octaves of amplitude times noise.

@@ -8,6 +8,7 @@ pub(super) const ROW: FractalRow = FractalRow {
     name: "heterogeneous",
     summary: "Plains in the valleys, rugged tops: details grow with the height.",
     parameters: &["offset"],
+    offset: 0.7,
 };
 
 /// The first octave is `offset` + noise; each later one adds (noise + offset) times amplitude times the height so far.

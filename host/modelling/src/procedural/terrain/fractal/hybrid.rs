@@ -8,6 +8,7 @@ pub(super) const ROW: FractalRow = FractalRow {
     name: "hybrid",
     summary: "Smooth valleys at every height below rough slopes.",
     parameters: &["offset"],
+    offset: 0.7,
 };
 
 /// Each octave is (noise + offset) times amplitude; it is added times a weight, the product of the octaves before it

@@ -5,9 +5,11 @@ use super::super::form::Form;
 use super::super::octave_sum::OctaveSum;
 use super::super::octaves::{LANES, MOST_OCTAVES, Octaves, remaining};
 use super::super::parameters::FractalParameters;
+use serde::{Deserialize, Serialize};
 
 /// A kind of fractal terrain.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum FractalKind {
     /// Fractional Brownian motion: a sum of octaves.
     Fbm,
@@ -30,6 +32,8 @@ pub struct FractalRow {
     pub summary: &'static str,
     /// Those numbers of [`FractalParameters`] that it takes beside octaves, lacunarity, H, scale, height and seed.
     pub parameters: &'static [&'static str],
+    /// The usual offset.
+    pub offset: f64,
 }
 
 /// A fractal with its lattices.
@@ -64,6 +68,11 @@ impl Fractal {
             amplitude *= gain;
         }
         Ok(Fractal { kind, parameters, sum: OctaveSum::new(octaves, amplitudes) })
+    }
+
+    /// Lattice points of the first octave in a unit of length.
+    pub(in super::super) fn coarsest(&self) -> f64 {
+        self.sum.octaves.frequencies[0]
     }
 
     /// Lattice points of the finest octave in a unit of length.

@@ -9,6 +9,7 @@ pub(super) const ROW: FractalRow = FractalRow {
     name: "ridged",
     summary: "Mountains with sharp ridges, rough near them and smooth below.",
     parameters: &["offset", "feedback"],
+    offset: 1.0,
 };
 
 /// Each octave is (offset - |noise|)^2 times a weight, the octave before it times `feedback`, between 0 and 1.
