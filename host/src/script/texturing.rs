@@ -3,7 +3,7 @@
 use super::builder::Builder;
 use super::function::{Function, function};
 use super::handle::{CallResult, Handle};
-use super::kinds::{Flag, Integer, Lengths, NumberKind, Reflectance, TextKind, Vector, Word};
+use super::kinds::{Flag, Integer, Lengths, NumberKind, RangeKind, Reflectance, TextKind, Vector, Word};
 use super::parameter::{Defaulted, Required, required, with_default};
 use super::shared::OBJECT;
 use crate::database::{self, Record};
@@ -22,6 +22,8 @@ const AT: Defaulted<Vector, [f64; 3]> = with_default(Vector, [0.0; 3], "where it
 const UP: Defaulted<Vector, [f64; 3]> = with_default(Vector, [0.0, 1.0, 0.0], "its y direction");
 const FILE: Required<TextKind> =
     required(TextKind, "a PNG or EXR file, relative to the folder of the script; or a texture of a database");
+/// A length, or none.
+const LENGTH: NumberKind = NumberKind(0.0, 1e12);
 const ANY: NumberKind = NumberKind(f64::MIN, f64::MAX);
 
 /// The functions.
@@ -98,6 +100,36 @@ pub(super) const FUNCTIONS: &[Function] = &[
         "Makes a pattern of rings of early and late wood about an axis, through the body. Give it where a reflectance is asked for."
         "ball.material(wood(#{ one: [0.55, 0.33, 0.16], two: [0.3, 0.15, 0.06], size: 0.08, up: [1, 0, 0] }));"
         |_| pattern(Motif::Wood { turbulence, grain }, TextureMapping { solid: true, size, at, up }, vec![one, two])
+    },
+    function! {
+        cover(
+            one: ONE,
+            two: TWO,
+            height: with_default(RangeKind(-1e12, 1e12), [-1e12, 1e12], "least and greatest y, own units of the object").note("any"),
+            edge: with_default(LENGTH, 0.0, "the height over which it ends"),
+            ragged: with_default(LENGTH, 0.0, "how far its ends stray up and down"),
+            steepest: with_default(NumberKind(0.0, 90.0), 90.0, "the steepest surface on which it holds, degrees"),
+            up: UP,
+        )
+        "Makes a pattern of a second paint where a surface is neither too low, too high nor too steep, as snow and grass are. Give it where a reflectance is asked for."
+        "terrain(\"ridged\").material(cover([0.3, 0.27, 0.24], 0.85, #{ height: [3, 100], ragged: 0.4, steepest: 42 }));"
+        |_| {
+            let laying = TextureMapping { solid: true, up, ..TextureMapping::default() };
+            pattern(Motif::Cover { height, edge, ragged, steepest }, laying, vec![one, two])
+        }
+    },
+    function! {
+        strata(
+            one: ONE,
+            two: TWO,
+            size: with_default(Lengths, 1.0, "thickness of two layers, own units of the object"),
+            turbulence: with_default(NumberKind(0.0, 1000.0), 0.4, "how far layers stray, in these"),
+            at: AT,
+            up: with_default(Vector, [0.0, 1.0, 0.0], "across the layers"),
+        )
+        "Makes a pattern of layers of two paints, of uneven thickness, through the body. Give it where a reflectance is asked for."
+        "terrain(\"ridged\").material(strata([0.35, 0.25, 0.18], [0.5, 0.42, 0.33], #{ size: 0.5, up: [0.1, 1, 0.05] }));"
+        |_| pattern(Motif::Strata { turbulence }, TextureMapping { solid: true, size, at, up }, vec![one, two])
     },
     function! {
         varied(

@@ -6,8 +6,11 @@ mod clouds;
 mod marble;
 mod wood;
 mod varied;
+mod cover;
+mod strata;
 
 use super::{Image, MOST_PAINTS, TextureError, TextureFootprint};
+use cover::Lying;
 use sampled::Sampled;
 use serde::{Deserialize, Serialize};
 
@@ -126,6 +129,33 @@ motifs! {
     }
     check Ok(()), parts |sampled| two(varied::second(sampled, *channel)), mean two(varied::MEAN),
     tried Motif::Varied { channel: 0 };
+
+    /// A second paint where the surface is neither too low, too high nor too steep, as snow and grass are.
+    Cover "cover" {
+        /// The least and the greatest y, in units.
+        height: [f64; 2],
+        /// The height over which it ends, 0 and more.
+        edge: f64,
+        /// How far the ends stray up and down, 0 and more.
+        ragged: f64,
+        /// The steepest surface on which it holds, degrees: 90 for any.
+        steepest: f64,
+    }
+    check cover::check(&Lying { height: *height, edge: *edge, ragged: *ragged, steepest: *steepest }),
+    parts |sampled| {
+        two(cover::second(sampled, &Lying { height: *height, edge: *edge, ragged: *ragged, steepest: *steepest }))
+    },
+    mean two(cover::MEAN),
+    tried Motif::Cover { height: [11.5, 1e9], edge: 0.5, ragged: 0.0, steepest: 90.0 };
+
+    /// Layers of two paints across the y direction, of uneven thickness, about two in a unit.
+    Strata "strata" {
+        /// How far they stray, in units, 0 and more.
+        turbulence: f64,
+    }
+    check strata::check(*turbulence), parts |sampled| two(strata::second(sampled, *turbulence)),
+    mean two(strata::MEAN),
+    tried Motif::Strata { turbulence: 0.4 };
 }
 
 impl Motif {
