@@ -3,15 +3,16 @@
 use super::function::Function;
 use super::{
     daylight, instancing, lighting, materials, procedural, shaping, showing, solids, stored, subdividing, surfaces,
-    table, texturing, wind,
+    table, terrain, texturing, wind,
 };
 
 /// The tables of functions that give objects their shapes.
-const SHAPES: [&[Function]; 6] = [
+const SHAPES: [&[Function]; 7] = [
     solids::FUNCTIONS,
     shaping::FUNCTIONS,
     surfaces::FUNCTIONS,
     subdividing::FUNCTIONS,
+    terrain::FUNCTIONS,
     instancing::FUNCTIONS,
     procedural::FUNCTIONS,
 ];

@@ -24,6 +24,7 @@ mod shaping;
 mod sculpting;
 mod surfaces;
 mod subdividing;
+mod terrain;
 mod wind;
 mod instancing;
 mod model;
@@ -51,6 +52,8 @@ mod instancing_tests;
 mod procedural_tests;
 #[cfg(test)]
 mod surface_tests;
+#[cfg(test)]
+mod terrain_tests;
 #[cfg(test)]
 mod tests;
 

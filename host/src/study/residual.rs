@@ -54,7 +54,7 @@ pub(super) fn study(scene: &Scene, options: &Options, watch: &Watch<'_>) -> Resu
 fn collect<'a>(shape: &'a Shape, tolerance: Tolerance, shapes: &mut Vec<ExactShape<'a>>) -> Result<(), StudyError> {
     match shape {
         Shape::Composite(composite) => composite.operands.iter().try_for_each(|o| collect(&o.shape, tolerance, shapes)),
-        Shape::Subdivision(_) => Ok(()),
+        Shape::Subdivision(_) | Shape::Terrain(_) => Ok(()),
         _ if shape.is_exact_and_curved() => {
             shapes.push(ExactShape { shape, whole: whole(shape, tolerance)? });
             Ok(())

@@ -163,7 +163,7 @@ impl ViewBatch<'_> {
         }
         if let Some(DetailCosts { made, kept, bytes, most_bytes }) = self.writer.prepared.detail_costs() {
             let [bytes, most] = [bytes, most_bytes].map(memory::readable);
-            say!("procedural models made {made} times; {kept} of these are kept, in {bytes} of at most {most}");
+            say!("detail made on demand {made} times; {kept} of these are kept, in {bytes} of at most {most}");
         }
         if let Some(balance) = &rendering.flux_balance {
             say!("{balance}");

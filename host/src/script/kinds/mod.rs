@@ -17,5 +17,5 @@ pub(super) use materials::{
 pub(super) use models::{BoundsKind, ModelFunction, VariedKind, VariedMap};
 pub(super) use numbers::{ANY_NUMBER, Integer, Length, NumberKind, RangeKind, number};
 pub(super) use places::{ObjectGroups, PlaceValue, PlacesKind};
-pub(super) use vectors::{AxisKind, Factors, Lengths, NamedAxis, Powers, Vector};
+pub(super) use vectors::{AxisKind, Factors, Lengths, NamedAxis, Powers, RectangleKind, Vector};
 pub(super) use words::{Flag, NumberOrText, NumberOrTextValue, ObjectKind, ScalarKind, TextKind, Word};

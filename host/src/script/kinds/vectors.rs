@@ -17,6 +17,10 @@ pub(in crate::script) struct Factors;
 #[derive(Clone, Copy)]
 pub(in crate::script) struct Lengths;
 
+/// Sides of a rectangle along x and z, above 0, or one for both.
+#[derive(Clone, Copy)]
+pub(in crate::script) struct RectangleKind;
+
 /// Powers 0 and more: `[red, green, blue]`, or one number for all.
 #[derive(Clone, Copy)]
 pub(in crate::script) struct Powers;
@@ -72,6 +76,22 @@ impl ParameterKind for Lengths {
     }
 }
 
+impl ParameterKind for RectangleKind {
+    type Value = [f64; 2];
+
+    fn words(&self) -> String {
+        "a length above 0, or two [x, z]".into()
+    }
+
+    fn read(&self, value: &Dynamic) -> Option<[f64; 2]> {
+        let two = || match value.read_lock::<Array>()?.as_slice() {
+            [x, z] => Some([number(x)?, number(z)?]),
+            _ => None,
+        };
+        number(value).map(|side| [side; 2]).or_else(two).filter(|sides| sides[0].min(sides[1]) > 0.0)
+    }
+}
+
 impl ParameterKind for Powers {
     type Value = DVec3;
     const TAKES_THREE: bool = true;
@@ -117,6 +137,18 @@ impl HasDefault for Lengths {
 
     fn of_default(&self, default: f64) -> DVec3 {
         DVec3::splat(default)
+    }
+
+    fn shown(&self, default: f64) -> String {
+        shown(default)
+    }
+}
+
+impl HasDefault for RectangleKind {
+    type Default = f64;
+
+    fn of_default(&self, default: f64) -> [f64; 2] {
+        [default; 2]
     }
 
     fn shown(&self, default: f64) -> String {

@@ -34,6 +34,8 @@ mod aggregate_tests;
 #[cfg(test)]
 mod detail_tests;
 #[cfg(test)]
+mod terrain_tests;
+#[cfg(test)]
 mod lamp_tests;
 
 pub use content_hash::ContentHash;

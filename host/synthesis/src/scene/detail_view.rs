@@ -3,10 +3,13 @@
 use super::{ImageSettings, Settings, View};
 use crate::numeric::bounds::Bounds;
 use crate::octree::AggregateView;
+use crate::procedural::terrain::GroundView;
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 
 /// Maps that lengthen all directions alike, but for rounding: the product of their norm and that of the inverse is 1.
 const SIMILAR: f64 = 0.999;
+/// Width of the cells of a terrain, pixels: its finest waves are a few of them long.
+const CELL: f64 = 1.5;
 
 /// From where models are seen, and what a pixel spans.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,6 +59,16 @@ impl DetailView {
         match own.eye {
             Some(at) => AggregateView::Eye { at, distance: size / (pixels * own.pixel) },
             None => AggregateView::Parallel { enlargement: pixels * own.pixel / size },
+        }
+    }
+
+    /// How wide the cells of a terrain are to be, in its coordinates.
+    pub(super) fn ground(&self, placement: &DAffine3) -> GroundView {
+        let own = self.within(placement);
+        let spacing = (CELL * own.pixel * own.detail).max(f64::MIN_POSITIVE);
+        match own.eye {
+            Some(at) => GroundView::Eye { at, spacing },
+            None => GroundView::Everywhere { spacing },
         }
     }
 

@@ -5,6 +5,7 @@ use crate::database::DatabaseError;
 use crate::memory::MemoryExceeded;
 use crate::mesh::{MeshError, NoBunny};
 use crate::octree::{InstanceError, OctreeError};
+use crate::procedural::terrain::TerrainError;
 use crate::solid::{PrimitiveError, RoundingError, SolidError};
 use crate::subdivision::SubdivisionError;
 use crate::surface::TessellationError;
@@ -90,6 +91,9 @@ pub enum ShapeError {
     /// The polyhedron cannot be divided.
     #[error(transparent)]
     Subdivision(#[from] SubdivisionError),
+    /// There is no such terrain.
+    #[error(transparent)]
+    Terrain(#[from] TerrainError),
     /// There is no such solid.
     #[error(transparent)]
     Primitive(#[from] PrimitiveError),

@@ -10,11 +10,14 @@ mod detail_view;
 mod cage;
 mod sculpture;
 mod solid;
+mod shape_mesh;
+mod fractal_ground;
+mod erosion;
+mod terrain;
 mod error;
 mod object;
 mod origins;
 mod stretch;
-mod shape_mesh;
 mod tolerance;
 mod composite;
 mod object_intersection;
@@ -43,9 +46,11 @@ mod studio;
 
 pub use acceleration::{Acceleration, AccelerationKey, SceneOctree};
 pub use cage::{Cage, Sharp, Sharpening};
-pub use detail::{DetailCosts, Details, MadeDetail};
+pub use detail::{DetailCosts, Details, GroundHit, MadeDetail, SceneGround};
 pub use detail_view::DetailView;
+pub use erosion::Erosion;
 pub use error::{AccelerationError, SceneError, ShapeError};
+pub use fractal_ground::FractalGround;
 pub use instances::{Places, ShortScatter};
 pub use motion::{Displacement, Motion};
 pub use object::{
@@ -66,6 +71,7 @@ pub use shape_mesh::ShapeMesh;
 pub use solid::PrimitiveSolid;
 pub use stretch::largest_stretch;
 pub use studio::Studio;
+pub use terrain::Terrain;
 pub use texture_footprint::{Footprint, footprint};
 pub use view::{Camera, Lens, Parallel, Projection, View};
 

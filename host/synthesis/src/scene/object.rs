@@ -3,6 +3,7 @@
 use super::cage::Cage;
 use super::sculpture::Sculpture;
 use super::solid::PrimitiveSolid;
+use super::terrain::Terrain;
 use crate::illumination::Material;
 use crate::illumination::texture::NumberTexture;
 use crate::numeric::bounds::Bounds;
@@ -73,6 +74,8 @@ pub enum Shape {
     Sculpture(Box<Sculpture>),
     /// The smooth limit of a polyhedron.
     Subdivision(Box<Cage>),
+    /// Ground whose heights are a fractal.
+    Terrain(Box<Terrain>),
     /// A solid made of other objects.
     Composite(Box<Composite>),
     /// The intersection curves of two objects; lines without triangles.
@@ -310,6 +313,7 @@ impl Shape {
             Shape::Stored { .. } => "stored",
             Shape::Sculpture(_) => "surface",
             Shape::Subdivision(_) => "subdivision",
+            Shape::Terrain(_) => "terrain",
             Shape::Composite(composite) => composite.operation.word(),
             Shape::Curve(_) => "curve",
             Shape::Rounded(rounded) => rounded.object.shape.word(),

@@ -1,9 +1,11 @@
-//! What of the instances of a prepared scene depends on the views: the procedural models that they place, and the
-//! aggregates that stand in for them.
+//! What of a prepared scene depends on the views: its terrains, the procedural models that instances place, and the
+//! aggregates that stand in for these.
 
 use super::object::Procedural;
 use super::scatter::PlacedGrid;
+use super::terrain::Terrain;
 use crate::illumination::Material;
+use glam::DAffine3;
 use std::any::Any;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
@@ -28,6 +30,18 @@ pub(super) struct PlacedAggregates {
     pub(super) grid: PlacedGrid,
     /// How many pixels the largest of them spans where aggregates begin.
     pub(super) pixels: f64,
+}
+
+/// A terrain that stands in the scene, an open surface that rays may meet exactly.
+#[derive(Clone, Debug)]
+pub(super) struct PlacedTerrain {
+    /// The object of the scene that it is.
+    pub(super) object: u32,
+    /// What messages call it.
+    pub(super) name: String,
+    pub(super) terrain: Terrain,
+    /// From its coordinates to those of the scene.
+    pub(super) to_scene: DAffine3,
 }
 
 /// What is made of models, kept by the scene that has them: it does not know what that is, since it is made of scenes.

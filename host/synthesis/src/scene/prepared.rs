@@ -6,7 +6,7 @@ use super::instances::ShortScatter;
 use super::lamp_body::lamp_body;
 use super::object::{GROUND, Object, Shape};
 use super::parameters::parameters;
-use super::placed_models::{LastDetails, PlacedAggregates, PlacedModel};
+use super::placed_models::{LastDetails, PlacedAggregates, PlacedModel, PlacedTerrain};
 use super::shape_mesh::ShapeMesh;
 use super::shared::SharedMeshes;
 use super::stretch::cofactors;
@@ -18,7 +18,7 @@ use crate::numeric::bounds::Bounds;
 use crate::numeric::triangle::MAX_MAGNITUDE;
 use crate::octree::{InstanceCosts, InstanceOctree};
 use crate::stages::stage;
-use glam::{DMat3, DMat4, DVec2, DVec3, Vec3};
+use glam::{DAffine3, DMat3, DMat4, DVec2, DVec3, Vec3};
 use rustc_hash::FxHashMap;
 use std::ops::Deref;
 use std::sync::Arc;
@@ -76,6 +76,8 @@ pub struct Contents {
     pub(super) models: Vec<Arc<PlacedModel>>,
     /// Those of its instances for which aggregates stand in, by their numbers.
     pub(super) aggregates: Vec<PlacedAggregates>,
+    /// Its terrains that stand still and are open surfaces.
+    pub(super) terrains: Vec<PlacedTerrain>,
     /// Its octrees, as far as they were asked for.
     pub(super) octrees: AccelerationCache,
     /// What was made of its models, as far as it was asked for and is kept.
@@ -186,6 +188,7 @@ impl Contents {
             placed_triangles: 0,
             models: Vec::new(),
             aggregates: Vec::new(),
+            terrains: Vec::new(),
             octrees: AccelerationCache::default(),
             details: LastDetails::default(),
         }
@@ -201,7 +204,15 @@ impl Contents {
         };
         for (object, index) in scene.objects.iter().zip(0u32..) {
             let made = shared.mesh_of(scene, index)?;
-            contents.add_standing(object, &made, motions.get(&index).copied(), &scene.settings.geometry)?;
+            let motion = motions.get(&index).copied();
+            contents.add_standing(object, &made, motion, &scene.settings.geometry)?;
+            if let Shape::Terrain(terrain) = &object.shape
+                && terrain.base.is_none()
+                && motion.is_none()
+            {
+                let (name, to_scene) = (object.name.clone(), DAffine3::from_mat4(object.transform));
+                contents.terrains.push(PlacedTerrain { object: index, name, terrain: (**terrain).clone(), to_scene });
+            }
         }
         for (light, number) in scene.lights.iter().zip(0u32..) {
             let Some((patch, material)) = light.body() else { continue };

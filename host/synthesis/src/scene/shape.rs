@@ -35,6 +35,7 @@ impl Shape {
             Shape::Bunny if cfg!(feature = "bunny") => Ok(()),
             Shape::Bunny => Err(NoBunny.to_string()),
             Shape::Subdivision(cage) => cage.polyhedron().map(|_| ()).map_err(|error| error.to_string()),
+            Shape::Terrain(terrain) => terrain.field().map(|_| ()).map_err(|error| error.to_string()),
             Shape::Solid(solid) => solid.body().map(|_| ()).map_err(|error| error.to_string()),
             Shape::HalfSpace { normal, .. } if normal.try_normalize().is_some() => Ok(()),
             Shape::HalfSpace { normal, .. } => Err(format!("normal {normal} has no length")),
@@ -79,6 +80,7 @@ impl Shape {
             Shape::Solid(solid) => solid.body().ok()?.curved_extent(),
             Shape::Sculpture(sculpture) => Some(sculpture.extent()),
             Shape::Subdivision(cage) => Some(cage.extent()),
+            Shape::Terrain(terrain) => Some(terrain.extent()),
             Shape::Composite(composite) => composite.extent(),
             Shape::Curve(objects) => objects.iter().filter_map(Object::extent).reduce(f64::max),
             Shape::Rounded(rounded) => {
@@ -121,6 +123,7 @@ impl Shape {
                 let mesh = cage.polyhedron()?.tessellated(tolerance.chord)?;
                 Ok(ShapeMesh { mesh, ..ShapeMesh::default() })
             }
+            Shape::Terrain(terrain) => Ok(terrain.tessellate(tolerance.chord)?),
             Shape::Curve(objects) => {
                 let precision = CurvePrecision { chord: Some(tolerance.chord), ..CurvePrecision::default() };
                 let lines = intersect_shapes([&objects[0], &objects[1]], tolerance, &precision)?.polylines();
@@ -167,6 +170,7 @@ impl Shape {
         let ShapeMesh { mesh, surfaces, .. } = self.tessellate(tolerance)?;
         match self {
             Shape::Subdivision(cage) => Ok(cage.polyhedron()?.distance(&mesh, tolerance.chord)?),
+            Shape::Terrain(terrain) => Ok(terrain.chord_error(&mesh, MEASURED_STEPS)?),
             Shape::Rounded(rounded) => rounded.distance(&mesh, tolerance),
             _ => distance_to_known(mesh, &surfaces),
         }

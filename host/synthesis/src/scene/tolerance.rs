@@ -8,6 +8,8 @@ use crate::surface::Tolerance;
 
 /// Tolerance of an object for which none is given, as a fraction of the diagonal of its bounds.
 const RELATIVE_TOLERANCE: f64 = 1.0 / 2000.0;
+/// That of terrain, which is rough: rays meet it exactly, and a distance a quarter as far takes ten times the triangles.
+const TERRAIN_TOLERANCE: f64 = 1.0 / 500.0;
 
 impl Object {
     /// Length of the diagonal of a curved shape of known size, as it is placed.
@@ -31,7 +33,8 @@ impl Object {
     /// - `extent`: that of the shape.
     pub(super) fn chord_of(&self, extent: f64, scene_tolerance: Option<f64>) -> f64 {
         let given = self.tolerance.or(scene_tolerance);
-        given.map_or(extent * RELATIVE_TOLERANCE, |given| given / largest_stretch(&self.transform))
+        let relative = if matches!(self.shape, Shape::Terrain(_)) { TERRAIN_TOLERANCE } else { RELATIVE_TOLERANCE };
+        given.map_or(extent * relative, |given| given / largest_stretch(&self.transform))
     }
 
     /// In own coordinates; a flat shape fits any.
@@ -62,7 +65,7 @@ impl Object {
     /// Largest distance between limit surfaces, also those of operands, and the triangles that are made for them; scene units.
     fn limit_error(&self, scene_tolerance: Option<f64>, angle: f64) -> Result<f64, SceneError> {
         match &self.shape {
-            Shape::Rounded(_) | Shape::Subdivision(_) => self.chord_error(scene_tolerance, angle),
+            Shape::Rounded(_) | Shape::Subdivision(_) | Shape::Terrain(_) => self.chord_error(scene_tolerance, angle),
             Shape::Composite(composite) => {
                 let own = self.own_chord(scene_tolerance);
                 let mut largest = 0.0;

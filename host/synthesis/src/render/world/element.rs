@@ -78,6 +78,26 @@ impl SurfaceElement {
         Some(SurfaceElement { normal, leave_curved: bulge(position, corners, normals, weights) + clearance, ..flat })
     }
 
+    /// The element of a smooth surface that is known exactly.
+    ///
+    /// - `outside`: its outer unit normal. `clearance`: how far from it rays begin that leave it, scene units.
+    pub(super) fn smooth(position: DVec3, outside: DVec3, direction: DVec3, clearance: f64) -> SurfaceElement {
+        let side = if outside.dot(direction) > 0.0 { -1.0 } else { 1.0 };
+        let face = outside * side;
+        let leave = position + face * clearance;
+        SurfaceElement {
+            position,
+            face,
+            normal: face,
+            horizon: face,
+            outside: side > 0.0,
+            leave,
+            through: position - face * clearance,
+            leave_curved: leave,
+            clearance,
+        }
+    }
+
     /// Moves it along the ray to the exact surface. Whether it did: not to where the ray is not yet, which begins
     /// `before` the triangle.
     ///
@@ -147,6 +167,11 @@ impl SurfaceElement {
 /// How far from a triangle rays begin that leave it or go through, scene units.
 pub(in crate::render) fn clearance(corners: [DVec3; 3]) -> f64 {
     let largest = corners.iter().fold(0.0f64, |most, corner| most.max(corner.abs().max_element()));
+    rounding_at(largest)
+}
+
+/// How far rays begin from a surface whose coordinates are not above one, scene units.
+pub(super) fn rounding_at(largest: f64) -> f64 {
     (CLEARANCE_ULPS * f64::EPSILON * largest).max(f64::MIN_POSITIVE)
 }
 

@@ -1,11 +1,12 @@
 //! What a ray found: a triangle of the scene, or of what was made on demand, and how it was brought to where it is.
 
 use super::carrier::Carrier;
+use super::ground_point::GroundPoint;
 use crate::numeric::ray::Hit;
 use crate::octree::{
     AggregateView, InstanceHit, InstanceOctree, InstancePath, InstanceWalk, PlacedSurface, PrototypeMaker, RayInterval,
 };
-use crate::scene::{Contents, Details, Displacement, MadeDetail, Prepared};
+use crate::scene::{Contents, Details, Displacement, GroundHit, MadeDetail, Prepared, SceneGround};
 use std::cell::RefCell;
 use std::sync::Arc;
 
@@ -19,12 +20,14 @@ pub(in crate::render) struct FoundTriangle {
     pub(super) carrier: Option<Carrier>,
     /// What was made on demand and has it, if the scene does not.
     made: Option<Arc<MadeDetail>>,
+    /// Where the ground is for which it stands, the first of its terrain.
+    pub(super) ground: Option<GroundPoint>,
 }
 
 impl FoundTriangle {
     /// One of the scene.
     pub(super) fn of_scene(hit: Hit, triangle: u32, carrier: Option<Carrier>) -> FoundTriangle {
-        FoundTriangle { hit, triangle, carrier, made: None }
+        FoundTriangle { hit, triangle, carrier, made: None, ground: None }
     }
 
     /// One that instances place.
@@ -35,7 +38,22 @@ impl FoundTriangle {
         moved: Option<&Displacement>,
     ) -> FoundTriangle {
         let (placed, made) = placed(octree, &path, details);
-        FoundTriangle { hit, triangle: hit.triangle, carrier: Some(Carrier::placed(&placed, moved)), made }
+        FoundTriangle {
+            hit,
+            triangle: hit.triangle,
+            carrier: Some(Carrier::placed(&placed, moved)),
+            made,
+            ground: None,
+        }
+    }
+
+    /// One that stands for the ground.
+    ///
+    /// - `triangle`: one of its terrain.
+    pub(super) fn of_ground(hit: GroundHit, ground: &SceneGround, triangle: u32) -> FoundTriangle {
+        const MIDDLE: f64 = 1.0 / 3.0;
+        let on = Hit { t: hit.t, triangle, u: MIDDLE, v: MIDDLE };
+        FoundTriangle { hit: on, triangle, carrier: None, made: None, ground: Some(GroundPoint::new(&hit, ground)) }
     }
 
     /// The triangles among which it has its number.

@@ -16,7 +16,7 @@ use crate::numeric::ray::{Hit, Ray};
 use crate::octree::{Octree, SurfacePoints};
 use crate::plan::{Plan, Stage};
 use crate::render::RenderError;
-use crate::scene::{Acceleration, AccelerationKey, Details, Footprint, Prepared, SceneOctree, footprint};
+use crate::scene::{Acceleration, AccelerationKey, Details, Footprint, Prepared, SceneGround, SceneOctree, footprint};
 use crate::stages::stage;
 use glam::DVec3;
 use std::sync::Arc;
@@ -33,8 +33,10 @@ pub struct World<'a> {
     light_buffer: Option<LightBuffer>,
     /// Points that stand for what stands still, if rays are to hit these.
     points: Option<SurfacePoints>,
-    /// What is made of procedural models, if there are any.
+    /// What is made of procedural models and terrain, if there are any.
     pub(super) details: Option<Arc<Details>>,
+    /// Those terrains that rays meet exactly, by their numbers in the details; not their triangles.
+    grounds: Vec<usize>,
 }
 
 impl<'a> World<'a> {
@@ -46,14 +48,19 @@ impl<'a> World<'a> {
         if plan.needs(Stage::Radiosity) || plan.needs(Stage::PhotonMap) {
             check_copied(prepared)?;
         }
-        let keeps = |object: usize| plan.needs(Stage::Octree) && plan.includes_object(object);
-        let objects = (0..prepared.objects.len()).map(keeps).collect();
-        let acceleration = prepared.acceleration(AccelerationKey { objects, motions: plan.needs(Stage::Motion) })?;
         let appearance = {
             let _stage = stage!("preparing lights and materials");
             Appearance::new(prepared, plan)?
         };
-        let world = World::over(acceleration, appearance, plan);
+        let keeps = |object: usize| plan.needs(Stage::Octree) && plan.includes_object(object);
+        let mut objects: Vec<bool> = (0..prepared.objects.len()).map(keeps).collect();
+        let details = prepared.details(plan.views(), &prepared.settings);
+        let grounds = exact_grounds(details.as_deref(), &appearance, plan);
+        for ground in grounds.iter().filter_map(|number| details.as_ref()?.grounds().get(*number)) {
+            objects[ground.object as usize] = false;
+        }
+        let acceleration = prepared.acceleration(AccelerationKey { objects, motions: plan.needs(Stage::Motion) })?;
+        let world = World { grounds, ..World::over(acceleration, appearance, plan) };
         let points = world.surface_points(plan);
         Ok(World { points, ..world })
     }
@@ -86,7 +93,14 @@ impl<'a> World<'a> {
 
     /// Materials and lights alone, for whom traces no rays.
     pub(in crate::render) fn without_rays(appearance: Appearance<'a>) -> World<'a> {
-        World { appearance, acceleration: Arc::default(), light_buffer: None, points: None, details: None }
+        World {
+            appearance,
+            acceleration: Arc::default(),
+            light_buffer: None,
+            points: None,
+            details: None,
+            grounds: Vec::new(),
+        }
     }
 
     fn over(acceleration: Arc<Acceleration>, appearance: Appearance<'a>, plan: &Plan) -> World<'a> {
@@ -102,7 +116,7 @@ impl<'a> World<'a> {
             LightBuffer::new(&prepared.bounds, &appearance.sources, opaque)
         });
         let details = prepared.details(plan.views(), &prepared.settings);
-        World { appearance, acceleration, light_buffer, points: None, details }
+        World { appearance, acceleration, light_buffer, points: None, details, grounds: Vec::new() }
     }
 
     /// The scene.
@@ -189,7 +203,19 @@ impl<'a> World<'a> {
                 first = Some(FoundTriangle::placed(hit, placed, details, Some(&moved)));
             }
         }
+        for ground in self.grounds() {
+            if let Some(hit) = ground.intersect(ray, [t_min, limit(&first)]) {
+                let stands_for = self.appearance.prepared.objects[ground.object as usize].first;
+                first = Some(FoundTriangle::of_ground(hit, ground, stands_for));
+            }
+        }
         first
+    }
+
+    /// The terrains that rays meet exactly.
+    pub(super) fn grounds(&self) -> impl Iterator<Item = &SceneGround> {
+        let all = self.details.as_ref().map_or(&[][..], |details| details.grounds());
+        self.grounds.iter().filter_map(|number| all.get(*number))
     }
 
     /// The first triangle that a ray hits in the middle of the time in which the shutter is open.
@@ -209,6 +235,7 @@ impl<'a> World<'a> {
         let Some(mut first) = first else { return RayHit::Nothing };
         let scene = self.appearance.prepared;
         if first.carrier.is_none()
+            && first.ground.is_none()
             && self.points.is_none()
             && let Some((hit, triangle)) = self.contact(&bounded.ray, first.triangle, &first.hit)
         {
@@ -222,14 +249,16 @@ impl<'a> World<'a> {
             (None, Some(_)) => through(&bounded.ray, &hit, contents.corners(triangle)),
             (None, None) => bounded.ray,
         };
-        let Some(mut element) = SurfaceElement::new(contents, triangle, &ray, &hit, self.appearance.curved) else {
-            return RayHit::Nothing;
+        let element = match &first.ground {
+            Some(ground) => Some(ground.element(&ray)),
+            None => SurfaceElement::new(contents, triangle, &ray, &hit, self.appearance.curved),
         };
+        let Some(mut element) = element else { return RayHit::Nothing };
         let [object, material] = first.object_and_material(scene);
         let bsdf = self.appearance.bsdf(object, material);
         let length = bounded.ray.direction.length();
         let distance = hit.t * length;
-        let exact = if self.appearance.exact {
+        let exact = if self.appearance.exact && first.ground.is_none() {
             let on = contents.on_surface(triangle, &ray, weights(&hit), element.position, element.outside);
             on.filter(|on| element.settle(ray.direction, hit.t - bounded.t_min, on))
         } else {
@@ -271,6 +300,9 @@ impl<'a> World<'a> {
     /// tells, also of what is carried from where it is kept.
     pub(super) fn texture_place(&self, found: &FoundTriangle, sides: Footprint) -> TextureFootprint {
         let contents = found.contents(self.appearance.prepared);
+        if let Some(ground) = &found.ground {
+            return ground.texture_place(sides, contents.object(found.triangle).variation);
+        }
         let weights = weights(&found.hit);
         let Some(carrier) = &found.carrier else { return contents.texture_place(found.triangle, weights, sides) };
         let own = sides.map(|side| carrier.own_vector(side));
@@ -395,6 +427,7 @@ impl<'a> World<'a> {
                 .placed
                 .as_ref()
                 .is_none_or(|placed| !Octree::may_stand_between(from, to, placed.bounds()))
+            && self.grounds().all(|ground| !Octree::may_stand_between(from, to, ground.bounds()))
             && self.still().is_none_or(is_clear)
     }
 
@@ -403,6 +436,23 @@ impl<'a> World<'a> {
         let prepared = self.appearance.prepared;
         self.appearance.bsdf(prepared.object_of[triangle as usize], prepared.material_number(triangle))
     }
+}
+
+/// Which terrains rays meet exactly, by their numbers in the details: those that no light passes and that emit none, where
+/// nothing is kept for triangles.
+fn exact_grounds(details: Option<&Details>, appearance: &Appearance<'_>, plan: &Plan) -> Vec<usize> {
+    let by_triangle = [Stage::Radiosity, Stage::PhotonMap, Stage::SurfacePoints];
+    if by_triangle.into_iter().any(|stage| plan.needs(stage)) {
+        return Vec::new();
+    }
+    let is_exact = |ground: &SceneGround| {
+        let object = ground.object as usize;
+        let bsdf = appearance.bsdf(ground.object, 0);
+        let emits = appearance.prepared.objects[object].materials.iter().any(|material| !material.emission.is_black());
+        plan.includes_object(object) && !bsdf.is_passable() && bsdf.interior.is_none() && !emits
+    };
+    let all = details.map_or(&[][..], Details::grounds);
+    (0..all.len()).filter(|number| is_exact(&all[*number])).collect()
 }
 
 /// Refuses instances that are placed, for what goes through triangles one by one.

@@ -3,8 +3,9 @@
 
 mod appearance;
 mod carrier;
-mod found;
 mod element;
+mod ground_point;
+mod found;
 mod camera_rays;
 mod interaction;
 mod light_buffer;

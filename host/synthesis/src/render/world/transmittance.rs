@@ -31,6 +31,9 @@ impl World<'_> {
         if self.appearance.sources.iter().enumerate().any(blocks) {
             return (Channels::ZERO, false);
         }
+        if self.grounds().any(|ground| ground.intersect(ray, [0.0, t_max]).is_some()) {
+            return (Channels::ZERO, false);
+        }
         let shaft = match occluders {
             Some(Occluders::Dark) => return (Channels::ZERO, false),
             Some(Occluders::Few(shaft)) => Some(&**shaft),

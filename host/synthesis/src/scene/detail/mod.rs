@@ -5,13 +5,16 @@
 //! same whatever is in the cache, and for any number of threads. A thing is made as a whole on one level, and has no cracks;
 //! between two levels its surface moves by less than half a pixel.
 //!
-//! From the same views, aggregates stand in for what is scattered in cells and far away.
+//! From the same views, aggregates stand in for what is scattered in cells and far away, and the ground has cells that are
+//! as wide as it is seen.
 
 mod cache;
 mod outline;
 mod made;
+mod ground;
 
 pub use cache::DetailCosts;
+pub use ground::{GroundHit, SceneGround};
 pub use made::MadeDetail;
 
 use super::placed_models::{KeptDetails, PlacedAggregates, PlacedModel};
@@ -35,13 +38,15 @@ const MOST_UNKNOWN: u64 = 1 << 30;
 /// Stack of threads that make detail, bytes: scripts may nest calls and expressions.
 const STACK: usize = 16 << 20;
 
-/// What is made of the models of a scene for some views, and from where aggregates are seen.
+/// What is made of the models of a scene for some views, its ground as it is seen from there, and from where aggregates
+/// are seen.
 #[derive(Debug)]
 pub struct Details {
     models: Vec<Arc<PlacedModel>>,
     views: Vec<DetailView>,
     /// For each of the instances for which aggregates stand in, these views in coordinates of its cells.
     aggregates: Vec<Vec<AggregateView>>,
+    grounds: Vec<SceneGround>,
     cache: DetailCache<DetailKey, MadeDetail, DetailOutline>,
     failed: OnceLock<String>,
 }
@@ -58,7 +63,7 @@ impl Contents {
     /// What is made of its models for some views in the pictures that settings ask for, and from where its aggregates
     /// are seen; none without models and aggregates. Those that were asked for last are given again for the same views.
     pub fn details(&self, views: &[View], settings: &Settings) -> Option<Arc<Details>> {
-        if self.models.is_empty() && self.aggregates.is_empty() {
+        if self.models.is_empty() && self.aggregates.is_empty() && self.terrains.is_empty() {
             return None;
         }
         let views: Vec<DetailView> = views.iter().map(|view| DetailView::new(view, settings)).collect();
@@ -66,10 +71,17 @@ impl Contents {
         if let Some(details) = known(&last).filter(|details| details.views == views) {
             return Some(details);
         }
-        let cache = DetailCache::new(self.details.most_bytes().unwrap_or_else(default_most));
+        // Models together may take as much as each terrain.
+        let sharing = self.terrains.len() as u64 + u64::from(!self.models.is_empty());
+        let most_bytes = self.details.most_bytes().unwrap_or_else(default_most) / sharing.max(1);
+        let failed = OnceLock::new();
+        let ground =
+            |placed| SceneGround::new(placed, &views, most_bytes).map_err(|error| failed.set(error.to_string()));
+        let grounds = self.terrains.iter().filter_map(|placed| ground(placed).ok()).collect();
+        let cache = DetailCache::new(most_bytes);
         let aggregates = self.aggregates.iter().map(|placed| placed.seen_by(&views)).collect();
         let models = self.models.clone();
-        let details = Arc::new(Details { models, views, aggregates, cache, failed: OnceLock::new() });
+        let details = Arc::new(Details { models, views, aggregates, grounds, cache, failed });
         *last = Some(details.clone());
         Some(details)
     }
@@ -79,9 +91,10 @@ impl Contents {
         self.details.limit(most_bytes);
     }
 
-    /// What the details cost by now that were asked for last; none if none were, or without models.
+    /// What the details cost by now that were asked for last; none if none were, or without models and terrain.
     pub fn detail_costs(&self) -> Option<DetailCosts> {
-        known(&self.details.last()).filter(|_| !self.models.is_empty()).map(|details| details.cache.costs())
+        let has_any = !(self.models.is_empty() && self.terrains.is_empty());
+        known(&self.details.last()).filter(|_| has_any).map(|details| details.costs())
     }
 
     /// From where on aggregates stand in for the instances of an object, for some views in the pictures that settings
@@ -138,6 +151,21 @@ impl Details {
             });
             let (bytes, outline) = (made.bytes(), made.outline());
             MadeValue { value: made, outline, bytes, seconds: begin.elapsed().as_secs_f64() }
+        })
+    }
+
+    /// The terrains of the scene as they are seen.
+    pub fn grounds(&self) -> &[SceneGround] {
+        &self.grounds
+    }
+
+    /// What all of it costs by now.
+    fn costs(&self) -> DetailCosts {
+        self.grounds.iter().map(SceneGround::costs).fold(self.cache.costs(), |all, ground| DetailCosts {
+            made: all.made + ground.made,
+            kept: all.kept + ground.kept as usize,
+            bytes: all.bytes + ground.bytes,
+            most_bytes: all.most_bytes,
         })
     }
 

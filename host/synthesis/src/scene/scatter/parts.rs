@@ -114,7 +114,8 @@ impl InstanceParts for ScatterParts {
 
     fn bounds(&self, part: usize) -> Bounds {
         let Bounds { min, max } = self.boxes[part];
-        Bounds { min: min - self.reach, max: max + self.reach }
+        let reach = self.reach + self.surface.ground.as_ref().map_or(0.0, |ground| ground.off);
+        Bounds { min: min - reach, max: max + reach }
     }
 
     fn instance(&self, part: usize, number: usize) -> Instance {
@@ -161,7 +162,9 @@ fn divided(whole: ScatterSurface, parts: f64) -> ScatterSurface {
             directions.push(normals);
         });
     }
-    ScatterSurface::of(pieces, directions)
+    let mut surface = ScatterSurface::of(pieces, directions);
+    surface.ground = whole.ground;
+    surface
 }
 
 /// Gives the triangles into which one is divided by the middles of its sides, so many times over, with their normals.

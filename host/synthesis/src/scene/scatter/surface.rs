@@ -1,13 +1,16 @@
 //! The surface that instances are scattered on.
 
 use super::super::ShapeError;
-use super::super::object::Object;
+use super::super::object::{Object, Shape};
 use super::super::parameters::parameters;
 use super::super::shape_mesh::{ShapeMesh, flat_normals};
+use super::super::stretch::largest_stretch;
 use super::standing::parts_below;
 use crate::illumination::texture::{NumberTexture, TextureFootprint};
 use crate::numeric::sampling::{part_of, triangle};
-use glam::{DVec2, DVec3};
+use crate::procedural::terrain::HeightField;
+use glam::{DAffine3, DVec2, DVec3};
+use std::sync::Arc;
 
 /// Triangles in coordinates of the instances.
 #[derive(Clone, Debug)]
@@ -19,6 +22,44 @@ pub(super) struct ScatterSurface {
     own: Vec<[DVec3; 3]>,
     /// Of the area, the part of the triangles up to each; nothing if it has none.
     pub(super) areas: Vec<f64>,
+    /// The ground for which the triangles stand, of terrain.
+    pub(super) ground: Option<Arc<ScatterGround>>,
+}
+
+/// Ground that is known exactly: what is scattered stands on it, not on the triangles.
+#[derive(Clone, Debug)]
+pub(super) struct ScatterGround {
+    field: HeightField,
+    to_own: DAffine3,
+    from_own: DAffine3,
+    /// How far it is from the triangles at the most, in coordinates of the instances.
+    pub(super) off: f64,
+}
+
+impl ScatterGround {
+    /// That of a terrain without walls; none of other objects.
+    ///
+    /// - `chord`: how far the ground may be above or below the triangles, own coordinates.
+    fn of(on: &Object, chord: f64) -> Result<Option<ScatterGround>, ShapeError> {
+        /// The distance is looked at, not proved.
+        const SAFETY: f64 = 2.0;
+        let Shape::Terrain(terrain) = &on.shape else { return Ok(None) };
+        if terrain.base.is_some() {
+            return Ok(None);
+        }
+        let from_own = DAffine3::from_mat4(on.transform);
+        let off = SAFETY * chord * largest_stretch(&on.transform);
+        Ok(Some(ScatterGround { field: terrain.field()?, to_own: from_own.inverse(), from_own, off }))
+    }
+
+    /// The place of the ground above or below one of the triangles, and the unit normal there.
+    fn settled(&self, at: DVec3) -> (DVec3, DVec3) {
+        let own = self.to_own.transform_point3(at);
+        let below = DVec2::new(own.x, own.z);
+        let height = self.field.height(below, 0.0);
+        let normal = self.to_own.matrix3.transpose() * self.field.normal(below, 0.0);
+        (self.from_own.transform_point3(DVec3::new(own.x, height, own.z)), normal.normalize_or(DVec3::Y))
+    }
 }
 
 /// A place of the surface.
@@ -42,7 +83,9 @@ impl ScatterSurface {
         scene_tolerance: Option<f64>,
         angle: f64,
     ) -> Result<ScatterSurface, ShapeError> {
-        let made = on.shape.tessellate(on.own_tolerance(scene_tolerance, angle))?;
+        let tolerance = on.own_tolerance(scene_tolerance, angle);
+        let made = on.shape.tessellate(tolerance)?;
+        let ground = ScatterGround::of(on, tolerance.chord)?.map(Arc::new);
         // A mirrored object is turned inside out in place: its second and third corners change places.
         let is_mirrored = on.transform.determinant() < 0.0;
         let parameters = match density.needs_parameters() {
@@ -61,14 +104,14 @@ impl ScatterSurface {
         }
         let corners: Vec<[DVec3; 3]> = triangles.map(|triangle| mesh.corners(triangle)).collect();
         let normals = mesh.corner_normals;
-        Ok(ScatterSurface { parameters, own, ..ScatterSurface::of(corners, normals) })
+        Ok(ScatterSurface { parameters, own, ground, ..ScatterSurface::of(corners, normals) })
     }
 
     /// Triangles on which density does not vary.
     pub(super) fn of(corners: Vec<[DVec3; 3]>, normals: Vec<[DVec3; 3]>) -> ScatterSurface {
         let area = |[a, b, c]: &[DVec3; 3]| 0.5 * (*b - *a).cross(*c - *a).length();
         let areas = parts_below(corners.iter().map(area));
-        ScatterSurface { corners, normals, areas, parameters: Vec::new(), own: Vec::new() }
+        ScatterSurface { corners, normals, areas, parameters: Vec::new(), own: Vec::new(), ground: None }
     }
 
     /// A place, by numbers of 0 to 1: the first is the part of the area up to it.
@@ -85,7 +128,11 @@ impl ScatterSurface {
         let normal = weigh(&self.normals[index]).try_normalize().unwrap_or_else(face);
         let uv = self.parameters.get(index).map_or(DVec2::ZERO, |[a, b, c]| *a * (1.0 - u - v) + *b * u + *c * v);
         let own = self.own.get(index).map_or(DVec3::ZERO, weigh);
-        SurfacePlace { at: weigh(corners), normal, footprint: TextureFootprint::point(uv, own) }
+        let (at, normal) = match &self.ground {
+            Some(ground) => ground.settled(weigh(corners)),
+            None => (weigh(corners), normal),
+        };
+        SurfacePlace { at, normal, footprint: TextureFootprint::point(uv, own) }
     }
 
     /// Places by own coordinates, where the whole surface is one plane: the parameters there.

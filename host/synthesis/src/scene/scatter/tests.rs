@@ -1,15 +1,17 @@
 //! Tests of scattered instances: how many, where, and how they stand.
 
 use super::super::object::{Instances, Object, Placing, Scatter, Shape, Sway};
+use super::super::{FractalGround, Terrain};
 use super::ScatterParts;
 use crate::illumination::Paint;
 use crate::illumination::texture::{Band, Motif, NumberTexture, Pattern, TextureMapping, Varying};
 use crate::numeric::bounds::Bounds;
 use crate::octree::{CellInstances, CellPlace, Instance, InstanceParts, Octree, OctreeSettings, Prototype};
 use crate::procedural::Wind;
+use crate::procedural::terrain::{FractalKind, FractalParameters};
 use crate::solid::Primitive;
 use crate::surface::Tolerance;
-use glam::{DMat3, DMat4, DVec3};
+use glam::{DMat3, DMat4, DVec2, DVec3};
 use std::sync::Arc;
 
 /// Everything about the origin, on a level square of 10 or on something else.
@@ -86,6 +88,28 @@ fn distance_slope_height_and_density_are_kept() {
 }
 
 /// Nothing on two of four squares, everything on the others.
+#[test]
+fn what_is_scattered_on_terrain_stands_on_the_ground_itself() {
+    let parameters = FractalParameters { octaves: 8.0, scale: 4.0, height: 1.0, ..FractalParameters::default() };
+    let fractal = FractalGround { kind: FractalKind::Hybrid, parameters, size: [10.0, 8.0], warp: 0.3 };
+    let terrain = Terrain { fractal, erosion: None, base: None };
+    let field = terrain.field().expect("sound");
+    let transform = DMat4::from_rotation_x(0.7) * DMat4::from_scale(DVec3::new(2.0, 0.5, -1.0));
+    let coarse = Object { tolerance: Some(0.1), ..on(Shape::Terrain(Box::new(terrain)), transform) };
+    for distance in [0.0, 0.05] {
+        let mut off_triangles: f64 = 0.0;
+        for Instance { placement, .. } in all(&Scatter { on: coarse.clone(), distance, ..scatter(800) }) {
+            let own = transform.inverse().transform_point3(placement.translation);
+            let at = DVec2::new(own.x, own.z);
+            assert!((own.y - field.height(at, 0.0)).abs() < 1e-9, "{own}");
+            off_triangles = off_triangles.max((own.y - field.height(at, 1.0)).abs());
+            let normal = (transform.inverse().transpose().transform_vector3(field.normal(at, 0.0))).normalize();
+            assert!(placement.matrix3.y_axis.normalize().dot(normal) > 1.0 - 1e-9);
+        }
+        assert!(off_triangles > 0.01);
+    }
+}
+
 fn checkered() -> NumberTexture {
     let checker = Pattern {
         motif: Motif::Checker,
