@@ -8,15 +8,15 @@ use crate::procedural::terrain::{
     EROSION_PARAMETERS, ErosionEdge, ErosionSettings, FRACTAL_PARAMETERS, FRACTALS, FractalKind, FractalParameter,
     FractalParameters,
 };
-use crate::scene::{Erosion, FractalGround, Shape, Terrain};
+use crate::scene::{Erosion, FractalGround, GroundKind, Shape, Terrain};
 use rhai::Dynamic;
 
-/// The names of the kinds of fractals.
-const KINDS: [(&str, FractalKind); FRACTALS.len()] = {
-    let mut kinds = [("", FractalKind::Fbm); FRACTALS.len()];
+/// The names of the kinds: those of noise, and midpoint displacement.
+const KINDS: [(&str, GroundKind); FRACTALS.len() + 1] = {
+    let mut kinds = [("midpoint", GroundKind::Midpoint); FRACTALS.len() + 1];
     let mut k = 0;
-    while k < kinds.len() {
-        kinds[k] = (FRACTALS[k].name, FRACTALS[k].kind);
+    while k < FRACTALS.len() {
+        kinds[k] = (FRACTALS[k].name, GroundKind::Noise(FRACTALS[k].kind));
         k += 1;
     }
     kinds
@@ -73,8 +73,8 @@ pub(super) const FUNCTIONS: &[Function] = &[
         terrain(
             kind: with_default(
                 Word(&KINDS),
-                FractalKind::Fbm,
-                "of fractal: \"fbm\", as rough everywhere; \"heterogeneous\", plains in the valleys and rugged tops; \"hybrid\", smooth valleys at every height; \"ridged\", sharp ridges",
+                GroundKind::Noise(FractalKind::Fbm),
+                "of fractal: \"fbm\", as rough everywhere; \"heterogeneous\", plains in the valleys and rugged tops; \"hybrid\", smooth valleys at every height; \"ridged\", sharp ridges; \"midpoint\", squares that are divided and displaced, octaves times",
             ),
             size: with_default(RectangleKind, 100.0, "its sides along x and z, or one for both; its middle is at the origin"),
             scale: optional(Length, "a third of the longer side", row("scale").summary),
@@ -102,7 +102,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
         |builder| {
             let scale = scale.unwrap_or(SCALE * size[0].max(size[1]));
             let height = height.unwrap_or(HEIGHT * scale);
-            let usual = FRACTALS.iter().find(|row| row.kind == kind).map_or(0.0, |row| row.offset);
+            let usual = FRACTALS.iter().find(|row| kind == GroundKind::Noise(row.kind)).map_or(0.0, |row| row.offset);
             let offset = offset.unwrap_or(usual);
             let parameters =
                 FractalParameters { octaves, lacunarity, hurst, offset, feedback, scale, height, seed };

@@ -2,7 +2,7 @@
 
 use super::tests::{problem, run};
 use crate::procedural::terrain::FractalKind;
-use crate::scene::{Shape, Terrain};
+use crate::scene::{GroundKind, Shape, Terrain};
 use crate::surface::Tolerance;
 
 fn terrain(script: &str) -> Terrain {
@@ -15,9 +15,15 @@ fn terrain(script: &str) -> Terrain {
 #[test]
 fn what_is_not_said_follows_from_the_size() {
     let usual = terrain("terrain();");
-    assert_eq!((usual.fractal.kind, usual.fractal.size, usual.base), (FractalKind::Fbm, [100.0; 2], None));
+    assert_eq!(
+        (usual.fractal.kind, usual.fractal.size, usual.base),
+        (GroundKind::Noise(FractalKind::Fbm), [100.0; 2], None)
+    );
     let asked = terrain("terrain(\"ridged\", #{ size: [30, 60], octaves: 5, seed: 7, base: -40 });");
-    assert_eq!((asked.fractal.kind, asked.fractal.size, asked.base), (FractalKind::Ridged, [30.0, 60.0], Some(-40.0)));
+    assert_eq!(
+        (asked.fractal.kind, asked.fractal.size, asked.base),
+        (GroundKind::Noise(FractalKind::Ridged), [30.0, 60.0], Some(-40.0))
+    );
     let numbers = asked.fractal.parameters;
     assert_eq!([numbers.scale, numbers.height, numbers.octaves, numbers.seed], [20.0, 5.0, 5.0, 7.0]);
 }
@@ -37,6 +43,7 @@ fn wrong_numbers_have_their_place() {
         ("terrain(#{ size: [3, -1] });", "size must be a length above 0, or two [x, z]"),
         ("terrain(#{ octaves: 40 });", "octaves must be a number from 1 to 32"),
         ("terrain(#{ octaves: 32, lacunarity: 8 });", "octave"),
+        ("terrain(\"midpoint\", #{ hurst: 2 });", "hurst is 2"),
     ] {
         let (line, column, text) = problem(script);
         assert!(text.contains(words) && (line, column) == (1, 1), "{script}: {line}:{column} {text}");

@@ -7,7 +7,7 @@ use crate::illumination::material::{MaterialKind, RefractiveIndex, Transparent};
 use crate::illumination::texture::{Motif, Pattern, TextureMapping};
 use crate::plan::Plan;
 use crate::procedural::terrain::{FractalKind, FractalParameters};
-use crate::scene::{FractalGround, Object, Prepared, Scene, Shape, Terrain};
+use crate::scene::{FractalGround, GroundKind, Object, Prepared, Scene, Shape, Terrain};
 use glam::{DAffine3, DMat4, DVec3};
 
 /// Uneven ground, checkered in its body or along its parameters.
@@ -18,7 +18,7 @@ fn ground(is_solid: bool, octaves: f64) -> Object {
         paints: vec![Paint::grey(0.8), Paint::grey(0.2)],
     };
     let parameters = FractalParameters { octaves, scale: 1.2, height: 0.5, seed: 2.0, ..FractalParameters::default() };
-    let fractal = FractalGround { kind: FractalKind::Fbm, parameters, size: [2.4, 2.0], warp: 0.0 };
+    let fractal = FractalGround { kind: GroundKind::Noise(FractalKind::Fbm), parameters, size: [2.4, 2.0], warp: 0.0 };
     let terrain = Terrain { fractal, erosion: None, base: None };
     let mut ground =
         object(Shape::Terrain(Box::new(terrain)), DMat4::IDENTITY, diffuse(Paint::Pattern(Box::new(checker))));

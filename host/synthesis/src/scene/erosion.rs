@@ -1,12 +1,13 @@
 //! Ground that was eroded on a grid, with the finer octaves of its fractal on top.
 
 use super::fractal_ground::FractalGround;
+use super::kept_grids::KeptGrids;
 use crate::procedural::terrain::{
     ErosionSettings, FractalKind, FractalParameters, HeightField, HeightFunction, HeightGrid, TerrainError, erode,
 };
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 /// Fewest and most cells along the longer side.
 pub(super) const CELLS: [u32; 2] = [8, 8192];
@@ -14,8 +15,6 @@ pub(super) const CELLS: [u32; 2] = [8, 8192];
 const DETAIL: f64 = 4.0;
 /// How high it is, as a part of what the fractal has at that scale: erosion smooths.
 const LEFT: f64 = 0.5;
-/// So many grids that were made last are kept.
-const KEPT: usize = 4;
 
 /// How a terrain is eroded.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,8 +25,8 @@ pub struct Erosion {
     pub settings: ErosionSettings,
 }
 
-/// Ground that was eroded last and how, with its heights; the newest is the last.
-static LAST: Mutex<Vec<(FractalGround, Erosion, Arc<HeightGrid>)>> = Mutex::new(Vec::new());
+/// The eroded grids that were made last.
+static KEPT: KeptGrids<(FractalGround, Erosion)> = KeptGrids::new();
 
 impl Erosion {
     /// The height after erosion as a function of x and z.
@@ -56,34 +55,28 @@ impl Erosion {
 
     /// The heights on the grid: those that were made last are given again.
     fn grid(&self, of: &FractalGround) -> Result<Arc<HeightGrid>, TerrainError> {
-        let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, _, grid)) = last().iter().find(|(ground, how, _)| ground == of && how == self) {
-            return Ok(grid.clone());
-        }
+        KEPT.get((of.clone(), self.clone()), || self.made(of))
+    }
+
+    fn made(&self, of: &FractalGround) -> Result<HeightGrid, TerrainError> {
         let cells = self.cells.clamp(CELLS[0], CELLS[1]);
         let sides = DVec2::from(of.size);
         let spacing = sides.max_element() / f64::from(cells);
         let [columns, rows] = (sides / spacing).to_array().map(|count| (count - 1e-9).ceil().max(1.0) as usize + 1);
         let corner = of.region()[0];
-        let field = HeightField::new(&of.function(), of.region())?;
+        let field = HeightField::new(&of.function()?, of.region())?;
         let height = |k: usize| {
             let at = corner + DVec2::new((k % columns) as f64, (k / columns) as f64) * spacing;
             field.height(at, spacing)
         };
         let before = HeightGrid::new([columns, rows], corner, spacing, (0..columns * rows).map(height).collect())?;
-        // Not under the lock: other threads may wait for this one to help with theirs.
-        let grid = Arc::new(erode(&before, &self.settings, &|| false)?.heights);
-        let mut last = last();
-        if last.len() == KEPT {
-            last.remove(0);
-        }
-        last.push((of.clone(), self.clone(), grid.clone()));
-        Ok(grid)
+        Ok(erode(&before, &self.settings, &|| false)?.heights)
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::fractal_ground::GroundKind;
     use super::*;
 
     fn nothing() -> ErosionSettings {
@@ -93,14 +86,15 @@ mod tests {
     fn ground() -> FractalGround {
         let parameters =
             FractalParameters { octaves: 9.0, scale: 4.0, height: 1.5, seed: 2.0, ..FractalParameters::default() };
-        FractalGround { kind: FractalKind::Fbm, parameters, size: [10.0, 6.0], warp: 0.0 }
+        FractalGround { kind: GroundKind::Noise(FractalKind::Fbm), parameters, size: [10.0, 6.0], warp: 0.0 }
     }
 
     #[test]
     fn what_nothing_erodes_is_the_fractal_at_the_grid() {
         let (ground, still) = (ground(), Erosion { cells: 64, settings: nothing() });
         let field = |function: &HeightFunction| HeightField::new(function, ground.region()).expect("sound");
-        let (eroded, fractal) = (field(&still.heights(&ground).expect("sound")), field(&ground.function()));
+        let (eroded, fractal) =
+            (field(&still.heights(&ground).expect("sound")), field(&ground.function().expect("sound")));
         let spacing = 10.0 / 64.0;
         for k in 0..60 {
             let at = ground.region()[0] + DVec2::new(f64::from(k), f64::from(k % 30)) * spacing;

@@ -11,6 +11,7 @@ mod cage;
 mod sculpture;
 mod solid;
 mod shape_mesh;
+mod kept_grids;
 mod fractal_ground;
 mod erosion;
 mod terrain;
@@ -50,7 +51,7 @@ pub use detail::{DetailCosts, Details, GroundHit, MadeDetail, SceneGround};
 pub use detail_view::DetailView;
 pub use erosion::Erosion;
 pub use error::{AccelerationError, SceneError, ShapeError};
-pub use fractal_ground::FractalGround;
+pub use fractal_ground::{FractalGround, GroundKind};
 pub use instances::{Places, ShortScatter};
 pub use motion::{Displacement, Motion};
 pub use object::{

@@ -27,7 +27,7 @@ impl Terrain {
     /// # Errors
     /// [`TerrainError`] for numbers out of range, or too little memory for erosion.
     pub fn function(&self) -> Result<HeightFunction, TerrainError> {
-        self.erosion.as_ref().map_or_else(|| Ok(self.fractal.function()), |erosion| erosion.heights(&self.fractal))
+        self.erosion.as_ref().map_or_else(|| self.fractal.function(), |erosion| erosion.heights(&self.fractal))
     }
 
     /// The heights over the rectangle.
@@ -81,12 +81,13 @@ impl Terrain {
 
 #[cfg(test)]
 mod tests {
+    use super::super::fractal_ground::GroundKind;
     use super::*;
     use crate::procedural::terrain::{FractalKind, FractalParameters};
 
     fn terrain(kind: FractalKind) -> Terrain {
         let parameters = FractalParameters { octaves: 8.0, scale: 4.0, height: 1.5, ..FractalParameters::default() };
-        let fractal = FractalGround { kind, parameters, size: [10.0, 6.0], warp: 0.0 };
+        let fractal = FractalGround { kind: GroundKind::Noise(kind), parameters, size: [10.0, 6.0], warp: 0.0 };
         Terrain { fractal, erosion: None, base: None }
     }
 

@@ -1,7 +1,7 @@
 //! Tests of scattered instances: how many, where, and how they stand.
 
 use super::super::object::{Instances, Object, Placing, Scatter, Shape, Sway};
-use super::super::{FractalGround, Terrain};
+use super::super::{FractalGround, GroundKind, Terrain};
 use super::ScatterParts;
 use crate::illumination::Paint;
 use crate::illumination::texture::{Band, Motif, NumberTexture, Pattern, TextureMapping, Varying};
@@ -91,7 +91,8 @@ fn distance_slope_height_and_density_are_kept() {
 #[test]
 fn what_is_scattered_on_terrain_stands_on_the_ground_itself() {
     let parameters = FractalParameters { octaves: 8.0, scale: 4.0, height: 1.0, ..FractalParameters::default() };
-    let fractal = FractalGround { kind: FractalKind::Hybrid, parameters, size: [10.0, 8.0], warp: 0.3 };
+    let fractal =
+        FractalGround { kind: GroundKind::Noise(FractalKind::Hybrid), parameters, size: [10.0, 8.0], warp: 0.3 };
     let terrain = Terrain { fractal, erosion: None, base: None };
     let field = terrain.field().expect("sound");
     let transform = DMat4::from_rotation_x(0.7) * DMat4::from_scale(DVec3::new(2.0, 0.5, -1.0));

@@ -35,7 +35,7 @@ impl ErodibleGround {
         std::mem::swap(&mut self.bed, &mut self.next);
     }
 
-    /// ErodibleGround that was dug away uncovers rock, and is rock no more.
+    /// Ground that was dug away uncovers rock, and is rock no more.
     pub(super) fn uncover(&mut self) {
         const PART: usize = 4096;
         let parts = self.rock.par_chunks_mut(PART).zip(self.bed.par_chunks(PART));
