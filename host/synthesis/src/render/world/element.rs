@@ -49,23 +49,8 @@ impl SurfaceElement {
         let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
         let position = a * weights[0] + b * weights[1] + c * weights[2];
         let outside = (b - a).cross(c - a).try_normalize().or_else(|| scaled_normal(corners))?;
-        let side = if outside.dot(ray.direction) > 0.0 { -1.0 } else { 1.0 };
-        let face = outside * side;
-        let distance = clearance(corners);
-        let clearance = face * distance;
-        let leave = position + clearance;
-        let through = position - clearance;
-        let flat = SurfaceElement {
-            position,
-            face,
-            normal: face,
-            horizon: face,
-            outside: side > 0.0,
-            leave,
-            through,
-            leave_curved: leave,
-            clearance: distance,
-        };
+        let flat = SurfaceElement::smooth(position, outside, ray.direction, clearance(corners));
+        let (face, side) = (flat.face, if flat.outside { 1.0 } else { -1.0 });
         let corner_normals = if curved { contents.corner_normals(triangle) } else { None };
         let Some(corner_normals) = corner_normals else { return Some(flat) };
         let normals = corner_normals.map(|n| {
@@ -75,10 +60,14 @@ impl SurfaceElement {
         let sum = normals[0] * weights[0] + normals[1] * weights[1] + normals[2] * weights[2];
         let Some(normal) = sum.try_normalize() else { return Some(flat) };
         let normal = towards_viewer(normal, -ray.direction);
-        Some(SurfaceElement { normal, leave_curved: bulge(position, corners, normals, weights) + clearance, ..flat })
+        Some(SurfaceElement {
+            normal,
+            leave_curved: bulge(position, corners, normals, weights) + face * flat.clearance,
+            ..flat
+        })
     }
 
-    /// The element of a smooth surface that is known exactly.
+    /// The element of a surface whose normal is known, for shading too.
     ///
     /// - `outside`: its outer unit normal. `clearance`: how far from it rays begin that leave it, scene units.
     pub(super) fn smooth(position: DVec3, outside: DVec3, direction: DVec3, clearance: f64) -> SurfaceElement {

@@ -6,7 +6,7 @@ use crate::numeric::noise::octaves;
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// As much of one as of the other.
+/// The second paint covers one half.
 pub(super) const MEAN: f64 = 0.5;
 /// Waves that make the layers uneven, none a multiple of another: how many there are in a unit, and how strong each is.
 const WAVES: [(f64, f64); 4] = [(1.0, 0.42), (1.618, 0.27), (2.732, 0.19), (5.39, 0.12)];
