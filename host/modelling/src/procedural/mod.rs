@@ -3,6 +3,7 @@
 mod varied;
 mod wind;
 pub mod terrain;
+pub mod drawing;
 pub mod grammar;
 
 pub use varied::{Varied, VariedError, channel};

@@ -1,26 +1,27 @@
 //! What the turtle draws, the figures of the book, and triangles.
 
-use super::drawing::TurtleDrawing;
 use super::error::DerivationError;
 use super::figures::ABOP_FIGURES;
 use super::lsystem::LSystem;
 use super::specimen::Specimen;
 use super::turtle::EmptyEnvironment;
 use crate::mesh::Mesh;
+use crate::procedural::drawing::DrawingError;
+use crate::procedural::drawing::PlantDrawing;
 use glam::DVec3;
 use std::collections::HashSet;
 use std::f64::consts::PI;
 
-fn try_draw(text: &str, steps: Option<u32>) -> Result<TurtleDrawing, DerivationError> {
+fn try_draw(text: &str, steps: Option<u32>) -> Result<PlantDrawing, DerivationError> {
     let specimen = Specimen::new(&LSystem::parse(text).expect("a grammar"), 1, &[])?;
     specimen.draw(&specimen.derive(steps, &EmptyEnvironment)?)
 }
 
-fn draw(axiom: &str) -> TurtleDrawing {
+fn draw(axiom: &str) -> PlantDrawing {
     try_draw(&format!("width: 0.2\naxiom: {axiom}"), None).expect("a drawing")
 }
 
-fn figure(name: &str, steps: u32) -> TurtleDrawing {
+fn figure(name: &str, steps: u32) -> PlantDrawing {
     let figure = ABOP_FIGURES.iter().find(|figure| figure.name == name).expect("a figure");
     try_draw(figure.grammar, Some(steps)).expect("a drawing")
 }
@@ -128,7 +129,7 @@ fn tubes_are_closed_and_as_large_as_cylinders_with_a_dome() {
     let back = draw("!(2)F(3)|F(1)").stroke_mesh(1e-3).expect("a mesh");
     assert!(back.edge_report().is_closed() && volume(&back) > 4.0 * PI);
     assert!(draw("!(0)F").stroke_mesh(1.0).is_ok_and(|mesh| mesh.triangles.is_empty()));
-    assert_eq!(draw("F").mesh(0.0), Err(DerivationError::Detail(0.0)));
+    assert_eq!(draw("F").mesh(0.0), Err(DrawingError::Detail(0.0)));
 }
 
 #[test]

@@ -2,7 +2,6 @@
 
 use crate::memory::MemoryExceeded;
 use crate::procedural::VariedError;
-use crate::surface::TessellationError;
 use std::fmt;
 
 /// A place in the text of a grammar.
@@ -223,12 +222,6 @@ pub enum DerivationError {
         /// The module, from 0.
         module: usize,
     },
-    /// A length of detail that is none.
-    #[error("a detail of {0} is not a positive number")]
-    Detail(f64),
-    /// A patch of a surface that does not become triangles.
-    #[error(transparent)]
-    Patch(#[from] TessellationError),
     /// More memory than is left.
     #[error(transparent)]
     Memory(#[from] MemoryExceeded),

@@ -4,11 +4,12 @@ use super::alphabet::{Alphabet, ModuleWord};
 use super::error::{GrammarError, GrammarProblem, TextPlace};
 use super::formula::Formula;
 use super::formula_parser::{Names, formula};
-use super::predefined::{PredefinedSurface, surface};
+use super::predefined::surface;
 use super::production::{GrammarProduction, ProductionSet};
 use super::scanner::{Cursor, Statement, statements};
 use super::word_parser::WordParser;
 use crate::procedural::Varied;
+use crate::procedural::drawing::PredefinedSurface;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 

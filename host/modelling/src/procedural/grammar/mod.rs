@@ -1,7 +1,7 @@
 //! L-systems: grammars that grow plants. Strings are derived, drawn by a turtle, and made into triangles.
 //!
 //! [`LSystem::parse`] understands a grammar, [`Specimen::new`] draws its parameters from a seed, [`Specimen::derive`]
-//! makes a string of modules, [`Specimen::draw`] lets a turtle obey it, and [`TurtleDrawing::mesh`] makes triangles.
+//! makes a string of modules, [`Specimen::draw`] lets a turtle obey it, and [`PlantDrawing::mesh`](super::drawing::PlantDrawing::mesh) makes triangles.
 //! [`ABOP_FIGURES`] are figures of "The Algorithmic Beauty of Plants" (ABOP) of Prusinkiewicz and Lindenmayer 1990.
 //!
 //! # Notation
@@ -79,19 +79,14 @@ mod rules;
 mod rewriting;
 mod growth;
 mod turtle;
-mod drawing;
 mod walk;
 mod specimen;
-mod tubes;
-mod meshing;
 mod figures;
 
 pub use alphabet::ModuleString;
-pub use drawing::{PlacedPredefined, StrokeNode, TurtleDrawing, TurtlePolygon, TurtleSphere};
 pub use error::{ArithmeticProblem, DerivationError, EvaluationError, GrammarError, GrammarProblem, TextPlace};
 pub use figures::{ABOP_FIGURES, AbopFigure};
 pub use lsystem::{GrammarParameter, LSystem};
-pub use predefined::{PredefinedPart, PredefinedSurface};
 pub use specimen::Specimen;
 pub use turtle::{EmptyEnvironment, Environment, TurtlePose, turtle_modules};
 

@@ -1,37 +1,14 @@
-//! Surfaces that a grammar defines by numbers: leaves, petals.
+//! Reading surfaces that a grammar defines by numbers: leaves, petals.
 
 use super::error::{GrammarError, GrammarProblem};
 use super::scanner::Cursor;
 use crate::polygon::{TriangulationKind, triangulate_in_space};
+use crate::procedural::drawing::{PredefinedPart, PredefinedSurface};
 use crate::surface::BezierPatch;
 use glam::DVec3;
 
 /// Most points of a surface.
 const MOST_POINTS: usize = 1 << 14;
-
-/// A part of a predefined surface.
-#[derive(Clone, Debug, PartialEq)]
-pub enum PredefinedPart {
-    /// A bicubic Bezier patch.
-    Patch(Box<BezierPatch>),
-    /// A polygon on a plane, divided into triangles.
-    Polygon {
-        /// Its corners.
-        corners: Vec<DVec3>,
-        /// Corners of each triangle, counter-clockwise as the polygon runs.
-        triangles: Vec<[u32; 3]>,
-    },
-}
-
-/// A surface that `~NAME` places. In its own coordinates x lies to the right of the turtle, y ahead of it and z along
-/// its up vector; the turtle stands in the origin.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PredefinedSurface {
-    /// Its name.
-    pub name: String,
-    /// What it is made of.
-    pub parts: Vec<PredefinedPart>,
-}
 
 /// Reads what follows on the heading of a surface: `polygon` with three points or more, or `patch` with 16, again and
 /// again. A point is `(x, y, z)`.

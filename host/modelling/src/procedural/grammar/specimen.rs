@@ -1,12 +1,10 @@
 //! A plant of a grammar: its parameters are drawn, its string is derived and drawn.
 
 use super::alphabet::{Alphabet, CLOSE, ModuleString, ModuleWord, OPEN};
-use super::drawing::{DrawingBuilder, TurtleDrawing};
 use super::error::DerivationError;
 use super::function::ModuleRandom;
 use super::growth::check_growth;
 use super::lsystem::{ContextSight, GlobalValue, LSystem, SETTINGS, Setting};
-use super::predefined::PredefinedSurface;
 use super::production::ProductionSet;
 use super::rewriting::Rewriting;
 use super::rules::RuleSet;
@@ -14,6 +12,8 @@ use super::sight::StringView;
 use super::turtle::Environment;
 use super::walk::{Meaning, TurtleWalk, WalkRules, meanings};
 use crate::numeric::sampling::mix;
+use crate::procedural::drawing::PredefinedSurface;
+use crate::procedural::drawing::{DrawingBuilder, PlantDrawing};
 use crate::procedural::{Varied, channel};
 use crate::spelling;
 use std::sync::Arc;
@@ -145,7 +145,7 @@ impl Specimen {
     /// # Errors
     /// Interpretation productions without an end, formulas without a value, places that are not finite, and less memory
     /// than the drawing takes.
-    pub fn draw(&self, string: &ModuleString) -> Result<TurtleDrawing, DerivationError> {
+    pub fn draw(&self, string: &ModuleString) -> Result<PlantDrawing, DerivationError> {
         let mut builder = DrawingBuilder::default();
         builder.drawing.surfaces = Arc::clone(&self.surfaces);
         TurtleWalk::new(&self.walk_rules(), Some(&mut builder)).draw(string)?;

@@ -1,16 +1,16 @@
 //! The way of the turtle along a string, with interpretation productions applied to modules as it comes to them.
 
 use super::alphabet::{Alphabet, CLOSE, MOST_PARAMETERS, ModuleString, OPEN};
-use super::drawing::{DrawingBuilder, PlacedPredefined, StrokeNode, TurtleSphere, append};
 use super::error::DerivationError;
 use super::function::ModuleRandom;
 use super::lsystem::{SETTINGS, Setting};
-use super::predefined::PredefinedSurface;
 use super::rules::{Action, KEEP, RuleSet};
 use super::sight::StringView;
 use super::turtle::{COMMANDS, Environment, TurtleCommand, TurtlePose};
 use crate::memory;
 use crate::numeric::sampling::mix;
+use crate::procedural::drawing::PredefinedSurface;
+use crate::procedural::drawing::{DrawingBuilder, DrawnSphere, PlacedSurface, StrokeNode, append};
 use glam::{DAffine3, DMat3, DVec3};
 
 /// Most modules that are interpreted.
@@ -239,7 +239,7 @@ impl<'a> TurtleWalk<'a> {
             }
             T::Sphere => {
                 let radius = 0.5 * parameter.unwrap_or(self.turtle.width).max(0.0);
-                let sphere = TurtleSphere { centre: self.turtle.pose.position, radius, colour: self.turtle.colour };
+                let sphere = DrawnSphere { centre: self.turtle.pose.position, radius, colour: self.turtle.colour };
                 if let Some(builder) = &mut self.builder {
                     append(&mut builder.drawing.spheres, sphere, "spheres")?;
                 }
@@ -291,7 +291,7 @@ impl<'a> TurtleWalk<'a> {
         let TurtlePose { position, heading, left, up } = self.turtle.pose;
         let axes = DMat3::from_cols(-left, heading, up) * scale;
         let placement = DAffine3::from_mat3_translation(axes, position);
-        let surface = PlacedPredefined { surface: number as usize, placement, colour: self.turtle.colour };
+        let surface = PlacedSurface { surface: number as usize, placement, colour: self.turtle.colour };
         if let Some(builder) = &mut self.builder {
             append(&mut builder.drawing.placed, surface, "surfaces")?;
         }

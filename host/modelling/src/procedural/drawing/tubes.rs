@@ -1,12 +1,14 @@
 //! Tubes around strokes, and spheres, as triangles.
 
-use super::drawing::{StrokeNode, TurtleSphere};
+use super::plant_drawing::{CrossSection, DrawnSphere, StrokeNode};
 use crate::mesh::Mesh;
 use glam::{DQuat, DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Fewest and most sides of a tube.
 const SIDES: [usize; 2] = [3, 256];
+/// Fewest sides of a wave of a lobed outline.
+const SIDES_OF_LOBE: f64 = 8.0;
 /// Cosine of the sharpest bend at which a tube is mitred; at sharper ones it ends and another begins.
 const SHARPEST: f64 = -0.5;
 /// Cosine of the sharpest bend over which the shading of a tube is smooth.
@@ -31,18 +33,28 @@ fn sides(radius: f64, detail: f64) -> usize {
 /// A run of a stroke without sharp bends.
 pub(super) struct Tube {
     nodes: Vec<StrokeNode>,
+    section: CrossSection,
     /// Unit vectors from node to node.
     directions: Vec<DVec3>,
     sides: usize,
 }
 
 /// The tubes of a stroke; none for one without width. Nodes at the place of the node before are left out.
-pub(super) fn tubes(nodes: &[StrokeNode], detail: f64) -> Vec<Tube> {
+///
+/// - `section`: round or lobed.
+pub(super) fn tubes(nodes: &[StrokeNode], section: CrossSection, detail: f64) -> Vec<Tube> {
     let largest = nodes.iter().map(|node| node.radius).fold(0.0, f64::max);
     if !(largest > 0.0 && largest.is_finite()) {
         return Vec::new();
     }
-    let sides = sides(largest, SIDES_PART * detail);
+    let round = sides(largest, SIDES_PART * detail);
+    let (sides, section) = match section {
+        CrossSection::Lobed { count, depth } if largest * depth > detail => {
+            (round.max((SIDES_OF_LOBE * count).ceil() as usize).min(SIDES[1]), section)
+        }
+        // Waves that nobody sees are left out.
+        _ => (round, CrossSection::Round),
+    };
     let mut tubes: Vec<Tube> = Vec::new();
     let mut last: Option<StrokeNode> = None;
     for node in nodes {
@@ -58,7 +70,7 @@ pub(super) fn tubes(nodes: &[StrokeNode], detail: f64) -> Vec<Tube> {
                 tube.nodes.push(node);
                 tube.directions.push(direction);
             }
-            _ => tubes.push(Tube { nodes: vec![before, node], directions: vec![direction], sides }),
+            _ => tubes.push(Tube { nodes: vec![before, node], directions: vec![direction], section, sides }),
         }
     }
     tubes
@@ -88,6 +100,17 @@ impl Tube {
         self.sides * (self.nodes.len() + self.dome_rings()) + 1
     }
 
+    /// The outline at an angle, and how it changes with the angle: in parts of the radius of a node.
+    fn wave(&self, angle: f64) -> [f64; 2] {
+        match self.section {
+            CrossSection::Lobed { count, depth } => {
+                let (sin, cos) = (count * angle).sin_cos();
+                [1.0 + depth * sin, depth * count * cos]
+            }
+            _ => [1.0, 0.0],
+        }
+    }
+
     /// The rings at the nodes. Each lies in the plane that halves the bend; axes across are carried along without
     /// twist.
     fn rings(&self) -> Vec<Ring> {
@@ -101,11 +124,16 @@ impl Tube {
             let binormal = before.cross(across);
             let mut ring = Ring { points: Vec::new(), radial: Vec::new() };
             for side in 0..self.sides {
-                let (sin, cos) = (TAU * side as f64 / self.sides as f64).sin_cos();
+                let angle = TAU * side as f64 / self.sides as f64;
+                let (sin, cos) = angle.sin_cos();
                 let radial = across * cos + binormal * sin;
                 let shift = before * (radial.dot(mitre) / before.dot(mitre));
-                ring.points.push(node.position + (radial - shift) * node.radius);
-                ring.radial.push([radial, turn * radial]);
+                let [size, slope] = self.wave(angle);
+                ring.points.push(node.position + (radial - shift) * (node.radius * size));
+                // The outline r(a) has the normal r radial - r' tangent.
+                let tangent = binormal * cos - across * sin;
+                let normal = (radial * size - tangent * slope).normalize();
+                ring.radial.push([normal, turn * normal]);
             }
             let turned = turn * across;
             across = (turned - after * turned.dot(after)).normalize_or(after.any_orthonormal_vector());
@@ -225,12 +253,12 @@ pub(super) fn push(mesh: &mut Mesh, corners: [u32; 3], normals: [DVec3; 3], para
 }
 
 /// Sides of a sphere around its equator: along and across, each takes half of the detail.
-fn sphere_sides(sphere: &TurtleSphere, detail: f64) -> usize {
+fn sphere_sides(sphere: &DrawnSphere, detail: f64) -> usize {
     sides(sphere.radius, 0.5 * detail)
 }
 
 /// How many triangles a sphere has; as many vertices are enough for it.
-pub(super) fn sphere_triangles(sphere: &TurtleSphere, detail: f64) -> usize {
+pub(super) fn sphere_triangles(sphere: &DrawnSphere, detail: f64) -> usize {
     let sides = sphere_sides(sphere, detail);
     2 * sides * (sphere_bands(sides) - 1)
 }
@@ -241,7 +269,7 @@ fn sphere_bands(sides: usize) -> usize {
 
 /// Appends a sphere: meridians meet in the poles on z. Parameters are the parts of the way around and from pole to
 /// pole.
-pub(super) fn append_sphere(mesh: &mut Mesh, sphere: &TurtleSphere, detail: f64) {
+pub(super) fn append_sphere(mesh: &mut Mesh, sphere: &DrawnSphere, detail: f64) {
     let sides = sphere_sides(sphere, detail);
     let bands = sphere_bands(sides);
     let first = mesh.vertices.len() as u32;

@@ -1,8 +1,9 @@
-//! Drawings of the turtle as triangles.
+//! Drawings as triangles.
 
-use super::drawing::{PlacedPredefined, TurtleDrawing, TurtlePolygon};
-use super::error::DerivationError;
+use super::error::DrawingError;
+use super::plant_drawing::{CrossSection, DrawnPolygon, PlacedSurface, PlantDrawing};
 use super::predefined::{PredefinedPart, PredefinedSurface};
+use super::ribbons::{append_ribbon, ribbon_triangles};
 use super::tubes::{Tube, append_sphere, push, sphere_triangles, tubes};
 use crate::memory::{self, MemoryExceeded};
 use crate::mesh::{Mesh, normal_matrix};
@@ -30,14 +31,14 @@ fn make_room(mesh: &mut Mesh, triangles: usize, vertices: usize) -> Result<(), M
     Ok(())
 }
 
-impl TurtleDrawing {
+impl PlantDrawing {
     /// All that was drawn as triangles; the surface of each triangle is the number of its colour.
     ///
     /// - `detail`: largest distance between triangles and what they stand for, units of length, above 0.
     ///
     /// # Errors
     /// A detail that is no such length, and less memory than the triangles take.
-    pub fn mesh(&self, detail: f64) -> Result<Mesh, DerivationError> {
+    pub fn mesh(&self, detail: f64) -> Result<Mesh, DrawingError> {
         let mut mesh = self.stroke_mesh(detail)?;
         self.append_polygons(&mut mesh)?;
         self.append_spheres(&mut mesh, detail)?;
@@ -45,35 +46,48 @@ impl TurtleDrawing {
         Ok(mesh)
     }
 
-    /// The strokes as tubes, each of them closed: flat where it begins, round where it ends. Strokes without width give
-    /// nothing. Tubes are mitred at bends of up to 120 degrees; at sharper ones they end, and others begin.
+    /// The strokes as tubes, each of them closed: flat where it begins, round where it ends; flat ones as blades. Strokes
+    /// without width give nothing. Tubes are mitred at bends of up to 120 degrees; at sharper ones they end, and others begin.
     ///
     /// - `detail`: largest distance between triangles and tubes, units of length, above 0; no tube has more than 256
     ///   sides.
     ///
     /// # Errors
     /// A detail that is no such length, and less memory than the triangles take.
-    pub fn stroke_mesh(&self, detail: f64) -> Result<Mesh, DerivationError> {
+    pub fn stroke_mesh(&self, detail: f64) -> Result<Mesh, DrawingError> {
         if !(detail > 0.0 && detail.is_finite()) {
-            return Err(DerivationError::Detail(detail));
+            return Err(DrawingError::Detail(detail));
         }
         let mut mesh = Mesh::default();
         let (mut triangles, mut vertices) = (0, 0);
-        for tube in self.strokes().flat_map(|nodes| tubes(nodes, detail)) {
-            triangles += Tube::triangles(&tube);
-            vertices += tube.vertices();
+        let strokes = || self.strokes.iter().map(|stroke| stroke.section).zip(self.strokes());
+        for (section, nodes) in strokes() {
+            if let CrossSection::Flat { .. } = section {
+                triangles += ribbon_triangles(nodes);
+                vertices += 2 * nodes.len();
+                continue;
+            }
+            for tube in tubes(nodes, section, detail) {
+                triangles += Tube::triangles(&tube);
+                vertices += tube.vertices();
+            }
         }
         make_room(&mut mesh, triangles, vertices)?;
-        self.strokes().flat_map(|nodes| tubes(nodes, detail)).for_each(|tube| tube.append_to(&mut mesh));
+        for (section, nodes) in strokes() {
+            match section {
+                CrossSection::Flat { across } => append_ribbon(&mut mesh, nodes, across),
+                _ => tubes(nodes, section, detail).iter().for_each(|tube| tube.append_to(&mut mesh)),
+            }
+        }
         Ok(mesh)
     }
 
     /// Appends the filled polygons. Those that cross themselves, or do not lie on a plane and cross themselves when
     /// they are seen along an axis, become a fan around their first corner.
-    fn append_polygons(&self, mesh: &mut Mesh) -> Result<(), DerivationError> {
+    fn append_polygons(&self, mesh: &mut Mesh) -> Result<(), DrawingError> {
         let corners: usize = self.polygons.iter().map(|polygon| polygon.corners.len()).sum();
         make_room(mesh, corners, corners)?;
-        for TurtlePolygon { corners, colour } in &self.polygons {
+        for DrawnPolygon { corners, colour } in &self.polygons {
             let corners = &self.corners[corners.clone()];
             let filled = triangulate_in_space(&[corners], TriangulationKind::Delaunay).map(|filled| filled.triangles);
             let fan = || (1..corners.len() as u32 - 1).map(|second| [0, second, second + 1]).collect();
@@ -93,7 +107,7 @@ impl TurtleDrawing {
         Ok(())
     }
 
-    fn append_spheres(&self, mesh: &mut Mesh, detail: f64) -> Result<(), DerivationError> {
+    fn append_spheres(&self, mesh: &mut Mesh, detail: f64) -> Result<(), DrawingError> {
         let spheres = || self.spheres.iter().filter(|sphere| sphere.radius > 0.0);
         let triangles: usize = spheres().map(|sphere| sphere_triangles(sphere, detail)).sum();
         make_room(mesh, triangles, triangles)?;
@@ -102,8 +116,8 @@ impl TurtleDrawing {
     }
 
     /// Appends predefined surfaces; each is tessellated once, for the largest of its places.
-    fn append_placed(&self, mesh: &mut Mesh, detail: f64) -> Result<(), DerivationError> {
-        let scale = |place: &PlacedPredefined| place.placement.matrix3.x_axis.length();
+    fn append_placed(&self, mesh: &mut Mesh, detail: f64) -> Result<(), DrawingError> {
+        let scale = |place: &PlacedSurface| place.placement.matrix3.x_axis.length();
         let mut prototypes = Vec::new();
         for (number, surface) in self.surfaces.iter().enumerate() {
             let places = self.placed.iter().filter(|place| place.surface == number);
@@ -137,7 +151,7 @@ impl PredefinedSurface {
     ///
     /// # Errors
     /// A detail that is no such length, and less memory than the triangles take.
-    pub fn mesh(&self, detail: f64) -> Result<Mesh, DerivationError> {
+    pub fn mesh(&self, detail: f64) -> Result<Mesh, DrawingError> {
         let mut mesh = Mesh::default();
         for part in &self.parts {
             match part {
@@ -162,7 +176,7 @@ impl PredefinedSurface {
 }
 
 /// Appends a polygon of a predefined surface.
-fn append_flat(mesh: &mut Mesh, corners: &[DVec3], triangles: &[[u32; 3]]) -> Result<(), DerivationError> {
+fn append_flat(mesh: &mut Mesh, corners: &[DVec3], triangles: &[[u32; 3]]) -> Result<(), DrawingError> {
     make_room(mesh, triangles.len(), corners.len())?;
     let first = mesh.vertices.len() as u32;
     mesh.vertices.extend(corners);
