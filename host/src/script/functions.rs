@@ -2,12 +2,12 @@
 
 use super::function::Function;
 use super::{
-    daylight, instancing, lighting, materials, procedural, shaping, showing, solids, stored, subdividing, surfaces,
-    table, terrain, texturing, wind,
+    daylight, instancing, lighting, materials, plants, procedural, rocks, shaping, showing, solids, stored,
+    subdividing, surfaces, table, terrain, texturing, wind,
 };
 
 /// The tables of functions that give objects their shapes.
-const SHAPES: [&[Function]; 7] = [
+const SHAPES: [&[Function]; 9] = [
     solids::FUNCTIONS,
     shaping::FUNCTIONS,
     surfaces::FUNCTIONS,
@@ -15,6 +15,8 @@ const SHAPES: [&[Function]; 7] = [
     terrain::FUNCTIONS,
     instancing::FUNCTIONS,
     procedural::FUNCTIONS,
+    plants::FUNCTIONS,
+    rocks::FUNCTIONS,
 ];
 
 /// Every function that a script may call: those that make and combine objects, then the others.

@@ -15,7 +15,7 @@ use crate::color::{Color, shipped};
 use crate::illumination::distribution::FacetForm;
 use crate::illumination::material::{
     Classic, Coated, Distributed, DistributionForm, Finish, Material, MaterialKind, Metal, Principled, RefractiveIndex,
-    Transparent,
+    Translucent, Transparent,
 };
 use crate::illumination::texture::NumberTexture as PaintedNumber;
 use glam::DVec3;
@@ -189,6 +189,20 @@ pub(super) const FUNCTIONS: &[Function] = &[
         "Gives an object a diffuse ground under a transparent coat, as plastic, varnish and glaze have it."
         "pot.coated([0.7, 0.1, 0.1], 0.05);"
         |builder| give(builder, object, MaterialKind::Coated(Coated { diffuse, index, roughness }))
+    },
+    function! {
+        translucent(
+            object: OBJECT,
+            diffuse: with_default(Reflectance, 0.3, "diffusely reflected fraction"),
+            transmittance: with_default(Reflectance, 0.3, "fraction that comes through, diffusely; with what is reflected no more than 1"),
+            coat: optional(AmountKind(0.0, 1000.0), "no coat", "roughness of a transparent coat of index 1.4, as of wax on leaves"),
+        )
+        "Makes an object a thin sheet that light comes through diffusely: leaves, petals, paper, cloth. Both sides are alike."
+        "let leaf = ground(1).rotate(\"x\", 60); leaf.translucent([0.08, 0.14, 0.02], [0.09, 0.16, 0.01], #{ coat: 0.4 });"
+        |builder| {
+            let sheet = Translucent { diffuse, transmittance, coat };
+            give(builder, object, MaterialKind::Translucent(Box::new(sheet)))
+        }
     },
     function! {
         principled(

@@ -29,6 +29,8 @@ mod wind;
 mod instancing;
 mod model;
 mod procedural;
+mod plants;
+mod rocks;
 mod made_of;
 mod materials;
 mod texturing;

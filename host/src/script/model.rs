@@ -3,6 +3,7 @@
 use super::fault::{MAX_OPERATIONS, ScriptFault};
 use super::plain::PlainValue;
 use super::source::{CallOutcome, FunctionCall, OpenDatabases, ScriptSource};
+use crate::illumination::Material;
 use crate::numeric::bounds::Bounds;
 use crate::procedural::{Varied, channel};
 use crate::scene::{Object, ProceduralModel, ScriptPosition};
@@ -56,6 +57,10 @@ impl ProceduralModel for ScriptModel {
 
     fn kinds(&self) -> u32 {
         self.kinds
+    }
+
+    fn materials(&self) -> Vec<Material> {
+        Vec::new()
     }
 
     fn make(&self, seed: u32, detail: f64) -> Result<Vec<Object>, String> {

@@ -58,7 +58,7 @@ pub(super) const FUNCTIONS: &[Function] = &[function! {
     }
 }];
 
-/// Adds an object that is a model.
+/// Adds an object that is a model of a script.
 fn add(builder: &mut Builder, model: Arc<ScriptModel>) -> CallResult {
     let made = Procedural::new(Arc::clone(&model) as Arc<dyn ProceduralModel>);
     match model.first.get() {
@@ -69,11 +69,22 @@ fn add(builder: &mut Builder, model: Arc<ScriptModel>) -> CallResult {
         }
         None => {}
     }
-    let object = Object::procedural("procedural".into(), made?);
+    add_made(builder, "procedural", made?)
+}
+
+/// Adds an object that is a model.
+///
+/// - `called`: the function of the language that makes it.
+pub(super) fn add_model(builder: &mut Builder, called: &'static str, model: Arc<dyn ProceduralModel>) -> CallResult {
+    add_made(builder, called, Procedural::new(model)?)
+}
+
+fn add_made(builder: &mut Builder, called: &'static str, model: Procedural) -> CallResult {
+    let object = Object::procedural(called.into(), model);
     let here = Instance { prototype: 0, variation: 0, placement: DAffine3::IDENTITY };
     let placing = Placing::Listed(PlacementList(vec![here]));
     let shape = Shape::Instances(Box::new(Instances { prototypes: vec![vec![object]], placing }));
-    builder.add_called("procedural", shape, None).map(Dynamic::from)
+    builder.add_called(called, shape, None).map(Dynamic::from)
 }
 
 /// What a function captured.

@@ -132,6 +132,19 @@ pub(super) const FUNCTIONS: &[Function] = &[
         |_| pattern(Motif::Strata { turbulence }, TextureMapping { solid: true, size, at, up }, vec![one, two])
     },
     function! {
+        cracks(
+            crack: required(Reflectance, "the paint of the cracks"),
+            scale: required(Reflectance, "the paint between them"),
+            size: with_default(Lengths, 1.0, "of the scales, own units of the object"),
+            octaves: with_default(Integer(1u32, 16), 4, "how many sizes of cracks there are"),
+            at: AT,
+            up: with_default(Vector, [0.0, 1.0, 0.0], "the y direction of the size"),
+        )
+        "Makes a pattern of scales with cracks between them through the body, as bark and dry mud have them. Give it where a reflectance is asked for."
+        "cylinder(1, 6).material(cracks([0.05, 0.04, 0.03], [0.25, 0.2, 0.15], #{ size: [0.2, 1.2, 0.2] }));"
+        |_| pattern(Motif::Cracks { octaves }, TextureMapping { solid: true, size, at, up }, vec![crack, scale])
+    },
+    function! {
         varied(
             one: ONE,
             two: TWO,

@@ -5,6 +5,8 @@ mod wind;
 pub mod terrain;
 pub mod drawing;
 pub mod grammar;
+pub mod plant;
+pub mod rock;
 
 pub use varied::{Varied, VariedError, channel};
 pub use wind::{Wind, WindError};

@@ -10,11 +10,16 @@ use crate::illumination::distribution::FacetTable;
 use crate::illumination::texture::{Band, NumberTexture as TextureNumber, Varying};
 use crate::script::handle::Handle;
 use crate::script::parameter::{HasDefault, ParameterKind};
-use rhai::Dynamic;
+use glam::DVec3;
+use rhai::{Array, Dynamic};
 
 /// What is reflected: fractions, the name of a spectrum, or a pattern.
 #[derive(Clone, Copy)]
 pub(in crate::script) struct Reflectance;
+
+/// A list of reflectances, one at least.
+#[derive(Clone, Copy)]
+pub(in crate::script) struct Reflectances;
 
 /// A number within limits, the least and the greatest, or a pattern of such numbers.
 #[derive(Clone, Copy)]
@@ -88,6 +93,20 @@ impl ParameterKind for Reflectance {
     }
 }
 
+impl ParameterKind for Reflectances {
+    type Value = Vec<Paint>;
+
+    fn words(&self) -> String {
+        "a list of reflectances: numbers from 0 to 1, [red, green, blue], or patterns".into()
+    }
+
+    fn read(&self, value: &Dynamic) -> Option<Vec<Paint>> {
+        let paints: Option<Vec<Paint>> =
+            value.read_lock::<Array>()?.iter().map(|paint| Reflectance.read(paint)).collect();
+        paints.filter(|paints| !paints.is_empty())
+    }
+}
+
 impl ParameterKind for AmountKind {
     type Value = TextureNumber;
 
@@ -138,6 +157,18 @@ impl HasDefault for Reflectance {
 
     fn shown(&self, default: f64) -> String {
         shown(default)
+    }
+}
+
+impl HasDefault for Reflectances {
+    type Default = &'static [[f64; 3]];
+
+    fn of_default(&self, default: &'static [[f64; 3]]) -> Vec<Paint> {
+        default.iter().map(|bands| Paint::Plain(Color::Bands(DVec3::from_array(*bands)))).collect()
+    }
+
+    fn shown(&self, default: &'static [[f64; 3]]) -> String {
+        format!("{default:?}")
     }
 }
 

@@ -13,6 +13,7 @@ pub(super) use curves::{CurveKind, Loops, SidesKind, Spline};
 pub(super) use lists::{Contours, Indices, Numbers, Objects, PointsKind, RowsOfNumbers};
 pub(super) use materials::{
     AmountKind, DistributionKind, DistributionValue, FunctionOfAngle, MaterialOrigin, MaterialOriginKind, Reflectance,
+    Reflectances,
 };
 pub(super) use models::{BoundsKind, ModelFunction, VariedKind, VariedMap};
 pub(super) use numbers::{ANY_NUMBER, Integer, Length, NumberKind, RangeKind, number};

@@ -4,7 +4,7 @@ use super::numbers::number;
 use super::vectors::vector;
 use crate::numeric::bounds::Bounds;
 use crate::procedural::Varied;
-use crate::script::parameter::ParameterKind;
+use crate::script::parameter::{HasDefault, ParameterKind};
 use rhai::{Array, Dynamic, FnPtr, Map};
 
 /// A function of the script that makes objects.
@@ -80,5 +80,17 @@ impl ParameterKind for VariedMap {
     fn read(&self, value: &Dynamic) -> Option<Vec<(String, Dynamic)>> {
         let map = value.read_lock::<Map>()?;
         Some(map.iter().map(|(name, value)| (name.to_string(), value.clone())).collect())
+    }
+}
+
+impl HasDefault for VariedKind {
+    type Default = [f64; 2];
+
+    fn of_default(&self, [mean, deviation]: [f64; 2]) -> Varied {
+        Varied { mean, deviation }
+    }
+
+    fn shown(&self, default: [f64; 2]) -> String {
+        format!("{default:?}")
     }
 }

@@ -77,6 +77,10 @@ impl ProceduralModel for ModelledBall {
         1
     }
 
+    fn materials(&self) -> Vec<Material> {
+        Vec::new()
+    }
+
     fn make(&self, _: u32, detail: f64) -> Result<Vec<Object>, String> {
         let ball = Shape::from(Primitive::Sphere { radius: 0.4 });
         let coarse = Shape::from(Primitive::Box { size: DVec3::new(0.2, 0.7, 0.2) });

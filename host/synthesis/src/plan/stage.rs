@@ -125,6 +125,7 @@ fn has_diffuse(material: &Material) -> bool {
         }
         MaterialKind::Shaped(Distributed { reflectance, .. }) => !reflectance.is_black(),
         MaterialKind::Principled(principled) => principled.is_diffuse(),
+        MaterialKind::Translucent(_) => true,
         MaterialKind::Metal(_) | MaterialKind::Transparent(_) => false,
     }
 }
@@ -133,6 +134,7 @@ fn has_diffuse(material: &Material) -> bool {
 fn has_highlight(material: &Material) -> bool {
     match &material.body {
         MaterialKind::Classic(Classic { specular, .. }) => !specular.is_black(),
+        MaterialKind::Translucent(sheet) => sheet.coat.is_some(),
         _ => true,
     }
 }
@@ -141,6 +143,8 @@ fn has_highlight(material: &Material) -> bool {
 fn continues_paths(material: &Material) -> bool {
     match &material.body {
         MaterialKind::Classic(Classic { mirror, transparency, .. }) => !mirror.is_black() || !transparency.is_black(),
+        // Light that comes through is diffuse, and a coat reflects.
+        MaterialKind::Translucent(sheet) => sheet.coat.is_some(),
         _ => true,
     }
 }

@@ -2,9 +2,9 @@
 
 use super::instance_tests::{at, differing, diffuse, green, instances, lit, maps, object};
 use super::{RENDERERS, RenderError, RenderOrder, RendererRow, Rendering, Task, Technique, Watch};
-use crate::illumination::Paint;
 use crate::illumination::material::{MaterialKind, RefractiveIndex, Transparent};
 use crate::illumination::texture::{Motif, Pattern, TextureMapping};
+use crate::illumination::{Material, Paint};
 use crate::numeric::bounds::Bounds;
 use crate::octree::Instance;
 use crate::plan::Plan;
@@ -36,6 +36,10 @@ impl ProceduralModel for Made {
 
     fn kinds(&self) -> u32 {
         self.kinds
+    }
+
+    fn materials(&self) -> Vec<Material> {
+        Vec::new()
     }
 
     fn make(&self, seed: u32, detail: f64) -> Result<Vec<Object>, String> {

@@ -15,6 +15,7 @@ mod kept_grids;
 mod fractal_ground;
 mod erosion;
 mod terrain;
+mod made_mesh;
 mod error;
 mod object;
 mod origins;
@@ -27,6 +28,10 @@ mod parameters;
 mod scatter;
 mod instances;
 mod procedural;
+mod drawn_objects;
+mod plant;
+mod grammar_plant;
+mod rock;
 mod exact;
 mod acceleration;
 mod file_meshes;
@@ -52,7 +57,9 @@ pub use detail_view::DetailView;
 pub use erosion::Erosion;
 pub use error::{AccelerationError, SceneError, ShapeError};
 pub use fractal_ground::{FractalGround, GroundKind};
+pub use grammar_plant::{GrammarModel, GrammarSettings};
 pub use instances::{Places, ShortScatter};
+pub use made_mesh::MadeMesh;
 pub use motion::{Displacement, Motion};
 pub use object::{
     Composite, Instances, MAX_NESTING, Object, Operation, PlacementList, Placing, Procedural, ProceduralModel,
@@ -61,8 +68,10 @@ pub use object::{
 pub use object_intersection::{ObjectIntersection, object_intersections};
 pub use origins::{ScriptPosition, ShapeOrigins};
 pub use piercing::SurfacePoint;
+pub use plant::PlantModel;
 pub use prepared::{Contents, Prepared, PreparedObject};
 pub use procedural::MOST_KINDS;
+pub use rock::RockModel;
 pub use sculpture::{Sculpture, SculptureError, SurfaceSheet};
 pub use settings::{
     Caustics, GeometrySettings, ImageSettings, LightSettings, MAX_PHOTONS, MAX_REFLECTION_DEPTH, MAX_SAMPLES,

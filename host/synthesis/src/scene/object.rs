@@ -1,6 +1,7 @@
 //! Objects and their shapes, as data: a shape may be made of other objects.
 
 use super::cage::Cage;
+use super::made_mesh::MadeMesh;
 use super::sculpture::Sculpture;
 use super::solid::PrimitiveSolid;
 use super::terrain::Terrain;
@@ -76,6 +77,8 @@ pub enum Shape {
     Subdivision(Box<Cage>),
     /// Ground whose heights are a fractal.
     Terrain(Box<Terrain>),
+    /// Triangles that a model made.
+    Made(MadeMesh),
     /// A solid made of other objects.
     Composite(Box<Composite>),
     /// The intersection curves of two objects; lines without triangles.
@@ -216,6 +219,9 @@ pub trait ProceduralModel: fmt::Debug + Send + Sync {
     /// How many different ones there are, 1 to [`MOST_KINDS`](super::MOST_KINDS).
     fn kinds(&self) -> u32;
 
+    /// Materials that some of them have and the first may lack; those that the first has may be among them.
+    fn materials(&self) -> Vec<Material>;
+
     /// Makes one of them: surfaces and instances of surfaces, in coordinates of its own.
     ///
     /// - `seed`: which one, below [`ProceduralModel::kinds`].
@@ -314,6 +320,7 @@ impl Shape {
             Shape::Sculpture(_) => "surface",
             Shape::Subdivision(_) => "subdivision",
             Shape::Terrain(_) => "terrain",
+            Shape::Made(_) => "triangles",
             Shape::Composite(composite) => composite.operation.word(),
             Shape::Curve(_) => "curve",
             Shape::Rounded(rounded) => rounded.object.shape.word(),

@@ -1,6 +1,7 @@
 //! Procedural models: objects that are made when they are first looked at, as finely as they are seen.
 
 use super::instances::together;
+use super::made_mesh::MadeMesh;
 use super::object::{Object, Procedural, ProceduralModel, Shape};
 use super::shape_mesh::ShapeMesh;
 use super::{GeometrySettings, ShapeError};
@@ -41,9 +42,17 @@ impl Procedural {
             return Err(format!("{kinds} kinds are not between 1 and {MOST_KINDS}"));
         }
         let made = Procedural { model, pattern: Arc::default() };
-        let pattern = made.objects(0, made.detail_within(None))?;
+        let mut pattern = made.objects(0, made.detail_within(None))?;
         if pattern.is_empty() {
             return Err("it makes nothing".into());
+        }
+        let known: Vec<Material> = pattern.iter().flat_map(Object::operand_materials).collect();
+        for material in made.model.materials().into_iter().filter(|material| !known.contains(material)) {
+            // What has a material that the first kind lacks has no triangles there.
+            let shape = Shape::Made(MadeMesh(Arc::default()));
+            let object =
+                Object { name: "triangles".into(), shape, transform: DMat4::IDENTITY, material: None, tolerance: None };
+            pattern.push(Object { material: Some(material), ..object });
         }
         Ok(Procedural { pattern: Arc::new(pattern), ..made })
     }

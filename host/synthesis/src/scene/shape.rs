@@ -31,7 +31,7 @@ impl Shape {
     pub fn check(&self) -> Result<(), String> {
         match self {
             // What sculptured surfaces are made of was checked; whether they can be tessellated is seen then.
-            Shape::Teapot | Shape::Mesh { .. } | Shape::Stored { .. } | Shape::Sculpture(_) => Ok(()),
+            Shape::Teapot | Shape::Mesh { .. } | Shape::Stored { .. } | Shape::Sculpture(_) | Shape::Made(_) => Ok(()),
             Shape::Bunny if cfg!(feature = "bunny") => Ok(()),
             Shape::Bunny => Err(NoBunny.to_string()),
             Shape::Subdivision(cage) => cage.polyhedron().map(|_| ()).map_err(|error| error.to_string()),
@@ -99,7 +99,7 @@ impl Shape {
                 rounded.object.extent().or_else(|| Some(extent()? * largest_stretch(&rounded.object.transform)))
             }
             Shape::HalfSpace { .. } | Shape::Ground { .. } | Shape::Bunny | Shape::Procedural(_) => None,
-            Shape::Mesh { .. } | Shape::Stored { .. } | Shape::Instances(_) => None,
+            Shape::Mesh { .. } | Shape::Made(_) | Shape::Stored { .. } | Shape::Instances(_) => None,
         }
     }
 
@@ -124,6 +124,7 @@ impl Shape {
                 Ok(ShapeMesh { mesh, ..ShapeMesh::default() })
             }
             Shape::Terrain(terrain) => Ok(terrain.tessellate(tolerance.chord)?),
+            Shape::Made(made) => Ok(ShapeMesh { mesh: (*made.0).clone(), ..ShapeMesh::default() }),
             Shape::Curve(objects) => {
                 let precision = CurvePrecision { chord: Some(tolerance.chord), ..CurvePrecision::default() };
                 let lines = intersect_shapes([&objects[0], &objects[1]], tolerance, &precision)?.polylines();

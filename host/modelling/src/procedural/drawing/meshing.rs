@@ -39,10 +39,22 @@ impl PlantDrawing {
     /// # Errors
     /// A detail that is no such length, and less memory than the triangles take.
     pub fn mesh(&self, detail: f64) -> Result<Mesh, DrawingError> {
+        let mut mesh = self.unplaced_mesh(detail)?;
+        self.append_placed(&mut mesh, detail)?;
+        Ok(mesh)
+    }
+
+    /// What was drawn as triangles, without the surfaces that are placed; the surface of each triangle is the number of
+    /// its colour.
+    ///
+    /// - `detail`: largest distance between triangles and what they stand for, units of length, above 0.
+    ///
+    /// # Errors
+    /// A detail that is no such length, and less memory than the triangles take.
+    pub fn unplaced_mesh(&self, detail: f64) -> Result<Mesh, DrawingError> {
         let mut mesh = self.stroke_mesh(detail)?;
         self.append_polygons(&mut mesh)?;
         self.append_spheres(&mut mesh, detail)?;
-        self.append_placed(&mut mesh, detail)?;
         Ok(mesh)
     }
 
@@ -156,22 +168,31 @@ impl PredefinedSurface {
         for part in &self.parts {
             match part {
                 PredefinedPart::Polygon { corners, triangles } => append_flat(&mut mesh, corners, triangles)?,
+                PredefinedPart::Triangles(made) => {
+                    make_room(&mut mesh, made.triangles.len(), made.vertices.len())?;
+                    append(&mut mesh, made);
+                }
                 PredefinedPart::Patch(patch) => {
                     let control = patch.control().as_flattened();
                     let size = control.iter().map(|point| point.distance(control[0])).fold(0.0, f64::max);
                     let tolerance = Tolerance::new(detail.min(COARSEST * size), ANGLE);
                     let made = tessellate(std::slice::from_ref(patch.as_ref()), tolerance)?;
                     make_room(&mut mesh, made.triangles.len(), made.vertices.len())?;
-                    let first = mesh.vertices.len() as u32;
-                    mesh.vertices.extend(made.vertices);
-                    for (number, corners) in made.triangles.iter().enumerate() {
-                        let (normals, parameters) = (made.corner_normals[number], made.corner_parameters[number]);
-                        push(&mut mesh, corners.map(|corner| first + corner), normals, parameters, 0);
-                    }
+                    append(&mut mesh, &made);
                 }
             }
         }
         Ok(mesh)
+    }
+}
+
+/// Appends triangles, all of surface 0.
+fn append(mesh: &mut Mesh, made: &Mesh) {
+    let first = mesh.vertices.len() as u32;
+    mesh.vertices.extend(&made.vertices);
+    for (number, corners) in made.triangles.iter().enumerate() {
+        let (normals, parameters) = (made.corner_normals[number], made.corner_parameters[number]);
+        push(mesh, corners.map(|corner| first + corner), normals, parameters, 0);
     }
 }
 

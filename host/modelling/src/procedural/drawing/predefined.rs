@@ -1,13 +1,17 @@
 //! Surfaces that a drawing places again and again: leaves, petals.
 
+use crate::mesh::Mesh;
 use crate::surface::BezierPatch;
 use glam::DVec3;
+use std::sync::Arc;
 
 /// A part of a predefined surface.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PredefinedPart {
     /// A bicubic Bezier patch.
     Patch(Box<BezierPatch>),
+    /// Triangles as they are.
+    Triangles(Arc<Mesh>),
     /// A polygon on a plane, divided into triangles.
     Polygon {
         /// Its corners.

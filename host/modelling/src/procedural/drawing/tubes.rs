@@ -245,7 +245,13 @@ impl Tube {
 }
 
 /// Appends a triangle.
-pub(super) fn push(mesh: &mut Mesh, corners: [u32; 3], normals: [DVec3; 3], parameters: [DVec2; 3], colour: u32) {
+pub(in crate::procedural) fn push(
+    mesh: &mut Mesh,
+    corners: [u32; 3],
+    normals: [DVec3; 3],
+    parameters: [DVec2; 3],
+    colour: u32,
+) {
     mesh.triangles.push(corners);
     mesh.corner_normals.push(normals);
     mesh.corner_parameters.push(parameters);

@@ -1,8 +1,10 @@
 //! Materials: of what a surface is, as a scene says it, before it is prepared for rendering.
 
 mod principled;
+mod translucent;
 
 pub use principled::Principled;
+pub use translucent::Translucent;
 
 use super::distribution::{
     DistributionError, FACET_MODELS, FAMILY, FacetForm, FacetModel, FacetTable, Tabulated, checked_roughness,
@@ -41,6 +43,8 @@ pub enum MaterialKind {
     Coated(Coated),
     /// A mixture of metal, opaque and transparent, with a coat and a sheen.
     Principled(Box<Principled>),
+    /// A thin sheet that lets light through diffusely.
+    Translucent(Box<Translucent>),
 }
 
 /// The sum of Lambert's and Phong's terms, a mirror, and what goes straight through.
@@ -308,7 +312,10 @@ impl Material {
                     matches!(index, RefractiveIndex::Dispersive(_)) || absorption.is_spectral()
                 }
                 MaterialKind::Principled(principled) => principled.transmits() && principled.absorption.is_spectral(),
-                MaterialKind::Classic(_) | MaterialKind::Shaped(_) | MaterialKind::Coated(_) => false,
+                MaterialKind::Classic(_)
+                | MaterialKind::Shaped(_)
+                | MaterialKind::Coated(_)
+                | MaterialKind::Translucent(_) => false,
             }
     }
 
@@ -320,6 +327,7 @@ impl Material {
             }
             MaterialKind::Shaped(shaped) => vec![&shaped.reflectance],
             MaterialKind::Coated(coated) => vec![&coated.diffuse],
+            MaterialKind::Translucent(sheet) => vec![&sheet.diffuse, &sheet.transmittance],
             MaterialKind::Principled(principled) => vec![&principled.base_color, &principled.sheen],
             MaterialKind::Metal(_) | MaterialKind::Transparent(_) => Vec::new(),
         }
@@ -339,6 +347,7 @@ impl Material {
                 let Principled { coat_roughness, sheen_roughness, .. } = &**principled;
                 vec![metallic, roughness, specular, transmission, coat, coat_roughness, sheen_roughness]
             }
+            MaterialKind::Translucent(sheet) => sheet.coat.iter().collect(),
             MaterialKind::Metal(_) | MaterialKind::Shaped(_) => Vec::new(),
         }
     }
@@ -417,6 +426,21 @@ impl Material {
                 polished_or_rough(roughness)
             }
             MaterialKind::Principled(principled) => principled.check(),
+            MaterialKind::Translucent(sheet) => {
+                let Translucent { diffuse, transmittance, coat } = &**sheet;
+                fraction("diffuse reflectance", diffuse)?;
+                fraction("transmittance", transmittance)?;
+                let most = |paint: &Paint| paint.colors().iter().map(|color| color.range()[1]).fold(0.0, f64::max);
+                let sum = most(diffuse) + most(transmittance);
+                if sum > 1.001 {
+                    return Err(MaterialError::Fraction {
+                        what: "the sum of reflectance and transmittance",
+                        least: 0.0,
+                        most: sum,
+                    });
+                }
+                coat.as_ref().map_or(Ok(()), polished_or_rough)
+            }
         }
     }
 
@@ -459,6 +483,7 @@ impl Material {
                 }
             }
             MaterialKind::Principled(principled) => principled.preview(variation),
+            MaterialKind::Translucent(sheet) => MaterialPreview { diffuse: bands(&sheet.diffuse), ..black },
             MaterialKind::Transparent(Transparent { index, .. }) => {
                 MaterialPreview { mirror: DVec3::splat(normal_reflectance(index.at(550.0))), ..black }
             }
@@ -480,6 +505,7 @@ impl Material {
             MaterialKind::Transparent(_) => "transparent",
             MaterialKind::Coated(_) => "coated",
             MaterialKind::Principled(_) => "principled",
+            MaterialKind::Translucent(_) => "translucent",
         }
     }
 }

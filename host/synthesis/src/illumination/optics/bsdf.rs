@@ -280,9 +280,11 @@ impl Bsdf {
         (pdf > 0.0 && weight.is_finite()).then_some(BsdfSample { weight, pdf: Some(pdf), is_broad, ..drawn })
     }
 
-    /// The reflected fraction of ambient light, the same radiance from everywhere.
+    /// The fraction of ambient light, the same radiance from everywhere, that is reflected or comes through.
     pub fn ambient(&self, context: &ShadingContext) -> Channels {
-        self.ambient.as_ref().map_or_else(|| self.diffuse_albedo(context), |ambient| ambient.of(context))
+        let reflected =
+            self.ambient.as_ref().map_or_else(|| self.diffuse_albedo(context), |ambient| ambient.of(context));
+        reflected + self.diffuse_transmittance(context)
     }
 
     /// Glossy albedo: about what ambient light adds by what mirrors, metals, coats and glass reflect, where paths do
@@ -295,6 +297,11 @@ impl Bsdf {
     /// mean of a ground under a coat.
     pub fn diffuse_albedo(&self, context: &ShadingContext) -> Channels {
         self.lobes.iter().fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.diffuse_albedo(context))
+    }
+
+    /// Diffuse transmittance: the part of light from all around the other side that comes through alike to everywhere.
+    pub fn diffuse_transmittance(&self, context: &ShadingContext) -> Channels {
+        self.lobes.iter().fold(Channels::ZERO, |sum, Member { lobe, .. }| sum + lobe.diffuse_transmittance(context))
     }
 
     /// Albedo of the lobes that are not delta: about the part of light from all around that they reflect to the viewer.
@@ -409,13 +416,14 @@ impl Bsdf {
     }
 
     /// Whether it shows what is around: sharply, by a narrow lobe that is not straight, or in place of all else, where no
-    /// lobe is diffuse.
+    /// lobe is diffuse; or what is behind it, by a translucent one.
     pub fn shows_surroundings(&self) -> bool {
         let is_diffuse = |member: &Member| member.flags.has(Flags::DIFFUSE) && !member.flags.has(Flags::BLACK);
         let shows_else = self.lobes.iter().any(is_diffuse);
         self.lobes.iter().any(|Member { class, flags, .. }| {
             let hides = [Flags::BLACK, Flags::STRAIGHT, Flags::DIFFUSE].iter().any(|flag| flags.has(*flag));
-            let is_meant = *class == LobeClass::Narrow || *class == LobeClass::Broad && !shows_else;
+            let is_beyond = flags.has(Flags::TRANSLUCENT);
+            let is_meant = *class == LobeClass::Narrow || *class == LobeClass::Broad && (!shows_else || is_beyond);
             is_meant && !hides
         })
     }

@@ -13,6 +13,7 @@ use super::rough_conductor::{FacetDistribution, RoughConductor};
 use super::rough_dielectric::RoughDielectric;
 use super::smooth_conductor::SmoothConductor;
 use super::straight::StraightLobe;
+use super::translucent::TranslucentLobe;
 use super::varied::nodes;
 use crate::color::{LANES, WavelengthSets};
 use crate::illumination::distribution::{
@@ -22,7 +23,7 @@ use crate::illumination::distribution::{
 use crate::illumination::fresnel::{Conductor, Dielectric, IndexError};
 use crate::illumination::material::{
     Classic, Coated, Distributed, DistributionForm, Finish, LEAST_VARYING_ROUGHNESS, Material, MaterialError,
-    MaterialKind, Metal, Principled, RefractiveIndex, Transparent,
+    MaterialKind, Metal, Principled, RefractiveIndex, Translucent, Transparent,
 };
 use crate::illumination::texture::{NumberTexture, Paint};
 use glam::DVec2;
@@ -85,6 +86,7 @@ impl<'a> BsdfBuilder<'a> {
             MaterialKind::Transparent(transparent) => self.transparent(transparent, &mut bsdf)?,
             MaterialKind::Coated(coated) => self.coated(coated, diffuse, &mut bsdf)?,
             MaterialKind::Principled(principled) => self.principled(principled, diffuse, &mut bsdf)?,
+            MaterialKind::Translucent(translucent) => self.translucent(translucent, diffuse, &mut bsdf)?,
         }
         Ok(bsdf)
     }
@@ -210,6 +212,36 @@ impl<'a> BsdfBuilder<'a> {
             })?;
             bsdf.add(ground, interreflection);
             bsdf.ambient = Some(shade);
+        }
+        Ok(())
+    }
+
+    fn translucent(
+        &mut self,
+        translucent: &Translucent,
+        interreflection: Interreflection,
+        bsdf: &mut Bsdf,
+    ) -> Result<(), MaterialError> {
+        let Translucent { diffuse, transmittance, coat } = translucent;
+        match coat {
+            Some(roughness) => {
+                let (index, roughness) = (Translucent::COAT_INDEX, roughness.clone());
+                self.coated(&Coated { diffuse: diffuse.clone(), index, roughness }, interreflection, bsdf)?;
+            }
+            None => {
+                if let Some(shade) = self.needed_paint(diffuse, bsdf) {
+                    bsdf.ambient = Some(shade.clone());
+                    bsdf.add(AnyLobe::Diffuse(DiffuseLobe(shade)), interreflection);
+                }
+            }
+        }
+        if let Some(shade) = self.needed_paint(transmittance, bsdf) {
+            // A radiosity solution knows the light on the side of the viewer only.
+            let followed = match interreflection {
+                Interreflection::Solved => Interreflection::Followed,
+                other => other,
+            };
+            bsdf.add(AnyLobe::Translucent(TranslucentLobe(shade)), followed);
         }
         Ok(())
     }

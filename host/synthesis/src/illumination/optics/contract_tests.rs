@@ -7,7 +7,7 @@ use crate::color::{Channels, WavelengthSets, shipped};
 use crate::illumination::distribution::{FacetForm, FacetTable};
 use crate::illumination::material::{
     Classic, Coated, Distributed, DistributionForm, Finish, Material, MaterialKind, Metal, Principled, RefractiveIndex,
-    Transparent,
+    Translucent, Transparent,
 };
 use crate::illumination::texture::{Band, Motif, NumberTexture, Paint, Pattern, TextureMapping, Varying};
 use crate::numeric::cubature::unit_square;
@@ -73,6 +73,8 @@ fn lobes() -> Vec<AnyLobe> {
         mirror: grey(0.2),
         transparency: grey(0.2),
     };
+    let leaf = Translucent { diffuse: grey(0.3), transmittance: grey(0.4), coat: None };
+    let leaf = MaterialKind::Translucent(Box::new(leaf));
     let form = |roughness: f64| DistributionForm::Member { name: "GGX".into(), roughness: roughness.into() };
     let materials: Vec<Material> = vec![
         classic.into(),
@@ -87,6 +89,7 @@ fn lobes() -> Vec<AnyLobe> {
         glass(0.35, FacetForm::default()),
         glass(0.5, model("Beckmann, all")),
         glass(0.0, FacetForm::Table(table())),
+        leaf.into(),
         principled(0.0, 0.5),
         principled(0.8, 0.5),
         principled(0.8, 0.0),
@@ -233,7 +236,10 @@ fn light_goes_to_and_fro_alike() {
                     false => {
                         let side = InterfaceIndices { before: behind, behind: before, inside: !inside };
                         let view = DVec3::new(light.x, light.y, -light.z);
-                        (ShadingContext { view, indices: side, ..context }, [behind.0[0].powi(2), before.0[0].powi(2)])
+                        // A sheet has one medium on both sides.
+                        let is_sheet = lobe.flags().has(Flags::TRANSLUCENT);
+                        let squares = [behind, before].map(|index| if is_sheet { 1.0 } else { index.0[0].powi(2) });
+                        (ShadingContext { view, indices: side, ..context }, squares)
                     }
                 };
                 let other = lobe.value(&back, flip(context.view)).0[0];

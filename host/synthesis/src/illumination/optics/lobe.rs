@@ -10,7 +10,7 @@ pub(super) const NARROW: f64 = 1.5;
 
 /// Properties of a lobe that hold for all directions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Flags(u8);
+pub(super) struct Flags(u16);
 
 impl Flags {
     /// No flag.
@@ -31,6 +31,8 @@ impl Flags {
     pub(super) const CLEAR: Flags = Flags(64);
     /// Pane: it reflects, and lets light straight through, as a polished pane does.
     pub(super) const PANE: Flags = Flags(128);
+    /// Translucent: it lets light through alike to everywhere on the other side.
+    pub(super) const TRANSLUCENT: Flags = Flags(256);
 
     /// Whether it has all of some flags.
     #[inline]
@@ -90,6 +92,11 @@ pub(super) trait Lobe {
 
     /// Diffuse albedo: the part of light from all around that it reflects alike to everywhere.
     fn diffuse_albedo(&self, _: &ShadingContext) -> Channels {
+        Channels::ZERO
+    }
+
+    /// Diffuse transmittance: the part of light from all around the other side that it lets through alike to everywhere.
+    fn diffuse_transmittance(&self, _: &ShadingContext) -> Channels {
         Channels::ZERO
     }
 

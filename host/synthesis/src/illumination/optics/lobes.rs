@@ -13,6 +13,7 @@ use super::rough_conductor::RoughConductor;
 use super::rough_dielectric::RoughDielectric;
 use super::smooth_conductor::SmoothConductor;
 use super::straight::StraightLobe;
+use super::translucent::TranslucentLobe;
 use super::varied::VaryingLobe;
 use crate::color::Channels;
 use crate::illumination::distribution::{Distribution, NormalisedPhong};
@@ -87,6 +88,11 @@ macro_rules! lobes {
             }
 
             #[inline]
+            fn diffuse_transmittance(&self, context: &ShadingContext) -> Channels {
+                match self { $(AnyLobe::$kind(lobe) => lobe.diffuse_transmittance(context),)* }
+            }
+
+            #[inline]
             fn glossy_albedo(&self, context: &ShadingContext) -> Channels {
                 match self { $(AnyLobe::$kind(lobe) => lobe.glossy_albedo(context),)* }
             }
@@ -106,6 +112,8 @@ lobes! {
     Phong(DistributedLobe<NormalisedPhong>),
     /// A mirror.
     Mirror(MirrorLobe) tried super::mirror::tried,
+    /// Diffuse transmission.
+    Translucent(TranslucentLobe),
     /// Transmission straight through.
     Straight(StraightLobe),
     /// A fraction, distributed by a D.

@@ -13,6 +13,7 @@ mod diffuse;
 mod distributed;
 mod mirror;
 mod straight;
+mod translucent;
 mod smooth_conductor;
 mod rough_conductor;
 mod coat;

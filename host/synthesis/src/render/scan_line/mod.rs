@@ -516,7 +516,7 @@ impl Renderer for ScanLine<'_> {
     fn left_out(&self, view: &View) -> Vec<&'static str> {
         let mut left_out = Vec::new();
         if self.solution.is_some() {
-            left_out.push("only what surfaces reflect diffusely is seen: no mirrors, no glass, no highlights");
+            left_out.push("only what surfaces reflect diffusely is seen: no mirrors, no glass, no highlights, no light through leaves");
         } else {
             let light = &self.world.prepared().settings.light;
             if self.plan.needs(Stage::Reflection) && light.interreflection == Interreflection::Solved {

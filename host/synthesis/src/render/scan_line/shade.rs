@@ -496,6 +496,7 @@ impl<'a> Shader<'a> {
             let normal = if element.normal.dot(interaction.towards) > 0.0 { -element.normal } else { element.normal };
             let mirrored = interaction.towards.reflect(normal);
             own += bsdf.diffuse_albedo(context) * sky.radiance(normal, context.wavelength_set);
+            own += bsdf.diffuse_transmittance(context) * sky.radiance(-normal, context.wavelength_set);
             own += bsdf.glossy_albedo(&from_outside(interaction, context))
                 * sky.radiance(mirrored, context.wavelength_set);
         }

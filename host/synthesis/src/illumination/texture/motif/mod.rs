@@ -8,6 +8,7 @@ mod wood;
 mod varied;
 mod cover;
 mod strata;
+mod cracks;
 
 use super::{Image, MOST_PAINTS, TextureError, TextureFootprint};
 use cover::Lying;
@@ -156,6 +157,14 @@ motifs! {
     check strata::check(*turbulence), parts |sampled| two(strata::second(sampled, *turbulence)),
     mean two(strata::MEAN),
     tried Motif::Strata { turbulence: 0.4 };
+
+    /// Scales of the second paint with cracks of the first between them.
+    Cracks "cracks" {
+        /// How many frequencies it has, each twice the one before, 1 to 16.
+        octaves: u32,
+    }
+    check cracks::check(*octaves), parts |sampled| two(cracks::second(sampled, *octaves)), mean two(cracks::mean(*octaves)),
+    tried Motif::Cracks { octaves: 4 };
 }
 
 impl Motif {

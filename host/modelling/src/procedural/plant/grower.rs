@@ -1,0 +1,104 @@
+//! A tree while it grows: its numbers, and what has been drawn of it.
+
+use super::crown::PruningEnvelope;
+use super::error::PlantError;
+use super::instant::PlantInstant;
+use super::parameters::{StemNumber, TREE_PARAMETERS, TreeNumber};
+use super::tree_model::TreeModel;
+use crate::numeric::sampling::RandomStream;
+use crate::procedural::drawing::{CrossSection, PlantDrawing, Stroke, StrokeNode, append};
+use crate::procedural::{Varied, channel};
+use glam::DVec3;
+
+/// Most stems of a tree.
+const MOST_STEMS: usize = 1 << 22;
+/// A stem is thin if its diameter is below this part of the detail.
+const THIN: f64 = 0.5;
+/// The coarsest detail of a tree, in parts of its height.
+const COARSEST: f64 = 1.0 / 24.0;
+
+/// A tree while it grows.
+pub(super) struct Grower<'a> {
+    pub model: &'a TreeModel,
+    tree: [f64; TREE_PARAMETERS.len()],
+    pub instant: PlantInstant,
+    pub detail: f64,
+    pub envelope: Option<PruningEnvelope>,
+    pub drawing: PlantDrawing,
+    stems: usize,
+}
+
+impl<'a> Grower<'a> {
+    pub fn new(model: &'a TreeModel, seed: u32, instant: PlantInstant, detail: f64) -> Grower<'a> {
+        let number = |k: usize| {
+            let row = &TREE_PARAMETERS[k];
+            model.numbers.tree_by_place(k).draw(seed, channel(row.name))
+        };
+        let tree: [f64; TREE_PARAMETERS.len()] = std::array::from_fn(number);
+        let mut grower =
+            Grower { model, tree, instant, detail, envelope: None, drawing: PlantDrawing::default(), stems: 0 };
+        grower.detail = detail.min(grower.coarsest());
+        if grower.number(TreeNumber::PruneRatio) > 0.0 {
+            let height = grower.number(TreeNumber::Height);
+            grower.envelope = Some(PruningEnvelope {
+                height,
+                base: grower.number(TreeNumber::Base) * height,
+                width: grower.number(TreeNumber::PruneWidth),
+                peak: grower.number(TreeNumber::PrunePeak),
+                low: grower.number(TreeNumber::PruneLow),
+                high: grower.number(TreeNumber::PruneHigh),
+            });
+        }
+        grower
+    }
+
+    /// The coarsest detail.
+    pub fn coarsest(&self) -> f64 {
+        self.number(TreeNumber::Height) * COARSEST
+    }
+
+    /// A number of this tree.
+    pub fn number(&self, number: TreeNumber) -> f64 {
+        self.tree[number as usize]
+    }
+
+    /// How many levels of stems it has.
+    pub fn levels(&self) -> usize {
+        self.number(TreeNumber::Levels).round() as usize
+    }
+
+    /// A number of a stem.
+    pub fn draw(&self, level: usize, number: StemNumber, random: &mut RandomStream) -> f64 {
+        drawn(self.model.numbers.stem(level, number), random)
+    }
+
+    /// How much wider a thin stem is drawn if it stays; none if it does not. Those that stay show in the mean as much as
+    /// all.
+    ///
+    /// - `width`: its diameter. `key`: of the stem.
+    pub fn thinned(&self, width: f64, key: u64) -> Option<f64> {
+        let kept = (width / (THIN * self.detail)).min(1.0);
+        (kept >= 1.0 || RandomStream::new(key, 4).uniform() < kept).then(|| kept.recip())
+    }
+
+    /// Counts a stem.
+    pub fn count(&mut self) -> Result<(), PlantError> {
+        self.stems += 1;
+        if self.stems > MOST_STEMS { Err(PlantError::TooManyStems { most: MOST_STEMS }) } else { Ok(()) }
+    }
+
+    /// Appends a stroke through nodes.
+    pub fn stroke(&mut self, nodes: &[(DVec3, f64)], section: CrossSection) -> Result<(), PlantError> {
+        let first = self.drawing.nodes.len();
+        for (position, radius) in nodes {
+            append(&mut self.drawing.nodes, StrokeNode { position: *position, radius: *radius, colour: 0 }, "stems")?;
+        }
+        append(&mut self.drawing.strokes, Stroke { first, section }, "stems")?;
+        Ok(())
+    }
+}
+
+/// A number that varies, drawn from a stream.
+pub(super) fn drawn(varied: Varied, random: &mut RandomStream) -> f64 {
+    varied.mean + varied.deviation * (2.0 * random.uniform() - 1.0)
+}
