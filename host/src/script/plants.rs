@@ -2,7 +2,7 @@
 
 use super::builder::Builder;
 use super::function::{Function, function};
-use super::kinds::{Integer, Length, NumberKind, Reflectances, TextKind, VariedKind, VariedMap};
+use super::kinds::{Integer, Length, NameOrFile, NumberKind, PlantNumbers, Reflectances, VariedKind, VariedMap};
 use super::parameter::{checked, optional, required, with_default};
 use super::procedural::add_model;
 use crate::color::Color;
@@ -29,7 +29,10 @@ const COLOURS: [[f64; 3]; 5] =
 pub(super) const FUNCTIONS: &[Function] = &[
     function! {
         plant(
-            species: required(TextKind, "one that ships with the program, or a file of one that ends in .toml; peris help plant lists them"),
+            species: required(
+                NameOrFile { names: || SPECIES.iter().map(|row| row.name).collect(), ending: ".toml" },
+                "the species",
+            ),
             kinds: with_default(Integer(1, MOST_KINDS), 1, "how many different ones there are, where instances place it"),
             seed: with_default(Integer(0u32, u32::MAX), 1, "which ones"),
             age: with_default(NumberKind(0.0, 1.0), 1.0, "the part of its growth that is over"),
@@ -39,9 +42,9 @@ pub(super) const FUNCTIONS: &[Function] = &[
                 "time of the year in parts of it: 0 is midwinter, 0.25 spring, 0.5 midsummer, 0.75 autumn",
             ),
             vary: optional(
-                VariedMap,
+                PlantNumbers,
                 "those of the species",
-                "numbers of the species that are others here: each a number or [mean, deviation]; those of a level of stems have its number behind their names, as in length_1",
+                "numbers of the species that are others here: each a number, or [mean, deviation] of what is drawn for each plant or stem",
             ),
         )
         "Adds a plant that grows from a species: stems, leaves, blossoms and fruit by its age and the season, as finely as it is seen. Species measure in metres."
@@ -74,8 +77,8 @@ pub(super) const FUNCTIONS: &[Function] = &[
     function! {
         lsystem(
             grammar: required(
-                TextKind,
-                "a figure of \"The Algorithmic Beauty of Plants\" that ships with the program, or a file of a grammar that ends in .lsys; the guide tells its notation",
+                NameOrFile { names: || ABOP_FIGURES.iter().map(|figure| figure.name).collect(), ending: ".lsys" },
+                "its text, in the notation that the guide tells, or a figure of \"The Algorithmic Beauty of Plants\"",
             ),
             steps: optional(Integer(0u32, 100_000), "those of the grammar", "of the derivation"),
             colours: with_default(

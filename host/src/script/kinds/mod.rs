@@ -15,7 +15,7 @@ pub(super) use materials::{
     AmountKind, DistributionKind, DistributionValue, FunctionOfAngle, MaterialOrigin, MaterialOriginKind, Reflectance,
     Reflectances,
 };
-pub(super) use models::{BoundsKind, ModelFunction, VariedKind, VariedMap};
+pub(super) use models::{BoundsKind, ModelFunction, NameOrFile, PlantNumbers, VariedKind, VariedMap};
 pub(super) use numbers::{ANY_NUMBER, Integer, Length, NumberKind, RangeKind, number};
 pub(super) use places::{ObjectGroups, PlaceValue, PlacesKind};
 pub(super) use vectors::{AxisKind, Factors, Lengths, NamedAxis, Powers, RectangleKind, Vector};

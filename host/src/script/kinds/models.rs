@@ -2,8 +2,10 @@
 
 use super::numbers::number;
 use super::vectors::vector;
+use super::words::TextKind;
 use crate::numeric::bounds::Bounds;
 use crate::procedural::Varied;
+use crate::procedural::plant::{STEM_PARAMETERS, TREE_PARAMETERS, TreeParameter};
 use crate::script::parameter::{HasDefault, ParameterKind};
 use rhai::{Array, Dynamic, FnPtr, Map};
 
@@ -22,6 +24,49 @@ pub(in crate::script) struct VariedKind;
 /// Values by name, each of which may differ from one kind of a model to the next; see [`VariedKind`].
 #[derive(Clone, Copy)]
 pub(in crate::script) struct VariedMap;
+
+/// The name of something that ships with the program, or a file.
+#[derive(Clone, Copy)]
+pub(in crate::script) struct NameOrFile {
+    /// The names.
+    pub(in crate::script) names: fn() -> Vec<&'static str>,
+    /// How the names of files end.
+    pub(in crate::script) ending: &'static str,
+}
+
+/// Numbers of plants by name, each of which may differ from one kind to the next.
+#[derive(Clone, Copy)]
+pub(in crate::script) struct PlantNumbers;
+
+impl ParameterKind for NameOrFile {
+    type Value = String;
+
+    fn words(&self) -> String {
+        format!("a file that ends in {}, or one of {}", self.ending, (self.names)().join(", "))
+    }
+
+    fn read(&self, value: &Dynamic) -> Option<String> {
+        TextKind.read(value)
+    }
+}
+
+impl ParameterKind for PlantNumbers {
+    type Value = Vec<(String, Dynamic)>;
+
+    fn words(&self) -> String {
+        let names = |rows: &[TreeParameter]| rows.iter().map(|row| row.name).collect::<Vec<_>>().join(", ");
+        format!(
+            "a map #{{ height: [12, 2], length_1: 0.4 }} of {}, and of each level of stems, with its number behind the \
+             name, {}",
+            names(TREE_PARAMETERS),
+            names(STEM_PARAMETERS)
+        )
+    }
+
+    fn read(&self, value: &Dynamic) -> Option<Vec<(String, Dynamic)>> {
+        VariedMap.read(value)
+    }
+}
 
 impl ParameterKind for ModelFunction {
     type Value = FnPtr;
