@@ -56,7 +56,7 @@ const ROWS: [Row; 14] = [
     row("shoots_by_chance", Class::Parametric, [28, 33]),
     counted(row("signal_far", Class::Context, [100, 200]), "b", |_| 2),
     row("hogeweg_hesper_a", Class::Context, [40, 52]),
-    row("mycelis", Class::Context, [90, 400]),
+    row("mycelis", Class::Context, [45, 90]),
     row("anabaena", Class::Context, [300, 430]),
 ];
 
