@@ -25,14 +25,16 @@ enum Class {
     Context,
 }
 
+/// A module and how many there are after so many steps.
+type Known = (&'static str, fn(u32) -> usize);
+
 /// A grammar that is measured.
 struct Row {
     name: &'static str,
     class: Class,
     /// Of the shorter and of the longer derivation.
     steps: [u32; 2],
-    /// A module and how many there are after so many steps, where that is known.
-    known: Option<(&'static str, fn(u32) -> usize)>,
+    known: Option<Known>,
 }
 
 const fn row(name: &'static str, class: Class, steps: [u32; 2]) -> Row {
