@@ -53,7 +53,7 @@ pub enum GrammarProblem {
     /// A name that is given twice.
     #[error("`{0}` is given twice")]
     Twice(String),
-    /// A grammar without an axiom.
+    /// A grammar without an axiom, or one within it.
     #[error("the grammar has no axiom")]
     NoAxiom,
     /// A bracket or brace without its partner.
@@ -209,6 +209,12 @@ pub enum DerivationError {
     EndlessInterpretation {
         /// The depth.
         depth: u32,
+    },
+    /// Grammars that place each other without an end.
+    #[error("grammars stand more than {most} deep within one another and within interpretation productions")]
+    EndlessNesting {
+        /// How deep they may stand.
+        most: u32,
     },
     /// Interpretation productions that make more than can be looked at.
     #[error("more than {most} modules are interpreted")]

@@ -23,7 +23,7 @@ fn faults_have_places_and_say_what_was_expected_and_found() {
         ("axiom: F\nF(x) -> F(y)", "line 2, column 11: there is no parameter or constant `y`; there are x"),
         ("axiom: F\nF -> F[+F", "line 2, column 6: `[` has no partner in this word"),
         ("axiom: F\nF -> F]+[F", "line 2, column 6: `]` has no partner in this word"),
-        ("axiom: F\nF -> ~leef", "line 2, column 7: there is no surface `leef`; there are none"),
+        ("axiom: F\nF -> ~leef", "line 2, column 7: there is no surface or grammar `leef`; there are none"),
         ("axiom: F\n[A] < F -> G", "line 2, column 1: `[` may not stand in a left context"),
         ("axiom: F\n[ -> G", "line 2, column 1: `[` may not stand in a strict predecessor"),
         ("axiom: F\naxiom: G", "line 2, column 7: `axiom` is given twice"),

@@ -7,6 +7,7 @@ use super::formula_parser::{Names, formula};
 use super::predefined::surface;
 use super::production::{GrammarProduction, ProductionSet};
 use super::scanner::{Cursor, Statement, statements};
+use super::system::{ContextSight, RewritingSystem, SETTINGS, Setting};
 use super::word_parser::WordParser;
 use crate::procedural::Varied;
 use crate::procedural::drawing::PredefinedSurface;
@@ -37,55 +38,6 @@ pub(super) enum GlobalValue {
     Parameter(usize),
 }
 
-/// Which modules contexts see.
-#[derive(Clone, Debug, Default)]
-pub(super) enum ContextSight {
-    #[default]
-    All,
-    Ignored(BTreeSet<String>),
-    Considered(BTreeSet<String>),
-}
-
-/// A number that a grammar sets: its heading, the range in which it must lie, and what it is without a word.
-pub(super) struct SettingRow {
-    pub heading: &'static str,
-    pub range: &'static str,
-    pub is_in_range: fn(f64) -> bool,
-    pub default: f64,
-}
-
-/// The settings of a grammar; [`Setting`] names their rows.
-pub(super) const SETTINGS: [SettingRow; 9] = [
-    SettingRow {
-        heading: "derivation length",
-        range: "a whole number, 0 and more",
-        is_in_range: |n| n >= 0.0 && n.fract() == 0.0 && n < 4e9,
-        default: 1.0,
-    },
-    SettingRow { heading: "angle", range: "finite", is_in_range: f64::is_finite, default: 90.0 },
-    SettingRow { heading: "length", range: "finite", is_in_range: f64::is_finite, default: 1.0 },
-    SettingRow { heading: "width", range: "0 or more", is_in_range: |n| n >= 0.0, default: 0.1 },
-    SettingRow { heading: "narrowing", range: "0 or more", is_in_range: |n| n >= 0.0, default: 0.707 },
-    SettingRow { heading: "elasticity", range: "finite", is_in_range: f64::is_finite, default: 0.0 },
-    SettingRow { heading: "tropism x", range: "finite", is_in_range: f64::is_finite, default: 0.0 },
-    SettingRow { heading: "tropism y", range: "finite", is_in_range: f64::is_finite, default: -1.0 },
-    SettingRow { heading: "tropism z", range: "finite", is_in_range: f64::is_finite, default: 0.0 },
-];
-
-/// The rows of [`SETTINGS`].
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Setting {
-    DerivationLength,
-    Angle,
-    Length,
-    Width,
-    Narrowing,
-    Elasticity,
-    TropismX,
-    TropismY,
-    TropismZ,
-}
-
 /// An L-system: an axiom, and productions that replace all modules of a string at once, again and again.
 ///
 /// The notation is that of the module. Strings of one seed and one choice of parameters come from a
@@ -99,12 +51,8 @@ pub struct LSystem {
     pub(super) parameters: Vec<GrammarParameter>,
     /// Constants and parameters, each of which may use those before it.
     pub(super) globals: Vec<(GlobalValue, TextPlace)>,
-    pub(super) settings: [Option<Formula>; SETTINGS.len()],
-    pub(super) axiom: ModuleWord,
-    pub(super) sight: ContextSight,
-    pub(super) productions: ProductionSet,
-    pub(super) decomposition: ProductionSet,
-    pub(super) interpretation: ProductionSet,
+    /// The grammar itself, and after it those within it.
+    pub(super) systems: Vec<RewritingSystem>,
     pub(super) surfaces: Arc<[PredefinedSurface]>,
 }
 
@@ -115,7 +63,10 @@ impl LSystem {
     /// The first fault, with its line and column, what was expected and what was found.
     pub fn parse(text: &str) -> Result<LSystem, GrammarError> {
         let statements = statements(text)?;
-        let mut reader = Reader::default();
+        let last = statements.last().map(|statement| statement.cursor().place());
+        let place = last.unwrap_or(TextPlace { line: 1, column: 1 });
+        let mut reader =
+            Reader { systems: vec![SystemReader { place, ..SystemReader::default() }], ..Reader::default() };
         let mut rest = Vec::new();
         for statement in &statements {
             if !reader.declaration(&mut statement.cursor())? {
@@ -126,22 +77,11 @@ impl LSystem {
         for statement in rest {
             reader.statement(statement)?;
         }
-        let Some(axiom) = reader.axiom else {
-            let last = statements.last().map(|statement| statement.cursor().place());
-            let place = last.unwrap_or(TextPlace { line: 1, column: 1 });
-            return Err(GrammarError { place, problem: GrammarProblem::NoAxiom });
-        };
-        let [productions, decomposition, interpretation] = reader.sets;
         Ok(LSystem {
             alphabet: Arc::new(reader.alphabet.0),
             parameters: reader.parameters,
             globals: reader.globals,
-            settings: reader.settings,
-            axiom,
-            sight: reader.sight,
-            productions,
-            decomposition,
-            interpretation,
+            systems: reader.systems.into_iter().map(SystemReader::finished).collect::<Result<_, _>>()?,
             surfaces: reader.surfaces.into(),
         })
     }
@@ -171,19 +111,47 @@ impl Default for GrowingAlphabet {
 struct Reader {
     alphabet: GrowingAlphabet,
     names: Vec<String>,
-    surface_names: Vec<String>,
+    /// Of surfaces and of the grammars within this one.
+    placed_names: Vec<String>,
     surfaces: Vec<PredefinedSurface>,
     global_names: Vec<String>,
     globals: Vec<(GlobalValue, TextPlace)>,
     parameters: Vec<GrammarParameter>,
+    /// The last one is being read.
+    systems: Vec<SystemReader>,
+}
+
+/// What has been read of an axiom and its productions.
+#[derive(Default)]
+struct SystemReader {
+    name: String,
+    /// Where a missing axiom is missed.
+    place: TextPlace,
     settings: [Option<Formula>; SETTINGS.len()],
     axiom: Option<ModuleWord>,
-    sight: ContextSight,
-    is_sight_set: bool,
+    sight: Option<ContextSight>,
     /// Of derivation, decomposition and interpretation.
     sets: [ProductionSet; 3],
-    /// The one that is being read.
+    /// The set that is being read.
     current: usize,
+}
+
+impl SystemReader {
+    fn finished(self) -> Result<RewritingSystem, GrammarError> {
+        let Some(axiom) = self.axiom else {
+            return Err(GrammarError { place: self.place, problem: GrammarProblem::NoAxiom });
+        };
+        let [productions, decomposition, interpretation] = self.sets;
+        Ok(RewritingSystem {
+            name: self.name,
+            settings: self.settings,
+            axiom,
+            sight: self.sight.unwrap_or_default(),
+            productions,
+            decomposition,
+            interpretation,
+        })
+    }
 }
 
 impl Reader {
@@ -206,18 +174,35 @@ impl Reader {
             }
         } else if cursor.is_at("surface ") {
             cursor.take("surface");
-            let before = cursor.clone();
-            let name = cursor.take_name().ok_or_else(|| cursor.expected("a name of a surface"))?;
-            cursor.require(":")?;
-            if self.surface_names.contains(&name) {
-                return Err(before.fault(GrammarProblem::Twice(name)));
-            }
-            self.surface_names.push(name.clone());
+            let name = self.new_placed(cursor, "a name of a surface")?;
             self.surfaces.push(surface(name, cursor)?);
+        } else if cursor.is_at("grammar ") {
+            // Its name may stand before it; what it says is read later.
+            cursor.take("grammar");
+            self.new_placed(cursor, "a name of a grammar")?;
+            return Ok(false);
         } else {
             return Ok(false);
         }
         Ok(true)
+    }
+
+    /// Reads `NAME:` of what modules `~NAME` place, which is not known yet.
+    fn new_placed(&mut self, cursor: &mut Cursor, what: &str) -> Result<String, GrammarError> {
+        let before = cursor.clone();
+        let name = cursor.take_name().ok_or_else(|| cursor.expected(what))?;
+        cursor.require(":")?;
+        if self.placed_names.contains(&name) {
+            return Err(before.fault(GrammarProblem::Twice(name)));
+        }
+        self.placed_names.push(name.clone());
+        Ok(name)
+    }
+
+    /// The axiom with productions that is being read.
+    fn system(&mut self) -> &mut SystemReader {
+        let last = self.systems.len() - 1;
+        &mut self.systems[last]
     }
 
     /// Reads `parameter NAME = MEAN +/- DEVIATION "DESCRIPTION"`, the last two where they are.
@@ -283,6 +268,14 @@ impl Reader {
     /// Reads a statement that declares no name.
     fn statement(&mut self, statement: &Statement) -> Result<(), GrammarError> {
         let cursor = &mut statement.cursor();
+        if cursor.is_at("grammar ") {
+            let place = cursor.place();
+            cursor.take("grammar");
+            let name = cursor.take_name().unwrap_or_default();
+            cursor.require(":")?;
+            self.systems.push(SystemReader { name, place, ..SystemReader::default() });
+            return cursor.require_end();
+        }
         for (heading, is_ignored) in [("#ignore", true), ("#consider", false), ("ignore", true), ("consider", false)] {
             let is_found = cursor.take_heading(heading) || heading.starts_with('#') && cursor.take(heading);
             if is_found {
@@ -290,17 +283,17 @@ impl Reader {
             }
         }
         if cursor.take_heading("axiom") {
-            if self.axiom.is_some() {
+            if self.system().axiom.is_some() {
                 return Err(cursor.fault(GrammarProblem::Twice("axiom".into())));
             }
-            self.axiom = Some(self.words().word(cursor, &[])?);
+            self.system().axiom = Some(self.words().word(cursor, &[])?);
             return cursor.require_end();
         }
         for (number, headings) in
             [&["productions"][..], &["decomposition"], &["interpretation", "homomorphism"]].iter().enumerate()
         {
             if headings.iter().any(|heading| cursor.take_heading(heading)) {
-                self.current = number;
+                self.system().current = number;
                 return cursor.require_end();
             }
         }
@@ -312,7 +305,8 @@ impl Reader {
                 let range = "a whole number of 1 to 200";
                 return Err(before.fault(GrammarProblem::OutOfRange { what: "maximum depth", value, range }));
             }
-            self.sets[self.current].depth = Some(value as u32);
+            let system = self.system();
+            system.sets[system.current].depth = Some(value as u32);
             return cursor.require_end();
         }
         if self.setting(cursor)? {
@@ -328,8 +322,9 @@ impl Reader {
         let before = cursor.clone();
         let production: GrammarProduction = self.words().production(cursor)?;
         let is_context_free = production.left.is_empty() && production.right.is_empty();
-        let set = &mut self.sets[self.current].productions;
-        if self.current > 0 && !is_context_free {
+        let system = self.system();
+        let set = &mut system.sets[system.current].productions;
+        if system.current > 0 && !is_context_free {
             return Err(before.expected("a production without contexts in decomposition and interpretation"));
         }
         if set.len() == MOST_PRODUCTIONS {
@@ -343,7 +338,7 @@ impl Reader {
         WordParser {
             alphabet: &mut self.alphabet.0,
             names: &self.names,
-            surfaces: &self.surface_names,
+            placed: &self.placed_names,
             globals: &self.global_names,
         }
     }
@@ -353,7 +348,7 @@ impl Reader {
         // ABOP has a colon after the blank.
         cursor.take(":");
         let before = cursor.clone();
-        if std::mem::replace(&mut self.is_sight_set, true) {
+        if self.system().sight.is_some() {
             return Err(before.fault(GrammarProblem::Twice("ignore or consider".into())));
         }
         let mut names = BTreeSet::new();
@@ -364,7 +359,8 @@ impl Reader {
             }
             names.insert(name);
         }
-        self.sight = if is_ignored { ContextSight::Ignored(names) } else { ContextSight::Considered(names) };
+        let sight = if is_ignored { ContextSight::Ignored(names) } else { ContextSight::Considered(names) };
+        self.system().sight = Some(sight);
         cursor.require_end()
     }
 
@@ -387,7 +383,7 @@ impl Reader {
         }
         for (row, value) in found {
             check_constant(&value)?;
-            if self.settings[row].replace(value).is_some() {
+            if self.system().settings[row].replace(value).is_some() {
                 return Err(before.fault(GrammarProblem::Twice(SETTINGS[row].heading.into())));
             }
         }

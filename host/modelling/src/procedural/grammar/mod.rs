@@ -33,11 +33,15 @@
 //! productions:                              productions of the derivation again
 //! surface petal:                            x to the right of the turtle, y ahead, z along its up vector
 //!   polygon (0,0,0) (1,1,0) (-1,1,0)        and `patch` with 16 points, row by row
+//! grammar leaf:                             a grammar within this one: settings, axiom and productions of its own
+//! derivation length: 3                      follow, up to the next `grammar` or the end
+//! axiom: X
+//! X -> F[+F][-F]X
 //! ```
 //!
-//! A **module** is one letter or sign, a declared name, `~` with the name of a surface, or `?` or `@` with a letter. It
-//! has any number of parameters in brackets, right behind it; modules with other numbers of parameters are other
-//! modules. Blanks part modules where that is needed, as in `- > -`.
+//! A **module** is one letter or sign, a declared name, `~` with the name of a surface or grammar, or `?` or `@` with a
+//! letter. It has any number of parameters in brackets, right behind it; modules with other numbers of parameters are
+//! other modules. Blanks part modules where that is needed, as in `- > -`.
 //!
 //! A **production** is `left < predecessor > right : condition -> successor : probability`; all but predecessor, arrow
 //! and successor may be left out, or be `*`. `*` is the empty successor. The arrow is `->`, `-->` or `→`. The first
@@ -47,6 +51,15 @@
 //!
 //! **Contexts** see past brackets as in section 1.8 of ABOP: the left context lies on the way to the root, the right
 //! one on the way to the tip of the same branch, and what stands in brackets in it at the beginning of a side branch.
+//!
+//! **Grammars within the grammar** are drawn where a module names them: `~leaf(scale, steps, variant)`, of which the
+//! last may be left out. `scale` is a factor of lengths and widths, 1 without a word; nothing is drawn for 0 and less.
+//! `steps`, of which the whole part counts, is how old it is, else its derivation length. `variant` is any number, 0
+//! without a word: those of one variant and age are alike, others draw other random numbers. The turtle begins with
+//! the settings of that grammar and with the colour that it has, and is afterwards as it was. Each derives on its own:
+//! contexts see the module, not what it stands for. Constants, parameters, names and surfaces are those of the whole
+//! text, wherever they stand. Grammars may place each other, up to 100 deep. Modules that ask are answered there as if
+//! the grammar grew alone, in the origin and with nothing around it.
 //!
 //! **Expressions** have `|` or `||`, `&` or `&&`, `==` or `=`, `!=`, `<`, `<=`, `>`, `>=`, `+`, `-`, `*`, `/`, `%`,
 //! signs, `!` and `^`, from weak to strong, and the functions sin, cos, tan, asin, acos, atan, atan2 (degrees), exp,
@@ -60,9 +73,10 @@
 //! # Source
 //! Lindenmayer 1968. Prusinkiewicz and Lindenmayer 1990. Modules that ask and cuts: Prusinkiewicz, James and Mech 1994;
 //! environments: Mech and Prusinkiewicz 1996. Decomposition and interpretation as in the program cpfg: Prusinkiewicz,
-//! Hanan and Mech 1999.
+//! Hanan and Mech 1999. Grammars within grammars after the sub-L-systems of Hanan 1992 and of cpfg, which derive
+//! together with the string around them; here the module says how many steps they have had.
 //!
-//! *Not modelled:* L-systems within L-systems, and modules with an age between steps.
+//! *Not modelled:* modules with an age between steps, and sub-L-systems that hear of what is around them.
 
 mod error;
 mod function;
@@ -73,9 +87,10 @@ mod formula_parser;
 mod production;
 mod word_parser;
 mod predefined;
-mod lsystem;
 mod sight;
 mod rules;
+mod system;
+mod lsystem;
 mod rewriting;
 mod growth;
 mod turtle;
@@ -96,3 +111,5 @@ mod derivation_tests;
 mod drawing_tests;
 #[cfg(test)]
 mod language_tests;
+#[cfg(test)]
+mod nesting_tests;

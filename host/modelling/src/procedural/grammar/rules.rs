@@ -103,6 +103,32 @@ impl Rule {
         }
         Some(&buffer[..filled])
     }
+
+    /// The formal parameters for a module to which it applies: neighbours are the contexts, and the condition holds.
+    #[inline]
+    fn frame_if_applies<'a>(
+        &self,
+        view: &StringView<'a>,
+        at: usize,
+        offset: usize,
+        buffer: &'a mut [f64; MOST_FORMALS],
+        random: &mut ModuleRandom,
+    ) -> Result<Option<&'a [f64]>, EvaluationError> {
+        let Some(frame) = self.frame(view, at, offset, buffer) else { return Ok(None) };
+        let Some(condition) = &self.condition else { return Ok(Some(frame)) };
+        Ok((condition.evaluate(frame, random)? != 0.0).then_some(frame))
+    }
+
+    /// The probability, where it has one.
+    #[inline]
+    fn chance(&self, frame: &[f64], random: &mut ModuleRandom) -> Result<Option<f64>, DerivationError> {
+        let Some(probability) = &self.probability else { return Ok(None) };
+        let value = probability.evaluate(frame, random)?;
+        if value < 0.0 {
+            return Err(DerivationError::NegativeProbability { place: self.place, value });
+        }
+        Ok(Some(value))
+    }
 }
 
 /// What becomes of modules of a kind.
@@ -174,37 +200,47 @@ impl RuleSet {
         offset: usize,
         random: &mut ModuleRandom,
     ) -> Result<u16, DerivationError> {
-        let mut chances = [(0_u16, 0.0); MOST_CHANCES];
-        let (mut count, mut sum) = (0, 0.0);
-        for candidate in &self.candidates[usize::from(row)] {
+        let candidates = &self.candidates[usize::from(row)];
+        for (number, candidate) in candidates.iter().enumerate() {
             let rule = &self.rules[usize::from(*candidate)];
             let mut buffer = [0.0; MOST_FORMALS];
-            let Some(frame) = rule.frame(view, at, offset, &mut buffer) else { continue };
-            if let Some(condition) = &rule.condition
-                && condition.evaluate(frame, random)? == 0.0
-            {
-                continue;
-            }
-            let Some(probability) = &rule.probability else {
-                if count == 0 {
-                    return Ok(*candidate);
-                }
-                continue;
-            };
-            let value = probability.evaluate(frame, random)?;
-            if value < 0.0 {
-                return Err(DerivationError::NegativeProbability { place: rule.place, value });
-            }
+            let Some(frame) = rule.frame_if_applies(view, at, offset, &mut buffer, random)? else { continue };
+            let Some(chance) = rule.chance(frame, random)? else { return Ok(*candidate) };
+            return self.draw((*candidate, chance), &candidates[number + 1..], view, at, offset, random);
+        }
+        Ok(KEEP)
+    }
+
+    /// Draws one of the productions with a probability that apply to a module.
+    ///
+    /// - `first`: the first of them, and its probability.
+    /// - `others`: those that may apply besides.
+    #[inline(never)]
+    fn draw(
+        &self,
+        first: (u16, f64),
+        others: &[u16],
+        view: &StringView,
+        at: usize,
+        offset: usize,
+        random: &mut ModuleRandom,
+    ) -> Result<u16, DerivationError> {
+        let mut chances = [first; MOST_CHANCES];
+        let (mut count, mut sum) = (1, first.1);
+        for candidate in others {
+            let rule = &self.rules[usize::from(*candidate)];
+            let mut buffer = [0.0; MOST_FORMALS];
+            let Some(frame) = rule.frame_if_applies(view, at, offset, &mut buffer, random)? else { continue };
+            let Some(chance) = rule.chance(frame, random)? else { continue };
             if count == MOST_CHANCES {
                 return Err(DerivationError::TooManyChances { place: rule.place, most: MOST_CHANCES });
             }
-            sum += value;
-            chances[count] = (*candidate, value);
+            sum += chance;
+            chances[count] = (*candidate, chance);
             count += 1;
         }
-        let Some((first, _)) = chances[..count].first() else { return Ok(KEEP) };
         if (sum - 1.0).abs() > ROUNDING {
-            return Err(DerivationError::Probability { place: self.rules[usize::from(*first)].place, sum });
+            return Err(DerivationError::Probability { place: self.rules[usize::from(first.0)].place, sum });
         }
         let mut rest = random.uniform() * sum;
         for (candidate, chance) in &chances[..count] {

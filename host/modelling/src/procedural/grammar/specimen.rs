@@ -1,16 +1,16 @@
 //! A plant of a grammar: its parameters are drawn, its string is derived and drawn.
 
-use super::alphabet::{Alphabet, CLOSE, ModuleString, ModuleWord, OPEN};
+use super::alphabet::{Alphabet, CLOSE, ModuleString, OPEN};
 use super::error::DerivationError;
 use super::function::ModuleRandom;
 use super::growth::check_growth;
-use super::lsystem::{ContextSight, GlobalValue, LSystem, SETTINGS, Setting};
-use super::production::ProductionSet;
+use super::lsystem::{GlobalValue, LSystem};
 use super::rewriting::Rewriting;
 use super::rules::RuleSet;
 use super::sight::StringView;
-use super::turtle::Environment;
-use super::walk::{Meaning, TurtleWalk, WalkRules, meanings};
+use super::system::{BoundSystem, Setting};
+use super::turtle::{EmptyEnvironment, Environment};
+use super::walk::{Meaning, SystemPlacement, TurtleWalk, WalkRules, meanings};
 use crate::numeric::sampling::mix;
 use crate::procedural::drawing::PredefinedSurface;
 use crate::procedural::drawing::{DrawingBuilder, PlantDrawing};
@@ -20,8 +20,6 @@ use std::sync::Arc;
 
 /// Most steps of a derivation.
 const MOST_STEPS: u32 = 100_000;
-/// How often decomposition and interpretation apply to what they made, where the grammar does not say.
-const DEPTH: u32 = 50;
 
 /// One plant of a grammar: its parameters are drawn from a seed.
 #[derive(Clone, Debug)]
@@ -29,17 +27,11 @@ pub struct Specimen {
     alphabet: Arc<Alphabet>,
     surfaces: Arc<[PredefinedSurface]>,
     parameters: Vec<f64>,
-    settings: [f64; SETTINGS.len()],
-    axiom: ModuleWord,
     arities: Box<[u8; 256]>,
-    is_seen: Box<[bool; 256]>,
     meanings: Box<[Meaning; 256]>,
     cut: Option<u8>,
-    productions: RuleSet,
-    decomposition: RuleSet,
-    decomposition_depth: u32,
-    interpretation: RuleSet,
-    interpretation_depth: u32,
+    /// The grammar itself, and after it those within it.
+    systems: Vec<BoundSystem>,
     seed: u64,
 }
 
@@ -74,23 +66,12 @@ impl Specimen {
             });
         }
         let alphabet = &system.alphabet;
-        let rules = |set: &ProductionSet| RuleSet::new(&set.productions, alphabet, &globals);
+        let systems = system.systems.iter().map(|system| system.bound(alphabet, &globals));
         Ok(Specimen {
-            settings: settings(system, &globals)?,
-            axiom: system.axiom.bound(&globals),
+            systems: systems.collect::<Result<_, _>>()?,
             arities: alphabet.table(0, |kind| kind.arity),
-            is_seen: alphabet.table(true, |kind| match &system.sight {
-                ContextSight::All => true,
-                ContextSight::Ignored(names) => !names.contains(&kind.name),
-                ContextSight::Considered(names) => names.contains(&kind.name),
-            }),
-            meanings: meanings(alphabet, &system.surfaces),
+            meanings: meanings(alphabet, &system.surfaces, &system.systems),
             cut: alphabet.kinds().iter().position(|kind| kind.name == "%" && kind.arity == 0).map(|cut| cut as u8),
-            productions: rules(&system.productions),
-            decomposition: rules(&system.decomposition),
-            decomposition_depth: system.decomposition.depth.unwrap_or(DEPTH),
-            interpretation: rules(&system.interpretation),
-            interpretation_depth: system.interpretation.depth.unwrap_or(DEPTH),
             alphabet: Arc::clone(alphabet),
             surfaces: Arc::clone(&system.surfaces),
             parameters,
@@ -105,7 +86,7 @@ impl Specimen {
 
     /// How many derivation steps the grammar asks for with these parameters.
     pub fn steps(&self) -> u32 {
-        self.settings[Setting::DerivationLength as usize] as u32
+        self.systems[0].settings[Setting::DerivationLength as usize] as u32
     }
 
     /// Derives a string.
@@ -121,26 +102,11 @@ impl Specimen {
     /// follows from the grammar alone before the first step is made.
     pub fn derive(&self, steps: Option<u32>, environment: &dyn Environment) -> Result<ModuleString, DerivationError> {
         let steps = steps.unwrap_or(self.steps());
-        if steps > MOST_STEPS {
-            return Err(DerivationError::TooManySteps { steps, most: MOST_STEPS });
-        }
-        if self.decomposition.is_empty() && self.cut.is_none() {
-            check_growth(&self.productions, &self.axiom.modules, &self.arities, steps)?;
-        }
-        let mut string = self.axiom()?;
-        self.complete(&mut string, 0, environment)?;
-        for step in 1..=steps {
-            if self.rewrite(&mut string, &self.productions, 2 * u64::from(step), step)? {
-                self.complete(&mut string, step, environment)?;
-            } else if self.productions.is_fixed() {
-                // Where kinds decide, what no production changes now stays as it is.
-                break;
-            }
-        }
-        Ok(string)
+        Derivation { specimen: self, system: &self.systems[0], seed: self.seed }.string(steps, environment)
     }
 
-    /// Draws what a turtle draws as it obeys a string of this grammar.
+    /// Draws what a turtle draws as it obeys a string of this grammar; grammars within it are derived as the turtle
+    /// comes to them.
     ///
     /// # Errors
     /// Interpretation productions without an end, formulas without a value, places that are not finite, and less memory
@@ -148,32 +114,69 @@ impl Specimen {
     pub fn draw(&self, string: &ModuleString) -> Result<PlantDrawing, DerivationError> {
         let mut builder = DrawingBuilder::default();
         builder.drawing.surfaces = Arc::clone(&self.surfaces);
-        TurtleWalk::new(&self.walk_rules(), Some(&mut builder)).draw(string)?;
+        let derive = |placement: &SystemPlacement| self.derive_placed(placement);
+        TurtleWalk::new(&self.walk_rules(&derive), Some(&mut builder)).draw(string)?;
         Ok(builder.finish()?)
     }
 
-    fn walk_rules(&self) -> WalkRules<'_> {
-        WalkRules {
-            meanings: &self.meanings,
-            arities: &self.arities,
-            interpretation: &self.interpretation,
-            depth: self.interpretation_depth,
-            settings: &self.settings,
-            seed: self.seed,
+    /// Derives the string of a grammar within this one.
+    fn derive_placed(&self, placement: &SystemPlacement) -> Result<ModuleString, DerivationError> {
+        let system = &self.systems[placement.system];
+        let steps = placement.steps.unwrap_or(system.settings[Setting::DerivationLength as usize] as u32);
+        Derivation { specimen: self, system, seed: placement.seed(self.seed, system) }.string(steps, &EmptyEnvironment)
+    }
+
+    fn walk_rules<'a>(
+        &'a self,
+        derive: &'a dyn Fn(&SystemPlacement) -> Result<ModuleString, DerivationError>,
+    ) -> WalkRules<'a> {
+        WalkRules { meanings: &self.meanings, arities: &self.arities, systems: &self.systems, derive, seed: self.seed }
+    }
+}
+
+/// The growth of one axiom of a plant.
+struct Derivation<'a> {
+    specimen: &'a Specimen,
+    system: &'a BoundSystem,
+    seed: u64,
+}
+
+impl Derivation<'_> {
+    /// The string after so many steps.
+    fn string(&self, steps: u32, environment: &dyn Environment) -> Result<ModuleString, DerivationError> {
+        if steps > MOST_STEPS {
+            return Err(DerivationError::TooManySteps { steps, most: MOST_STEPS });
         }
+        let productions = &self.system.productions;
+        if self.system.decomposition.is_empty() && self.specimen.cut.is_none() {
+            check_growth(productions, &self.system.axiom.modules, &self.specimen.arities, steps)?;
+        }
+        let mut string = self.axiom()?;
+        self.complete(&mut string, 0, environment)?;
+        for step in 1..=steps {
+            if self.rewrite(&mut string, productions, 2 * u64::from(step), step)? {
+                self.complete(&mut string, step, environment)?;
+            } else if productions.is_fixed() {
+                // Where kinds decide, what no production changes now stays as it is.
+                break;
+            }
+        }
+        Ok(string)
     }
 
     /// The string of the axiom.
     fn axiom(&self) -> Result<ModuleString, DerivationError> {
         let mut random = ModuleRandom::new(mix(self.seed));
-        let values = self.axiom.arguments.iter().map(|formula| formula.evaluate(&[], &mut random));
+        let axiom = &self.system.axiom;
+        let values = axiom.arguments.iter().map(|formula| formula.evaluate(&[], &mut random));
         let parameters = values.collect::<Result<Vec<f64>, _>>()?;
-        Ok(ModuleString { alphabet: Arc::clone(&self.alphabet), modules: self.axiom.modules.clone(), parameters })
+        let alphabet = Arc::clone(&self.specimen.alphabet);
+        Ok(ModuleString { alphabet, modules: axiom.modules.clone(), parameters })
     }
 
     /// Whether modules ask for the pose of the turtle or the environment.
     fn asks(&self) -> bool {
-        self.meanings.iter().any(|meaning| meaning.is_query())
+        self.specimen.meanings.iter().any(|meaning| meaning.is_query())
     }
 
     /// Applies productions to all modules; says whether one applied.
@@ -187,8 +190,8 @@ impl Specimen {
         let view = StringView {
             modules: &string.modules,
             parameters: &string.parameters,
-            arities: &self.arities,
-            is_seen: &self.is_seen,
+            arities: &self.specimen.arities,
+            is_seen: &self.system.is_seen,
             neighbours: None,
         };
         let made = Rewriting { rules, view, key: mix(self.seed ^ mix(part)), step }.run()?;
@@ -206,21 +209,24 @@ impl Specimen {
         step: u32,
         environment: &dyn Environment,
     ) -> Result<(), DerivationError> {
-        if !self.decomposition.is_empty() {
+        if !self.system.decomposition.is_empty() {
             let mut round = 0;
             let part = |round: u32| (u64::from(step) << 32) | (2 * u64::from(round) + 1);
-            while self.rewrite(string, &self.decomposition, part(round), step)? {
+            let depth = self.system.decomposition_depth;
+            while self.rewrite(string, &self.system.decomposition, part(round), step)? {
                 round += 1;
-                if round > self.decomposition_depth {
-                    return Err(DerivationError::EndlessDecomposition { depth: self.decomposition_depth });
+                if round > depth {
+                    return Err(DerivationError::EndlessDecomposition { depth });
                 }
             }
         }
-        if let Some(cut) = self.cut {
+        if let Some(cut) = self.specimen.cut {
             self.cut_off(string, cut);
         }
         if self.asks() {
-            TurtleWalk::new(&self.walk_rules(), None).answer(string, environment)?;
+            let derive = |placement: &SystemPlacement| self.specimen.derive_placed(placement);
+            let rules = WalkRules { seed: self.seed, ..self.specimen.walk_rules(&derive) };
+            TurtleWalk::of(&rules, self.system, None).answer(string, environment)?;
         }
         Ok(())
     }
@@ -232,7 +238,7 @@ impl Specimen {
         let mut depth: Option<usize> = None;
         for at in 0..string.modules.len() {
             let kind = string.modules[at];
-            let arity = usize::from(self.arities[usize::from(kind)]);
+            let arity = usize::from(self.specimen.arities[usize::from(kind)]);
             depth = match (depth, kind) {
                 (None, kind) if kind == cut => Some(0),
                 (Some(0), CLOSE) => None,
@@ -251,21 +257,4 @@ impl Specimen {
         string.modules.truncate(to);
         string.parameters.truncate(written);
     }
-}
-
-/// The numbers that the grammar sets.
-fn settings(system: &LSystem, globals: &[f64]) -> Result<[f64; SETTINGS.len()], DerivationError> {
-    let mut values = [0.0; SETTINGS.len()];
-    for ((value, row), formula) in values.iter_mut().zip(&SETTINGS).zip(&system.settings) {
-        *value = match formula {
-            Some(formula) => formula.value(globals)?,
-            None => row.default,
-        };
-        if !(row.is_in_range)(*value) {
-            let place = formula.as_ref().map(|formula| formula.place()).unwrap_or_default();
-            let (what, range) = (row.heading, row.range);
-            return Err(DerivationError::OutOfRange { place, what, value: *value, range });
-        }
-    }
-    Ok(values)
 }

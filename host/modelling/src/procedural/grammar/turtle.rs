@@ -37,7 +37,7 @@ pub(super) enum TurtleCommand {
 use TurtleCommand as T;
 
 /// The modules that the turtle obeys, and what they tell it. A module without a parameter takes the number that the
-/// grammar sets. `~NAME` besides places a predefined surface, its parameter times as large as it is.
+/// grammar sets. `~NAME` besides places a predefined surface, its parameter times as large as it is, or a grammar.
 pub(super) const COMMANDS: [(&str, TurtleCommand, &str); 26] = [
     ("F", T::Draw, "moves ahead by a length and draws a line; in a polygon it sets a corner and draws none"),
     ("f", T::Move, "moves ahead by a length; in a polygon it sets a corner"),
@@ -67,7 +67,8 @@ pub(super) const COMMANDS: [(&str, TurtleCommand, &str); 26] = [
     ("?E", T::QueryEnvironment, "takes what the environment answers to its parameters as its parameters"),
 ];
 
-/// The modules that a turtle obeys, each with what it does; predefined surfaces, `~NAME`, come besides.
+/// The modules that a turtle obeys, each with what it does; surfaces and grammars that `~NAME` places come
+/// besides.
 pub fn turtle_modules() -> impl Iterator<Item = (&'static str, &'static str)> {
     COMMANDS.iter().map(|(name, _, description)| (*name, *description))
 }

@@ -17,8 +17,8 @@ pub(super) struct WordParser<'a> {
     pub alphabet: &'a mut Alphabet,
     /// Names of modules of several letters, the longest first.
     pub names: &'a [String],
-    /// Names of surfaces.
-    pub surfaces: &'a [String],
+    /// Names of surfaces and of grammars within this one.
+    pub placed: &'a [String],
     /// Names of constants and parameters.
     pub globals: &'a [String],
 }
@@ -47,11 +47,11 @@ impl WordParser<'_> {
             '~' => {
                 let before = cursor.clone();
                 let surface = cursor.take_name().unwrap_or_default();
-                if self.surfaces.contains(&surface) {
+                if self.placed.contains(&surface) {
                     return Ok(Some(format!("~{surface}")));
                 }
-                let known: Vec<&str> = self.surfaces.iter().map(String::as_str).collect();
-                Err(before.fault(unknown("surface", surface, &known)))
+                let known: Vec<&str> = self.placed.iter().map(String::as_str).collect();
+                Err(before.fault(unknown("surface or grammar", surface, &known)))
             }
             '?' | '@' => {
                 let second = cursor.peek().filter(|second| second.is_alphabetic());
