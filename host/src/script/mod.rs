@@ -53,6 +53,8 @@ mod instancing_tests;
 #[cfg(test)]
 mod procedural_tests;
 #[cfg(test)]
+mod plants_tests;
+#[cfg(test)]
 mod surface_tests;
 #[cfg(test)]
 mod terrain_tests;

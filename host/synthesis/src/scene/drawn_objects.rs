@@ -53,7 +53,7 @@ pub fn drawn_objects(
             mesh.surfaces.fill(0);
             prototypes.push(vec![object(colour, Shape::Made(MadeMesh(Arc::new(mesh))))]);
         }
-        let instance = |(number, placed): (usize, &crate::procedural::drawing::PlacedSurface)| Instance {
+        let instance = |(number, placed): (usize, &crate::procedural::drawing::PlacedPredefined)| Instance {
             prototype: surfaces.partition_point(|surface| *surface < placed.surface) as u16,
             variation: mix(number as u64) as u16,
             placement: placed.placement,

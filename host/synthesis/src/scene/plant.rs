@@ -13,6 +13,8 @@ use glam::DVec3;
 const FURROWS: f64 = 7.0;
 const BANDS: f64 = 0.16;
 const PLATES: f64 = 2.2;
+/// By how much the colour of light that comes through a leaf is deeper than that of what it reflects.
+const DEEPER: f64 = 0.6;
 /// The youngest plant that is made, in parts of its growth.
 const YOUNGEST: f64 = 1e-3;
 /// Frequencies of the noise of bark.
@@ -94,8 +96,10 @@ fn organ_material(organ: &Organ, season: f64) -> Material {
     let colours = organ.colours.range(season);
     let part = organ.transmission;
     // What comes through has gone through more of the leaf: its colour is deeper.
+    let rest = DVec3::ONE - colours[0].max(colours[1]);
     let through = colours.map(|colour| {
-        (colour * part * (DVec3::ONE + 0.6 * colour / colour.max_element().max(1e-9))).min(DVec3::ONE - colour)
+        let deeper = DVec3::ONE + DEEPER * colour / colour.max_element().max(1e-9);
+        (colour * deeper * part / (1.0 + DEEPER)).min(rest)
     });
     sheet(between(colours), between(through), part, organ.gloss)
 }
@@ -113,7 +117,8 @@ fn stem_material(look: &StemLook, season: f64) -> Material {
     let StemLook { colours, contrast, pattern, size, depth, transmission } = look;
     let light = colours.range(season);
     if *pattern == BarkPattern::Plain {
-        let through = light.map(|colour| (colour * *transmission).min(DVec3::ONE - colour));
+        let rest = DVec3::ONE - light[0].max(light[1]);
+        let through = light.map(|colour| (colour * *transmission).min(rest));
         return sheet(between(light), between(through), *transmission, None);
     }
     let dark = light.map(|colour| (colour * *contrast).min(DVec3::splat(0.98)));

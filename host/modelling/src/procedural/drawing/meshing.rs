@@ -1,7 +1,7 @@
 //! Drawings as triangles.
 
 use super::error::DrawingError;
-use super::plant_drawing::{CrossSection, DrawnPolygon, PlacedSurface, PlantDrawing};
+use super::plant_drawing::{CrossSection, DrawnPolygon, PlacedPredefined, PlantDrawing};
 use super::predefined::{PredefinedPart, PredefinedSurface};
 use super::ribbons::{append_ribbon, ribbon_triangles};
 use super::tubes::{Tube, append_sphere, push, sphere_triangles, tubes};
@@ -129,7 +129,7 @@ impl PlantDrawing {
 
     /// Appends predefined surfaces; each is tessellated once, for the largest of its places.
     fn append_placed(&self, mesh: &mut Mesh, detail: f64) -> Result<(), DrawingError> {
-        let scale = |place: &PlacedSurface| place.placement.matrix3.x_axis.length();
+        let scale = |place: &PlacedPredefined| place.placement.matrix3.x_axis.length();
         let mut prototypes = Vec::new();
         for (number, surface) in self.surfaces.iter().enumerate() {
             let places = self.placed.iter().filter(|place| place.surface == number);

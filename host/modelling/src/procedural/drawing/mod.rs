@@ -12,6 +12,6 @@ mod meshing;
 
 pub(super) use builder::{DrawingBuilder, append};
 pub use error::DrawingError;
-pub use plant_drawing::{CrossSection, DrawnPolygon, DrawnSphere, PlacedSurface, PlantDrawing, Stroke, StrokeNode};
+pub use plant_drawing::{CrossSection, DrawnPolygon, DrawnSphere, PlacedPredefined, PlantDrawing, Stroke, StrokeNode};
 pub use predefined::{PredefinedPart, PredefinedSurface};
 pub(super) use tubes::push;

@@ -28,7 +28,7 @@ pub struct DrawnPolygon {
 
 /// A predefined surface that is placed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlacedSurface {
+pub struct PlacedPredefined {
     /// Which one, by its number among those of the grammar.
     pub surface: usize,
     /// From its own coordinates into those of the drawing.
@@ -91,7 +91,7 @@ pub struct PlantDrawing {
     /// Corners of all polygons, one polygon after the other.
     pub corners: Vec<DVec3>,
     /// Predefined surfaces with their places.
-    pub placed: Vec<PlacedSurface>,
+    pub placed: Vec<PlacedPredefined>,
     /// Spheres.
     pub spheres: Vec<DrawnSphere>,
     /// The surfaces that are placed.

@@ -34,6 +34,8 @@ fn sides(radius: f64, detail: f64) -> usize {
 pub(super) struct Tube {
     nodes: Vec<StrokeNode>,
     section: CrossSection,
+    /// Rings of the dome at its end, its tip not counted.
+    dome_rings: usize,
     /// Unit vectors from node to node.
     directions: Vec<DVec3>,
     sides: usize,
@@ -70,7 +72,19 @@ pub(super) fn tubes(nodes: &[StrokeNode], section: CrossSection, detail: f64) ->
                 tube.nodes.push(node);
                 tube.directions.push(direction);
             }
-            _ => tubes.push(Tube { nodes: vec![before, node], directions: vec![direction], section, sides }),
+            _ => tubes.push(Tube {
+                nodes: vec![before, node],
+                directions: vec![direction],
+                section,
+                dome_rings: 0,
+                sides,
+            }),
+        }
+    }
+    for tube in &mut tubes {
+        // A dome that is lower than what may be left out is a cone.
+        if tube.nodes.last().is_some_and(|node| node.radius > detail) {
+            tube.dome_rings = sides.div_ceil(2) - 1;
         }
     }
     tubes
@@ -84,20 +98,15 @@ struct Ring {
 }
 
 impl Tube {
-    /// Rings of the dome at its end, its tip not counted.
-    fn dome_rings(&self) -> usize {
-        self.sides.div_ceil(2) - 1
-    }
-
     /// How many triangles it has.
     pub fn triangles(&self) -> usize {
-        let segments = self.directions.len() + self.dome_rings();
+        let segments = self.directions.len() + self.dome_rings;
         self.sides * (2 * segments + 1) + self.sides - 2
     }
 
     /// How many vertices it has.
     pub fn vertices(&self) -> usize {
-        self.sides * (self.nodes.len() + self.dome_rings()) + 1
+        self.sides * (self.nodes.len() + self.dome_rings) + 1
     }
 
     /// The outline at an angle, and how it changes with the angle: in parts of the radius of a node.
@@ -213,7 +222,7 @@ impl Tube {
     fn append_dome(&self, mesh: &mut Mesh, ring: &Ring, length: f64, at: &impl Fn(usize, usize) -> u32) {
         let last = self.nodes.len() - 1;
         let (StrokeNode { position, radius, colour }, direction) = (self.nodes[last], self.directions[last - 1]);
-        let count = self.dome_rings() + 1;
+        let count = self.dome_rings + 1;
         let normals_at = |step: usize| -> Vec<DVec3> {
             let (sin, cos) = (FRAC_PI_2 * step as f64 / count as f64).sin_cos();
             ring.radial.iter().map(|[_, radial]| *radial * cos + direction * sin).collect()

@@ -11,7 +11,7 @@ use crate::memory;
 use crate::numeric::sampling::mix;
 use crate::procedural::channel;
 use crate::procedural::drawing::PredefinedSurface;
-use crate::procedural::drawing::{DrawingBuilder, DrawnSphere, PlacedSurface, StrokeNode, append};
+use crate::procedural::drawing::{DrawingBuilder, DrawnSphere, PlacedPredefined, StrokeNode, append};
 use glam::{DAffine3, DMat3, DVec3};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -372,7 +372,7 @@ impl<'a> TurtleWalk<'a> {
         let TurtlePose { position, heading, left, up } = self.turtle.pose;
         let axes = DMat3::from_cols(-left, heading, up) * (scale * self.turtle.scale);
         let placement = DAffine3::from_mat3_translation(axes, position);
-        let surface = PlacedSurface { surface: number as usize, placement, colour: self.turtle.colour };
+        let surface = PlacedPredefined { surface: number as usize, placement, colour: self.turtle.colour };
         if let Some(builder) = &mut self.builder {
             append(&mut builder.drawing.placed, surface, "surfaces")?;
         }

@@ -4,7 +4,7 @@ use super::frame::StemFrame;
 use glam::DVec3;
 
 /// The axis of a stem, or of the rest of one: a curve through the ends of its segments.
-pub(super) struct Axis {
+pub(super) struct StemAxis {
     pub frames: Vec<StemFrame>,
     pub tangents: Vec<DVec3>,
     /// The segment of the stem with which it begins, and how many the stem has.
@@ -12,9 +12,9 @@ pub(super) struct Axis {
     pub segments: usize,
 }
 
-impl Axis {
+impl StemAxis {
     /// - `before`: the direction before its first node. `first`: the segment of the stem with which it begins.
-    pub fn new(before: DVec3, frames: Vec<StemFrame>, first: usize, segments: usize) -> Axis {
+    pub fn new(before: DVec3, frames: Vec<StemFrame>, first: usize, segments: usize) -> StemAxis {
         let last = frames.len() - 1;
         let tangent = |node: usize| match node {
             0 => before,
@@ -22,7 +22,7 @@ impl Axis {
             node => (frames[node - 1].ahead() + frames[node].ahead()).normalize_or(frames[node].ahead()),
         };
         let tangents = (0..=last).map(tangent).collect();
-        Axis { frames, tangents, first, segments }
+        StemAxis { frames, tangents, first, segments }
     }
 
     /// The part of the stem at which it begins.

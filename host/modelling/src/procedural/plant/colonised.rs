@@ -1,6 +1,6 @@
 //! The skeleton of space colonisation as stems: paths of branches with their radii.
 
-use super::axis::Axis;
+use super::axis::StemAxis;
 use super::colonisation::{Colonisation, SkeletonNode, skeleton};
 use super::error::PlantError;
 use super::frame::StemFrame;
@@ -15,8 +15,10 @@ use glam::{DMat3, DVec3};
 
 /// Radius of the thinnest twig, in parts of the radius of the trunk.
 const TWIG: f64 = 0.02;
-/// So many pieces at the end of a branch bear organs.
-const LEAFY: usize = 6;
+/// Pieces of branches that bear no more tips than this bear organs.
+const LEAFY_TIPS: f64 = 4.0;
+/// So many of these pieces bear as many organs as a stem of the last level.
+const LEAFY_PIECES: f64 = 6.0;
 /// The last branch is born when this part of the growth is over.
 const LAST_BIRTH: f64 = 0.75;
 
@@ -47,8 +49,8 @@ impl Grower<'_> {
             let axis = axis(&places);
             let radii: Vec<f64> = (0..places.len()).map(radius).collect();
             self.draw_path(&axis, &radii, key, number > 0)?;
-            let leafy = path.len().min(LEAFY + 1);
-            let twig = &places[places.len() - leafy..];
+            let leafy = path.iter().filter(|node| paths.tips[**node as usize] <= LEAFY_TIPS).count();
+            let twig = &places[places.len() - (leafy + 1).min(places.len())..];
             let stem = Stem {
                 level: 0,
                 key,
@@ -57,7 +59,7 @@ impl Grower<'_> {
                 birth: 0.0,
                 radius: radii[radii.len() - 1],
                 abundance: 1.0,
-                foliage: 1.0,
+                foliage: leafy as f64 / LEAFY_PIECES,
             };
             self.organs_on(&stem, &self::axis(twig))?;
         }
@@ -82,7 +84,7 @@ impl Grower<'_> {
     }
 
     /// Draws a path of branches, thin ones fewer and wider.
-    fn draw_path(&mut self, axis: &Axis, radii: &[f64], key: u64, may_miss: bool) -> Result<(), PlantError> {
+    fn draw_path(&mut self, axis: &StemAxis, radii: &[f64], key: u64, may_miss: bool) -> Result<(), PlantError> {
         let wider = match self.thinned(2.0 * radii[0], key) {
             None if may_miss => return Ok(()),
             kept => kept.unwrap_or(1.0),
@@ -94,7 +96,7 @@ impl Grower<'_> {
 }
 
 /// An axis through places.
-fn axis(places: &[DVec3]) -> Axis {
+fn axis(places: &[DVec3]) -> StemAxis {
     let ahead = |place: usize| {
         let [from, to] = [place.min(places.len() - 2), (place + 1).min(places.len() - 1)];
         (places[to] - places[from]).normalize_or(DVec3::Y)
@@ -103,14 +105,16 @@ fn axis(places: &[DVec3]) -> Axis {
     let frames: Vec<StemFrame> =
         places.iter().enumerate().map(|(place, at)| StemFrame { at: *at, ..upright.heading(ahead(place)) }).collect();
     let segments = frames.len() - 1;
-    Axis::new(ahead(0), frames, 0, segments)
+    StemAxis::new(ahead(0), frames, 0, segments)
 }
 
 /// A skeleton as paths: each node goes on with the thickest of its branches; others begin paths of their own.
 struct Paths {
     all: Vec<Vec<u32>>,
-    /// Of each node, as the pipe model tells.
+    /// Of each node, as the pipe model tells: that of a tip is 1.
     radii: Vec<f64>,
+    /// How many tips each node bears.
+    tips: Vec<f64>,
 }
 
 impl Paths {
@@ -120,6 +124,7 @@ impl Paths {
         let mut thickest = vec![(0.0, 0_u32); nodes.len()];
         for number in (0..nodes.len()).rev() {
             let own = if sums[number] > 0.0 { sums[number] } else { 1.0 };
+            sums[number] = own;
             radii[number] = own.powf(exponent.recip());
             let parent = nodes[number].parent as usize;
             if parent != number {
@@ -142,6 +147,6 @@ impl Paths {
             }
             all[path_of[number as usize]].push(number);
         }
-        Paths { all, radii }
+        Paths { all, radii, tips: sums }
     }
 }

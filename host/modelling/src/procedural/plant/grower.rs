@@ -2,7 +2,7 @@
 
 use super::crown::PruningEnvelope;
 use super::error::PlantError;
-use super::instant::PlantInstant;
+use super::instant::{PlantInstant, grown};
 use super::parameters::{StemNumber, TREE_PARAMETERS, TreeNumber};
 use super::tree_model::TreeModel;
 use crate::numeric::sampling::RandomStream;
@@ -12,6 +12,8 @@ use glam::DVec3;
 
 /// Most stems of a tree.
 const MOST_STEMS: usize = 1 << 22;
+/// A node is left out if the stroke without it is off by less than this part of the detail.
+const STRAIGHT: f64 = 0.25;
 /// A stem is thin if its diameter is below this part of the detail.
 const THIN: f64 = 0.5;
 /// The coarsest detail of a tree, in parts of its height.
@@ -52,9 +54,9 @@ impl<'a> Grower<'a> {
         grower
     }
 
-    /// The coarsest detail.
+    /// The coarsest detail at its age.
     pub fn coarsest(&self) -> f64 {
-        self.number(TreeNumber::Height) * COARSEST
+        self.number(TreeNumber::Height) * grown(self.instant.age, 0.0) * COARSEST
     }
 
     /// A number of this tree.
@@ -90,8 +92,8 @@ impl<'a> Grower<'a> {
     /// Appends a stroke through nodes.
     pub fn stroke(&mut self, nodes: &[(DVec3, f64)], section: CrossSection) -> Result<(), PlantError> {
         let first = self.drawing.nodes.len();
-        for (position, radius) in nodes {
-            append(&mut self.drawing.nodes, StrokeNode { position: *position, radius: *radius, colour: 0 }, "stems")?;
+        for (position, radius) in simplified(nodes, STRAIGHT * self.detail) {
+            append(&mut self.drawing.nodes, StrokeNode { position, radius, colour: 0 }, "stems")?;
         }
         append(&mut self.drawing.strokes, Stroke { first, section }, "stems")?;
         Ok(())
@@ -101,4 +103,28 @@ impl<'a> Grower<'a> {
 /// A number that varies, drawn from a stream.
 pub(super) fn drawn(varied: Varied, random: &mut RandomStream) -> f64 {
     varied.mean + varied.deviation * (2.0 * random.uniform() - 1.0)
+}
+
+/// A stroke with fewer nodes that is off by no more than a distance, in its axis and in its radius.
+///
+/// # Source
+/// Ramer 1972; Douglas and Peucker 1973.
+fn simplified(nodes: &[(DVec3, f64)], tolerance: f64) -> Vec<(DVec3, f64)> {
+    let off = |[from, to]: [(DVec3, f64); 2], node: (DVec3, f64)| {
+        let along = to.0 - from.0;
+        let part = ((node.0 - from.0).dot(along) / along.length_squared()).clamp(0.0, 1.0);
+        let part = if part.is_finite() { part } else { 0.0 };
+        node.0.distance(from.0 + along * part) + (node.1 - from.1 - (to.1 - from.1) * part).abs()
+    };
+    let mut kept = vec![nodes[0]];
+    // Pieces that are not yet looked at, the first of them last.
+    let mut pieces = vec![(0, nodes.len() - 1)];
+    while let Some((from, to)) = pieces.pop() {
+        let worst = (from + 1..to).map(|node| (node, off([nodes[from], nodes[to]], nodes[node])));
+        match worst.max_by(|a, b| a.1.total_cmp(&b.1)) {
+            Some((node, distance)) if distance > tolerance => pieces.extend([(node, to), (from, node)]),
+            _ => kept.push(nodes[to]),
+        }
+    }
+    kept
 }

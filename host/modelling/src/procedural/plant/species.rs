@@ -7,7 +7,7 @@ use super::parameters::TreeNumberError;
 use super::tree_model::TreeModel;
 use crate::numeric::bounds::Bounds;
 use crate::procedural::Varied;
-use crate::procedural::drawing::{PlacedSurface, PlantDrawing, Stroke, StrokeNode};
+use crate::procedural::drawing::{PlacedPredefined, PlantDrawing, Stroke, StrokeNode};
 
 /// A species of plants: trees, herbs, grasses.
 #[derive(Clone, Debug, PartialEq)]
@@ -121,7 +121,7 @@ impl Species {
             let (node, surface) = (whole.nodes.len(), surfaces.len());
             whole.nodes.extend(part.nodes.iter().map(|one| StrokeNode { colour: one.colour + colours, ..*one }));
             whole.strokes.extend(part.strokes.iter().map(|one| Stroke { first: one.first + node, ..*one }));
-            whole.placed.extend(part.placed.iter().map(|one| PlacedSurface {
+            whole.placed.extend(part.placed.iter().map(|one| PlacedPredefined {
                 surface: one.surface + surface,
                 colour: one.colour + colours,
                 ..*one

@@ -1,6 +1,6 @@
 //! One stem: its axis, its forks, the stems and organs that it bears.
 
-use super::axis::Axis;
+use super::axis::StemAxis;
 use super::crown::CrownShape;
 use super::error::PlantError;
 use super::frame::StemFrame;
@@ -11,7 +11,7 @@ use super::organ_mesh::ORGAN_VARIANTS;
 use super::parameters::{StemNumber, TreeNumber};
 use super::taper::{flared, stem_radius};
 use crate::numeric::sampling::{RandomStream, mix};
-use crate::procedural::drawing::{CrossSection, PlacedSurface, append};
+use crate::procedural::drawing::{CrossSection, PlacedPredefined, append};
 use glam::{DAffine3, DVec3};
 
 /// Turns of a stem that winds as a screw, from its base to its tip.
@@ -84,7 +84,7 @@ impl Grower<'_> {
     }
 
     /// The axis of a run, and what forks off it.
-    fn axis(&self, stem: &Stem, run: &StemRun, forks: &mut Vec<(Stem, StemRun)>) -> Axis {
+    fn axis(&self, stem: &Stem, run: &StemRun, forks: &mut Vec<(Stem, StemRun)>) -> StemAxis {
         let number = |number: StemNumber| self.model.numbers.stem(stem.level, number);
         let mut shape = RandomStream::new(stem.key, 2);
         let segments = drawn(number(StemNumber::Segments), &mut shape).round().max(1.0) as usize;
@@ -142,7 +142,7 @@ impl Grower<'_> {
             frame = frame.pitched(angle).turned(DVec3::Y, if is_base { 0.0 } else { spread(declination, own_turn) });
             correction = back;
         }
-        Axis::new(run.before, frames, run.first, segments)
+        StemAxis::new(run.before, frames, run.first, segments)
     }
 
     /// How far a stem bends at the end of a segment, degrees.
@@ -166,7 +166,7 @@ impl Grower<'_> {
     }
 
     /// Draws the run of a stem: as it is, or, of thin ones, fewer and wider.
-    fn draw_stem(&mut self, stem: &Stem, axis: &Axis) -> Result<(), PlantError> {
+    fn draw_stem(&mut self, stem: &Stem, axis: &StemAxis) -> Result<(), PlantError> {
         let widest = 2.0 * self.radius_at(stem, axis.begin());
         let is_last = stem.level > 0 && stem.level + 1 >= self.levels();
         let wider = match self.thinned(widest, stem.key) {
@@ -200,7 +200,7 @@ impl Grower<'_> {
     }
 
     /// Lets the stems of the next level grow.
-    fn stems_on(&mut self, stem: &Stem, axis: &Axis) -> Result<(), PlantError> {
+    fn stems_on(&mut self, stem: &Stem, axis: &StemAxis) -> Result<(), PlantError> {
         let level = stem.level + 1;
         let numbers = &self.model.numbers;
         let mut random = RandomStream::new(stem.key, 5);
@@ -286,7 +286,7 @@ impl Grower<'_> {
     }
 
     /// Places the organs of a stem.
-    pub fn organs_on(&mut self, stem: &Stem, axis: &Axis) -> Result<(), PlantError> {
+    pub fn organs_on(&mut self, stem: &Stem, axis: &StemAxis) -> Result<(), PlantError> {
         let model = self.model;
         for (number, organ) in model.organs.iter().enumerate() {
             let source = if let OrganPlace::With(other) = organ.place { other } else { number };
@@ -333,7 +333,7 @@ impl Grower<'_> {
                 let StemFrame { at, axes } = to_light(frame, standing.bend);
                 let placement = DAffine3::from_mat3_translation(axes * (size / kept.sqrt()), at);
                 let surface = number * ORGAN_VARIANTS + variant;
-                let placed = PlacedSurface { surface, placement, colour: number as u32 + 1 };
+                let placed = PlacedPredefined { surface, placement, colour: number as u32 + 1 };
                 append(&mut self.drawing.placed, placed, "organs")?;
             }
         }

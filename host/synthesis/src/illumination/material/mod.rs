@@ -430,8 +430,15 @@ impl Material {
                 let Translucent { diffuse, transmittance, coat } = &**sheet;
                 fraction("diffuse reflectance", diffuse)?;
                 fraction("transmittance", transmittance)?;
-                let most = |paint: &Paint| paint.colors().iter().map(|color| color.range()[1]).fold(0.0, f64::max);
-                let sum = most(diffuse) + most(transmittance);
+                // Of each band by itself, whichever colors of patterns meet.
+                let most = |paint: &Paint| {
+                    let bands = paint.colors().into_iter().map(|color| match color {
+                        Color::Bands(bands) => *bands,
+                        Color::Spectrum(_) => DVec3::splat(color.range()[1]),
+                    });
+                    bands.fold(DVec3::ZERO, DVec3::max)
+                };
+                let sum = (most(diffuse) + most(transmittance)).max_element();
                 if sum > 1.001 {
                     return Err(MaterialError::Fraction {
                         what: "the sum of reflectance and transmittance",
