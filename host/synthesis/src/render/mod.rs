@@ -36,6 +36,8 @@ mod detail_tests;
 #[cfg(test)]
 mod terrain_tests;
 #[cfg(test)]
+mod plant_tests;
+#[cfg(test)]
 mod lamp_tests;
 
 pub use content_hash::ContentHash;

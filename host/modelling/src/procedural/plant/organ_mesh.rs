@@ -13,6 +13,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 pub const ORGAN_VARIANTS: usize = 3;
 /// Golden angle, degrees: the turn between leaves of a shoot.
 const GOLDEN: f64 = 137.507_764;
+/// Least and greatest length of a leaflet, in parts of that of its leaf without the stalk.
+const LEAFLET: [f64; 2] = [0.12, 0.42];
 /// Width of a stalk in parts of the organ.
 const STALK_WIDTH: f64 = 0.014;
 /// The least angle by which the parts of a midrib bend, degrees.
@@ -64,9 +66,9 @@ pub(super) fn organ_mesh(organ: &Organ, variant: usize, detail: f64) -> Mesh {
         BladeArrangement::Simple => place(&mut mesh, &blade(rest), rest, ahead, base),
         BladeArrangement::Pinnate { blades, angle } => {
             let pairs = (blades / 2).max(1);
-            // Leaflets as long as leaves room for the one at the tip.
-            let length = (0.9 / f64::from(pairs + 1)).max(0.12) * (1.0 + 0.9 / organ.width.max(0.2)).min(3.0) * rest;
-            let length = length.min(0.42 * rest);
+            // As long as lets neighbours touch each other.
+            let [least, most] = LEAFLET;
+            let length = rest * (organ.width * f64::from(pairs + 1)).recip().clamp(least, most);
             let corners = blade(length);
             for pair in 0..pairs {
                 let part = (f64::from(pair) + 0.5) / f64::from(pairs);

@@ -1,6 +1,8 @@
 //! Plants: numbers, growth, seasons, and the species that ship with the program.
 
+use super::parameters::StemNumber;
 use super::*;
+use crate::numeric::bounds::Bounds;
 use crate::procedural::Varied;
 use crate::procedural::drawing::PlantDrawing;
 use glam::DVec3;
@@ -23,25 +25,25 @@ fn every_species_is_read_and_grows_within_its_published_measures() {
         const SEEDS: u32 = 4;
         for seed in 0..SEEDS {
             let drawing = grown_up(&species, seed, 0.001);
-            let bounds = drawing.bounds();
+            let tips = drawing.placed.iter().map(|one| one.placement.transform_point3(DVec3::Y));
+            let bounds = Bounds::of(tips.chain([drawing.bounds().min, drawing.bounds().max]));
             let size = bounds.max - bounds.min;
             measured[0] += bounds.max.y / f64::from(SEEDS);
             measured[1] += 0.5 * (size.x + size.z) / bounds.max.y / f64::from(SEEDS);
-            if seed == 0 {
-                println!(
-                    "{}: {} strokes, {} nodes, {} organs, {size}",
-                    row.name,
-                    drawing.strokes.len(),
-                    drawing.nodes.len(),
-                    drawing.placed.len()
-                );
-            }
         }
         for PublishedRange { what, range: [least, most] } in &species.published {
             let found = match what.as_str() {
                 "height" => measured[0],
                 "crown_ratio" => measured[1],
-                _ => continue,
+                _ => {
+                    let angle = species.parts[0].tree.numbers.stem(1, StemNumber::DownAngle);
+                    assert!(
+                        angle.mean - angle.deviation >= *least && angle.mean + angle.deviation <= *most,
+                        "{}",
+                        row.name
+                    );
+                    angle.mean
+                }
             };
             assert!(found >= *least && found <= *most, "{}: {what} {found} is not within {least} to {most}", row.name);
         }
@@ -184,24 +186,62 @@ fn coarser_plants_show_as_much() {
     }
 }
 
+/// A small species, of which the tests of faults change words.
+const SHRUB: &str = r#"name = "a shrub"
+[tree]
+shape = "spherical"
+height = [2, 0.5]
+levels = 2
+base = 0.14
+[[tree.organ]]
+name = "leaf"
+outline = "ovate"
+size = 0.05
+colours = [[0.3, [0.1, 0.2, 0.03]], [0.8, [0.3, 0.2, 0.03]]]
+"#;
+
 #[test]
-fn what_varies_in_a_number_is_refused_out_of_range_with_its_place() {
-    let wrong = |from: &str, to: &str| {
-        let oak = SPECIES.iter().find(|row| row.name == "oak").expect("an oak").text;
-        let text = oak.replacen(from, to, 1);
-        assert_ne!(text, oak);
-        Species::parse(&text).expect_err("wrong").to_string()
-    };
-    assert_eq!(
-        wrong("height = [19, 3]", "hight = 19"),
-        "line 11, column 1: a tree has no number \"hight\"; did you mean height?"
-    );
-    assert!(
-        wrong("base = 0.14", "base = 1.4").starts_with("line 13, column 1: base 1.4 to 1.4 is not within 0 to 0.99")
-    );
-    assert!(wrong("\"hemispherical\"", "\"round\"").contains("\"round\" is not known"));
-    assert!(wrong("levels = 3", "levels = ").starts_with("line 12"));
+fn faults_of_a_species_have_their_line_and_what_may_be_meant() {
+    assert!(Species::parse(SHRUB).is_ok());
+    for (from, to, words) in [
+        ("height = [2, 0.5]", "hight = 2", "line 4, column 1: a tree has no number \"hight\"; did you mean height?"),
+        ("base = 0.14", "base = 1.4", "line 6, column 1: base 1.4 to 1.4 is not within 0 to 0.99"),
+        ("[2, 0.5]", "[2, -0.5]", "line 4, column 10: height: the deviation is below 0"),
+        ("[2, 0.5]", "[2, 0.5, 1]", "line 4, column 10: height must be a number, or a mean with a deviation"),
+        ("\"spherical\"", "\"round\"", "line 3, column 9: shape \"round\" is not known; there are conical"),
+        ("levels = 2", "levels = ", "line 5"),
+        ("\"ovate\"", "\"ovat\"", "line 9, column 11: outline \"ovat\" is not known; did you mean ovate?"),
+        ("\"ovate\"", "[[-1, 0.5]]", "line 9, column 11: the corners of an outline are right of its midrib"),
+        ("size = 0.05\n", "", "\"size\" is missing"),
+        ("size = 0.05", "size = 0.05\nfalls = 0.8", "\"emerges\" is missing"),
+        ("0.3, [0.1", "0.9, [0.1", "colours must be in the order of the year"),
+        ("name = \"a shrub\"", "", "\"name\" is missing"),
+        ("[tree]", "[trees]", "line 2, column 2: key \"trees\" is not known; did you mean tree?"),
+        ("base = 0.14", "length = [1, 0.4, 0.4, 0.4, 0.4]", "length has 5 numbers; there are 4 levels of stems"),
+    ] {
+        let text = SHRUB.replacen(from, to, 1);
+        assert_ne!(text, SHRUB);
+        let found = Species::parse(&text).expect_err(to).to_string();
+        assert!(found.contains(words), "{to}: {found}");
+    }
     let mut species = shipped("oak");
     assert!(species.set("down_angle_1", Varied { mean: 50.0, deviation: 5.0 }).is_ok());
     assert!(species.set("down_angle_7", Varied { mean: 50.0, deviation: 5.0 }).is_err());
+}
+
+#[test]
+fn a_crown_that_is_colonised_is_full_of_branches_as_thick_as_the_pipe_model_tells() {
+    let species = shipped("elm");
+    let TreeModel { colonisation, .. } = &species.parts[0].tree;
+    let exponent = colonisation.expect("a crown to fill").exponent;
+    let drawing = species.grow(4, PlantInstant { age: 1.0, season: 0.0 }, 1e-6).expect("a plant");
+    assert!(drawing.strokes.len() > 500, "{}", drawing.strokes.len());
+    // The trunk, above its flare, bears all tips: each stroke ends in one.
+    let trunk: Vec<_> = drawing.strokes().next().expect("a trunk").to_vec();
+    let radius = trunk.iter().find(|node| node.position.y > 3.5).expect("a trunk").radius;
+    let tip = trunk[trunk.len() - 1].radius;
+    let expected = (drawing.strokes.len() as f64).powf(exponent.recip());
+    assert!((radius / tip / expected).ln().abs() < 0.5, "{radius} {tip} {expected}");
+    let young = species.grow(4, PlantInstant { age: 0.4, season: 0.0 }, 1e-6).expect("a plant");
+    assert!(young.bounds().max.y < 0.8 * drawing.bounds().max.y);
 }
