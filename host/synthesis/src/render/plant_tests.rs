@@ -77,7 +77,7 @@ fn light_comes_through_a_leaf_as_its_transmittance_tells() {
     let scene = |side: f64| Scene {
         objects: vec![object(Shape::Ground { size: 4.0 }, standing, material.clone())],
         lights: vec![Light::Directional { direction, irradiance: Color::grey(2.0) }],
-        settings: settings.clone(),
+        settings,
         camera: Some(camera(DVec3::Z * (6.0 * side), 10.0)),
         ..Scene::default()
     };

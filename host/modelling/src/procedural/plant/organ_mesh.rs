@@ -17,6 +17,8 @@ const GOLDEN: f64 = 137.507_764;
 const LEAFLET: [f64; 2] = [0.12, 0.42];
 /// Width of a stalk in parts of the organ.
 const STALK_WIDTH: f64 = 0.014;
+/// How far an edge of an outline bulges, in parts of the length.
+const ASIDE: f64 = 2e-3;
 /// The least angle by which the parts of a midrib bend, degrees.
 const BEND: f64 = 25.0;
 /// Most parts of a midrib.
@@ -148,10 +150,7 @@ impl BentBlade<'_> {
         let sagitta = self.curl.abs() / 8.0;
         let seen = (sagitta / (0.5 * detail)).sqrt().ceil();
         let parts = (self.curl.to_degrees().abs() / BEND).ceil().min(seen).clamp(1.0, MOST_PARTS as f64) as usize;
-        let mut outline = self.corners.to_vec();
-        for part in (1..parts).rev() {
-            outline.push(DVec2::new(0.0, part as f64 / parts as f64));
-        }
+        let outline = cut_across(self.corners, parts);
         let flat: Vec<DVec3> = outline.iter().map(|corner| corner.extend(0.0)).collect();
         let filled = triangulate_in_space(&[&flat], TriangulationKind::Delaunay).map(|filled| filled.triangles);
         let fan = || (1..outline.len() as u32 - 1).map(|second| [0, second, second + 1]).collect();
@@ -171,6 +170,28 @@ impl BentBlade<'_> {
             }
         }
     }
+}
+
+/// Half an outline closed along its midrib, with corners at each of the heights at which the blade bends.
+///
+/// Edges bulge a little: a triangulation leaves out corners on a straight one.
+fn cut_across(corners: &[DVec2], parts: usize) -> Vec<DVec2> {
+    let heights = || (1..parts).map(|part| part as f64 / parts as f64);
+    let bulge = |along: f64| 4.0 * ASIDE * along * (1.0 - along);
+    let mut outline = Vec::new();
+    for pair in corners.windows(2) {
+        let [from, to] = [pair[0], pair[1]];
+        outline.push(from);
+        let mut between: Vec<f64> = heights()
+            .map(|height| (height - from.y) / (to.y - from.y))
+            .filter(|along| (0.02..0.98).contains(along))
+            .collect();
+        between.sort_by(f64::total_cmp);
+        outline.extend(between.into_iter().map(|along| from.lerp(to, along) + DVec2::X * bulge(along)));
+    }
+    outline.extend(corners.last());
+    outline.extend(heights().rev().map(|height| DVec2::new(-bulge(height), height)));
+    outline
 }
 
 /// Appends two crossed strips that stand for a stalk, a midrib or a twig.

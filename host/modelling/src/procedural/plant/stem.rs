@@ -18,8 +18,8 @@ use glam::{DAffine3, DVec3};
 const HELIX_TURNS: f64 = 2.0;
 /// Most parts into which a segment is divided to be smooth.
 const MOST_PARTS: f64 = 8.0;
-/// The last stem is born when this part of the growth of the one that bears it is over.
-const LAST_BIRTH: f64 = 0.7;
+/// The last stem is born when this part of the growth of the one that bears it is over: so that young plants have boughs.
+const LAST_BIRTH: f64 = 0.15;
 /// Steps of the bisection that finds how long a stem is that the envelope cuts.
 const PRUNING_STEPS: u32 = 12;
 /// How far, in parts of the distance to the next, stems and organs stray along what bears them.

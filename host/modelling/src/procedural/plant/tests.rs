@@ -245,3 +245,22 @@ fn a_crown_that_is_colonised_is_full_of_branches_as_thick_as_the_pipe_model_tell
     let young = species.grow(4, PlantInstant { age: 0.4, season: 0.0 }, 1e-6).expect("a plant");
     assert!(young.bounds().max.y < 0.8 * drawing.bounds().max.y);
 }
+
+#[test]
+fn a_blade_bends_evenly_from_its_base_to_its_tip() {
+    for (outline, width) in [("needle", 0.05), ("linear", 0.1), ("oak", 0.6)] {
+        let text = SHRUB.replace("\"ovate\"", &format!("\"{outline}\"\nwidth = {width}\ncurl = 90"));
+        let species = Species::parse(&text).expect("a species");
+        let mesh = grown_up(&species, 1, 1e-4).surfaces[0].mesh(1e-3).expect("a mesh");
+        // Along a quarter of a circle of this radius about a place below the base.
+        let radius = 2.0 / PI;
+        let on_arc = |v: &DVec3| ((v.y).hypot(v.z + radius) - radius).abs() < 1e-3;
+        assert!(mesh.vertices.iter().all(on_arc), "{outline}");
+        for corners in &mesh.triangles {
+            let corners = corners.map(|corner| mesh.vertices[corner as usize]);
+            let middle = corners.iter().sum::<DVec3>() / 3.0;
+            let off = (middle.y).hypot(middle.z + radius) - radius;
+            assert!(off.abs() < 0.02, "{outline}: {off} in {corners:?}");
+        }
+    }
+}
