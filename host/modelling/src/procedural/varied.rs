@@ -38,13 +38,19 @@ impl Varied {
         if is_finite { Ok(()) } else { Err(VariedError::NotFinite) }
     }
 
+    /// The number at a part of what may be drawn.
+    ///
+    /// - `part`: 0 is the least, 1 the most.
+    pub fn at(&self, part: f64) -> f64 {
+        self.mean + (2.0 * part - 1.0) * self.deviation
+    }
+
     /// What one kind has, a function of both numbers and the arguments alone.
     ///
     /// - `seed`: of the kind.
     /// - `channel`: for which purpose; what is drawn from different channels is unrelated. See [`channel`].
     pub fn draw(&self, seed: u32, channel: u64) -> f64 {
-        let part = 2.0 * RandomStream::new(u64::from(seed), channel).uniform() - 1.0;
-        self.mean + part * self.deviation
+        self.at(RandomStream::new(u64::from(seed), channel).uniform())
     }
 }
 

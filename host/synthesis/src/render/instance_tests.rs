@@ -8,10 +8,12 @@ use crate::illumination::{Light, Paint};
 use crate::octree::Instance;
 use crate::plan::Plan;
 use crate::scene::{
-    Camera, Instances, Motion, Object, PlacementList, Placing, Prepared, Scatter, Scene, SceneError, Settings, Shape,
+    Camera, DetailCosts, Instances, Motion, Object, PlacementList, Placing, Prepared, Scatter, Scene, SceneError,
+    Settings, Shape,
 };
 use crate::solid::Primitive;
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
+use std::num::NonZeroUsize;
 
 pub(super) fn diffuse(paint: Paint) -> Material {
     Classic { diffuse: paint, ..Classic::default() }.into()
@@ -54,6 +56,25 @@ pub(super) fn render(scene: &Scene, row: &RendererRow) -> Rendering {
     let plan = Plan::new(&prepared, &view);
     let made = row.technique.prepare(&Task::new(&prepared, &plan)).expect("ready");
     made.renderer.any().render(&view, &RenderOrder::of(&prepared.settings), &Watch::NOBODY).expect("a picture")
+}
+
+/// The green of a picture that keeps so many bytes of what is made on demand and has so many threads, and what was made.
+pub(super) fn render_within(
+    scene: &Scene,
+    row: &RendererRow,
+    most: Option<u64>,
+    threads: usize,
+) -> (Vec<f64>, DetailCosts) {
+    let prepared = Prepared::new(scene).unwrap_or_else(|error| panic!("{error}"));
+    if let Some(most) = most {
+        prepared.limit_details(most);
+    }
+    let view = prepared.view();
+    let plan = Plan::new(&prepared, &view);
+    let made = row.technique.prepare(&Task::new(&prepared, &plan)).expect("ready");
+    let order = RenderOrder { threads: NonZeroUsize::new(threads), ..RenderOrder::of(&prepared.settings) };
+    let rendering = made.renderer.any().render(&view, &order, &Watch::NOBODY).expect("a picture");
+    (green(&rendering), prepared.detail_costs().expect("something made on demand"))
 }
 
 pub(super) fn green(rendering: &Rendering) -> Vec<f64> {

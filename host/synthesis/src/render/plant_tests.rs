@@ -1,14 +1,13 @@
 //! Facts about plants: every technique draws them, pictures do not tell what was kept, and light comes through leaves.
 
-use super::instance_tests::{at, camera, green, instances, lit, object, render};
-use super::{RENDERERS, RenderOrder, Rendering, Task, Technique, Watch};
+use super::instance_tests::{at, camera, green, instances, lit, object, render, render_within};
+use super::{RENDERERS, Rendering, Technique};
 use crate::color::Color;
 use crate::illumination::material::{MaterialKind, Translucent};
 use crate::illumination::texture::Paint;
 use crate::illumination::{Light, Material};
-use crate::plan::Plan;
 use crate::procedural::plant::{PlantInstant, SPECIES, Species};
-use crate::scene::{Object, PlantModel, Prepared, Procedural, Scene, Settings, Shape};
+use crate::scene::{Object, PlantModel, Procedural, Scene, Settings, Shape};
 use glam::{DAffine3, DMat4, DVec3};
 use std::f64::consts::FRAC_1_PI;
 use std::sync::Arc;
@@ -44,19 +43,7 @@ fn pictures_of_plants_do_not_tell_what_was_kept_nor_how_many_threads_there_are()
     let row = Technique::RayTracing.row();
     let mut scene = lit(vec![plants("daisy", 5.0)]);
     (row.require)(&mut scene.settings);
-    let picture = |most: Option<u64>, threads: usize| {
-        let prepared = Prepared::new(&scene).unwrap_or_else(|error| panic!("{error}"));
-        if let Some(most) = most {
-            prepared.limit_details(most);
-        }
-        let view = prepared.view();
-        let plan = Plan::new(&prepared, &view);
-        let made = row.technique.prepare(&Task::new(&prepared, &plan)).expect("ready");
-        let threads = std::num::NonZeroUsize::new(threads);
-        let order = RenderOrder { threads, ..RenderOrder::of(&prepared.settings) };
-        let rendering = made.renderer.any().render(&view, &order, &Watch::NOBODY).expect("a picture");
-        (green(&rendering), prepared.detail_costs().expect("plants"))
-    };
+    let picture = |most: Option<u64>, threads: usize| render_within(&scene, row, most, threads);
     let (whole, all) = picture(None, 1);
     assert_eq!(all.made, 3, "{all:?}");
     for (most, threads) in [(None, 2), (Some(all.bytes / 2), 2)] {

@@ -1,13 +1,12 @@
 //! Facts about terrain: rays meet it where its triangles are, but exactly, and pictures do not tell what was kept of it.
 
-use super::instance_tests::{at, differing, diffuse, green, instances, lit, maps, object, render};
-use super::{RENDERERS, RenderOrder, Rendering, Task, Technique, Watch};
+use super::instance_tests::{at, differing, diffuse, green, instances, lit, maps, object, render, render_within};
+use super::{RENDERERS, Rendering, Technique};
 use crate::illumination::Paint;
 use crate::illumination::material::{MaterialKind, RefractiveIndex, Transparent};
 use crate::illumination::texture::{Motif, Pattern, TextureMapping};
-use crate::plan::Plan;
 use crate::procedural::terrain::{FractalKind, FractalParameters};
-use crate::scene::{FractalGround, GroundKind, Object, Prepared, Scene, Shape, Terrain};
+use crate::scene::{FractalGround, GroundKind, Object, Scene, Shape, Terrain};
 use glam::{DAffine3, DMat4, DVec3};
 
 /// Uneven ground, checkered in its body or along its parameters.
@@ -67,19 +66,7 @@ fn pictures_do_not_tell_how_much_of_the_ground_is_kept_nor_how_many_threads_ther
     let mut scene = lit(vec![Object { tolerance: None, transform: large, ..ground(true, 12.0) }]);
     (row.require)(&mut scene.settings);
     scene.settings.image.samples = 2;
-    let picture = |most: Option<u64>, threads: usize| {
-        let prepared = Prepared::new(&scene).unwrap_or_else(|error| panic!("{error}"));
-        if let Some(most) = most {
-            prepared.limit_details(most);
-        }
-        let view = prepared.view();
-        let plan = Plan::new(&prepared, &view);
-        let made = row.technique.prepare(&Task::new(&prepared, &plan)).expect("ready");
-        let threads = std::num::NonZeroUsize::new(threads);
-        let order = RenderOrder { threads, ..RenderOrder::of(&prepared.settings) };
-        let rendering = made.renderer.any().render(&view, &order, &Watch::NOBODY).expect("a picture");
-        (green(&rendering), prepared.detail_costs().expect("terrain"))
-    };
+    let picture = |most: Option<u64>, threads: usize| render_within(&scene, row, most, threads);
     let (whole, all) = picture(None, 1);
     assert!(all.kept > 8 && all.made == all.kept as u64, "{all:?}");
     for (most, threads) in [(None, 2), (Some(all.bytes / 4), 1), (Some(all.bytes / 4), 2)] {

@@ -102,7 +102,7 @@ impl<'a> Grower<'a> {
 
 /// A number that varies, drawn from a stream.
 pub(super) fn drawn(varied: Varied, random: &mut RandomStream) -> f64 {
-    varied.mean + varied.deviation * (2.0 * random.uniform() - 1.0)
+    varied.at(random.uniform())
 }
 
 /// A stroke with fewer nodes that is off by no more than a distance, in its axis and in its radius.

@@ -120,8 +120,7 @@ impl OrganSeason {
     /// - `draws`: of this organ, uniform in 0..1.
     pub fn size(&self, part_of_year: f64, draws: [f64; 2]) -> f64 {
         let Some([emerges, falls]) = self.lasts else { return 1.0 };
-        let [emerges, falls] = [(emerges, draws[0]), (falls, draws[1])]
-            .map(|(varied, draw)| varied.mean + varied.deviation * (2.0 * draw - 1.0));
+        let [emerges, falls] = [(emerges, draws[0]), (falls, draws[1])].map(|(varied, draw)| varied.at(draw));
         // What comes in autumn and falls in spring is there at the turn of the year.
         let since = (part_of_year - emerges).rem_euclid(1.0);
         let lasts = (falls - emerges).rem_euclid(1.0);

@@ -42,7 +42,7 @@ struct BentBlade<'a> {
 pub(super) fn organ_mesh(organ: &Organ, variant: usize, detail: f64) -> Mesh {
     let mut mesh = Mesh::default();
     let mut random = RandomStream::new(mix(variant as u64 + 1), 7);
-    let mut draw = |varied: Varied| varied.mean + varied.deviation * (2.0 * random.uniform() - 1.0);
+    let mut draw = |varied: Varied| varied.at(random.uniform());
     if organ.arrangement == BladeArrangement::Ball {
         append_ball(&mut mesh, organ.width, detail);
         return mesh;
